@@ -1,0 +1,1 @@
+"""meshwind winds taut fibres on any freeform triangle mesh."""

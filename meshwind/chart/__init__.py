@@ -1,0 +1,1 @@
+"""The annulus on the periodic rectangle."""

@@ -1,0 +1,1 @@
+"""What a set of paths amounts to: families, crossings, coverage, quads."""

@@ -1,0 +1,1 @@
+"""Any triangle mesh to a clean annulus: read, repair, choose the ends, trim."""

@@ -1,0 +1,1 @@
+"""Files, report and pictures."""

@@ -1,0 +1,1 @@
+"""Taut paths on a surface."""

@@ -1,0 +1,69 @@
+"""Taut paths, each with its certificate."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+from meshwind.cast import Bools, Floats, Ints
+from meshwind.surface.surface import Surface
+
+
+class Status(IntEnum):
+    """How a path ended; 0 is a taut equilibrium, anything else comes with advice."""
+
+    CONVERGED = 0
+    SLID_OFF_START = 1
+    SLID_OFF_END = 2
+    UNSTABLE = 3
+    STALLED = 4
+
+    @property
+    def advice(self) -> str:
+        """What the status means and what to do about it."""
+        return _ADVICE[self]
+
+
+_ADVICE = {
+    Status.CONVERGED: "taut equilibrium",
+    Status.SLID_OFF_START: "the fibre slides off the start rim (v=0): use fewer revolutions or a wider opening",
+    Status.SLID_OFF_END: "the fibre slides off the end rim (v=1): use fewer revolutions or a wider opening",
+    Status.UNSTABLE: "no stable taut path was found between these ends: use fewer revolutions",
+    Status.STALLED: "the solver stopped before equilibrium: try more particles or a smoother surface (--tolerance)",
+}
+
+
+@dataclass(frozen=True)
+class Counters:
+    """What a batch cost: surface evaluations, foot points, block solves and iterations."""
+
+    evaluations: int
+    feet: int
+    solves: int
+    iterations: int
+
+
+@dataclass(frozen=True)
+class Paths:
+    """A batch of p taut paths of n particles each on one surface.
+
+    points (p, n, 3); uv (p, n, 2) parametric position of the particle or of its foot, u unwrapped;
+    on_surface (p, n); gap (p, n) distance to the surface, 0 where on it; normal (p, n, 3) outward at the
+    particle or its foot; slip (p, n) = |kg| / kn, NaN off the surface and at the two ends; family (p,) +1 or
+    -1; status (p,) of `Status`; residual (p,) largest unbalanced tangential force over the tension, the
+    certificate of equilibrium.
+    """
+
+    surface: Surface
+    points: Floats
+    uv: Floats
+    on_surface: Bools
+    gap: Floats
+    normal: Floats
+    slip: Floats
+    family: Ints
+    status: Ints
+    residual: Floats
+    friction: float
+    counters: Counters
+
+    def __len__(self) -> int:
+        return len(self.points)

@@ -1,0 +1,1 @@
+"""The smooth surface: one tensor B-spline type, fitted or analytic."""
