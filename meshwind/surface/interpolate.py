@@ -1,0 +1,38 @@
+"""A B-spline surface through a formula: the collocation that analytic shapes and images share."""
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+from scipy.interpolate import make_interp_spline
+
+from meshwind.cast import Floats
+from meshwind.surface.surface import DEGREE, Surface
+
+Formula: TypeAlias = Callable[[Floats, Floats], Floats]
+"""s(u, v) for arrays of equal shape; the result has one more axis of length 3."""
+
+
+def interpolate(formula: Formula, spans: tuple[int, int] = (128, 128), periodic: bool = True) -> Surface:
+    """Interpolate `formula` by a uniform bicubic surface; the error falls with the fourth power of the spans."""
+    u = _sites(spans[0], periodic)
+    v = _sites(spans[1], False)
+    values = formula(*np.meshgrid(u, v, indexing="ij"))
+    net = _control(values, u, spans[0], periodic)
+    net = np.swapaxes(_control(np.swapaxes(net, 0, 1), v, spans[1], False), 0, 1)
+    return Surface(net, periodic)
+
+
+def _sites(spans: int, periodic: bool) -> Floats:
+    """Where to interpolate: the knots, and at open ends the middle of the first and last span as well."""
+    knots = np.arange(spans + (not periodic)) / spans
+    return knots if periodic else np.sort(np.r_[knots, 0.5 / spans, 1 - 0.5 / spans])
+
+
+def _control(values: Floats, sites: Floats, spans: int, periodic: bool) -> Floats:
+    if periodic:
+        closed = np.concatenate([values, values[:1]])
+        spline = make_interp_spline(np.r_[sites, 1.0], closed, DEGREE, bc_type="periodic")
+        return np.asarray(spline.c[:spans])
+    knots = np.arange(-DEGREE, spans + DEGREE + 1) / spans
+    return np.asarray(make_interp_spline(sites, values, DEGREE, t=knots).c)
