@@ -1,0 +1,61 @@
+"""The smooth maps behind the sample parts: (u, v) in [0, 1)^2, u around and periodic, to millimetres.
+
+Each map takes u and v of shape (n,) and gives points (n, 3); growing u and v, in this order, point outward.
+All are smooth, so that a spline can follow them; the closed ones run from pole to pole.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+def bump(x: Floats, centre: float, width: float) -> Floats:
+    """Return a bell of height 1 and the given half-width."""
+    return np.exp(-(((x - centre) / width) ** 2))
+
+
+def rise(x: Floats, centre: float, width: float) -> Floats:
+    """Return a smooth step from 0 to 1 about `centre`."""
+    return 0.5 + 0.5 * np.tanh((x - centre) / width)
+
+
+def vase(u: Floats, v: Floats) -> Floats:
+    """Return an oval, leaning vase 200 mm high, open at both ends, its waist well inside its rims."""
+    turn = 2 * np.pi * u
+    radius = 40 + 13 * bump(v, 0.28, 0.22) - 13 * bump(v, 0.7, 0.18) + 8 * bump(v, 1.04, 0.18)
+    radius *= 1 + 0.07 * np.cos(2 * turn - 0.6 - 0.8 * v) + 0.02 * np.cos(3 * turn + 1.1 * v)
+    centre_x = 14 * v**2
+    centre_y = 5 * np.sin(np.pi * v)
+    return np.column_stack([centre_x + radius * np.cos(turn), centre_y + radius * np.sin(turn), 200 * v])
+
+
+def elbow(u: Floats, v: Floats) -> Floats:
+    """Return a quarter of a torus, a pipe of radius 30 mm bent to 90 mm, from z=0 to x=0, open."""
+    turn, bend = 2 * np.pi * u, 0.5 * np.pi * v
+    reach = 90 + 30 * np.cos(turn)
+    return np.column_stack([reach * np.cos(bend), 30 * np.sin(turn), reach * np.sin(bend)])
+
+
+def tank(u: Floats, v: Floats) -> Floats:
+    """Return the domed tank (x^2 + y^2) / 60^2 + (z / 120)^6 = 1: convex, analytic, closed."""
+    turn, height = 2 * np.pi * u, -np.cos(np.pi * v)
+    # 1 - h^6 in factors, which keeps its digits at the poles
+    radius = 60 * np.sin(np.pi * v) * np.sqrt(1 + height**2 + height**4)
+    return np.column_stack([radius * np.cos(turn), radius * np.sin(turn), 120 * height])
+
+
+def bottle(u: Floats, v: Floats) -> Floats:
+    """Return a closed bottle 220 mm high, its axis bent, with three unequal lobes twisting below its neck."""
+    turn, height = 2 * np.pi * u, -np.cos(np.pi * v)
+    closing = np.sin(np.pi * v) * np.sqrt((1 + height**2) * (1 + height**4))
+    radius = closing * (20 + 28 * (1 - rise(height, 0.34, 0.2)) + 4 * bump(height, -0.55, 0.35))
+    twisted = turn + 0.55 * (height + 1)
+    lobes = 0.17 * np.cos(3 * twisted) + 0.05 * np.cos(2 * twisted + 0.7) + 0.06 * np.cos(twisted - 0.4)
+    # the fourth power of the sine keeps the lobes smooth where they fade into the poles
+    radius *= 1 + lobes * np.sin(np.pi * v) ** 4 * 1.15 * (1 - rise(height, 0.5, 0.25)) * (1 + 0.25 * height)
+    centre_x = 9 * np.sin(1.3 * height + 0.4)
+    centre_y = 5 * np.cos(1.9 * height - 0.3)
+    return np.column_stack(
+        [centre_x + radius * np.cos(turn), centre_y + radius * np.sin(turn), 110 * (height + 1)]
+    )
