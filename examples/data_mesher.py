@@ -120,8 +120,8 @@ def dual(label: Ints) -> Ints:
     triangle, place = np.unique(np.sort(met, axis=1), axis=0, return_inverse=True)
     # a ragged border of cells may meet there and back again: the passes cancel
     sense = np.sign(np.bincount(place, np.where(odd, -1.0, 1.0)))
-    oriented: Ints = np.where((sense < 0)[:, None], triangle[:, [0, 2, 1]], triangle)
-    return oriented[sense != 0]
+    oriented: Ints = np.where((sense < 0)[:, None], triangle[:, [0, 2, 1]], triangle)[sense != 0]
+    return oriented
 
 
 def triangulate(part: Part, seed: int) -> tuple[Floats, Ints]:

@@ -59,3 +59,48 @@ def bottle(u: Floats, v: Floats) -> Floats:
     return np.column_stack(
         [centre_x + radius * np.cos(turn), centre_y + radius * np.sin(turn), 110 * (height + 1)]
     )
+
+
+def cast(u: Floats, v: Floats) -> Floats:
+    """Return a cast of the lower leg, open below the knee and before the toes, bent by 82 degrees at the ankle."""
+    turn, t = 2 * np.pi * u, -225 + 335 * v
+    up, ahead = np.array([0.0, 0.0, 1.0]), np.array([np.cos(0.14), 0.0, -np.sin(0.14)])
+    # a hyperbola-like centreline: leg and foot are its asymptotes, 40 mm the size of its bend
+    leg, foot = 40 * np.logaddexp(0, -t / 40), 40 * np.logaddexp(0, t / 40)
+    share = rise(t, 0.0, 80.0)
+    tangent = np.outer(share, ahead) - np.outer(1 - share, up)
+    tangent /= np.linalg.norm(tangent, axis=1)[:, None]
+    side = np.array([0.0, -1.0, 0.0])
+    front = np.cross(side, tangent)
+    calf = 1 - rise(t, -95, 45)
+    depth = 36 + 14 * calf + 4 * bump(t, -165, 50) - 7 * rise(t, 50, 35)
+    width = 34 + 15 * calf + 3 * bump(t, -160, 50) + 9 * rise(t, 65, 35)
+    across, along = np.cos(turn), np.sin(turn)
+    # the mixed term squares the ellipse off, as a sole and a shin do
+    radius = (across**2 / depth**2 + along**2 / width**2 - 0.45 * (across * along) ** 2 / depth / width) ** -0.5
+    radius += 15 * np.exp(3 * (-across - 1)) * bump(t, -4, 30)
+    radius += 4 * np.exp(5 * (along - 1)) * bump(t, -36, 20) + 4 * np.exp(5 * (-along - 1)) * bump(t, -26, 20)
+    radius += 5 * np.exp(1.5 * (np.cos(turn - 2.6) - 1)) * bump(t, -150, 50)
+    centre = np.outer(leg, up) + np.outer(foot, ahead) + np.outer(5 * bump(t, 100, 60), side)
+    return centre + (radius * across)[:, None] * front + (radius * along)[:, None] * side
+
+
+def wing(u: Floats, v: Floats) -> Floats:
+    """Return a closed, swept, tapered wing panel of 400 mm span, its trailing edge and tips rounded."""
+    turn, station = 2 * np.pi * u, -np.cos(np.pi * v)
+    chord = 75 - 15 * station
+    x = 0.5 + 0.5 * np.cos(turn)
+    nose = np.sqrt(-np.expm1(-7 * x))
+    tail = np.sqrt(-np.expm1(-1.25 * chord * (1 - x)))
+    thickness = (1.5 + (0.075 * chord - 1.5) * (1 - x**2)) * nose * tail
+    to_tip = 200 * (1 - np.abs(station))
+    # every section fades into an ellipse at the tips, or the surface would have no curvature there
+    airfoil = -np.expm1(-to_tip / 8)
+    side = airfoil * thickness * np.sign(np.sin(turn)) + (1 - airfoil) * 0.06 * chord * np.sin(turn)
+    fullness = -np.expm1(-to_tip / 20)
+    height = 0.048 * chord * x * (1 - x) * fullness - side * np.sqrt(-np.expm1(-to_tip / 7))
+    reach = (x - 0.4) * chord * np.sqrt(fullness)
+    washout = 0.03 * (1 + station)
+    aft = 32 * station + reach * np.cos(washout) - height * np.sin(washout)
+    upward = 10 * station + reach * np.sin(washout) + height * np.cos(washout)
+    return np.column_stack([aft, 200 * station, upward])
