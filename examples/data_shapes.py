@@ -49,11 +49,13 @@ def bottle(u: Floats, v: Floats) -> Floats:
     """Return a closed bottle 220 mm high, its axis bent, with three unequal lobes twisting below its neck."""
     turn, height = 2 * np.pi * u, -np.cos(np.pi * v)
     closing = np.sin(np.pi * v) * np.sqrt((1 + height**2) * (1 + height**4))
+    # one factor more of 1 - h^16 below makes a base to stand on
+    closing *= np.sqrt(1 + height**8 * (1 - rise(height, 0.0, 0.3)))
     radius = closing * (20 + 28 * (1 - rise(height, 0.34, 0.2)) + 4 * bump(height, -0.55, 0.35))
     twisted = turn + 0.55 * (height + 1)
     lobes = 0.17 * np.cos(3 * twisted) + 0.05 * np.cos(2 * twisted + 0.7) + 0.06 * np.cos(twisted - 0.4)
-    # the fourth power of the sine keeps the lobes smooth where they fade into the poles
-    radius *= 1 + lobes * np.sin(np.pi * v) ** 4 * 1.15 * (1 - rise(height, 0.5, 0.25)) * (1 + 0.25 * height)
+    # the square of the sine keeps the lobes smooth where they fade into the poles
+    radius *= 1 + lobes * np.sin(np.pi * v) ** 2 * 1.15 * (1 - rise(height, 0.5, 0.25)) * (1 + 0.25 * height)
     centre_x = 9 * np.sin(1.3 * height + 0.4)
     centre_y = 5 * np.cos(1.9 * height - 0.3)
     return np.column_stack(
@@ -62,7 +64,7 @@ def bottle(u: Floats, v: Floats) -> Floats:
 
 
 def cast(u: Floats, v: Floats) -> Floats:
-    """Return a cast of the lower leg, open below the knee and before the toes, bent by 82 degrees at the ankle."""
+    """Return a cast of the lower leg, bent 82 degrees at the ankle, open at knee and toes."""
     turn, t = 2 * np.pi * u, -225 + 335 * v
     up, ahead = np.array([0.0, 0.0, 1.0]), np.array([np.cos(0.14), 0.0, -np.sin(0.14)])
     # a hyperbola-like centreline: leg and foot are its asymptotes, 40 mm the size of its bend
@@ -77,12 +79,13 @@ def cast(u: Floats, v: Floats) -> Floats:
     width = 34 + 15 * calf + 3 * bump(t, -160, 50) + 9 * rise(t, 65, 35)
     across, along = np.cos(turn), np.sin(turn)
     # the mixed term squares the ellipse off, as a sole and a shin do
-    radius = (across**2 / depth**2 + along**2 / width**2 - 0.45 * (across * along) ** 2 / depth / width) ** -0.5
+    square = 0.45 * (across * along) ** 2 / (depth * width)
+    radius = 1 / np.sqrt((across / depth) ** 2 + (along / width) ** 2 - square)
     radius += 15 * np.exp(3 * (-across - 1)) * bump(t, -4, 30)
     radius += 4 * np.exp(5 * (along - 1)) * bump(t, -36, 20) + 4 * np.exp(5 * (-along - 1)) * bump(t, -26, 20)
     radius += 5 * np.exp(1.5 * (np.cos(turn - 2.6) - 1)) * bump(t, -150, 50)
     centre = np.outer(leg, up) + np.outer(foot, ahead) + np.outer(5 * bump(t, 100, 60), side)
-    return centre + (radius * across)[:, None] * front + (radius * along)[:, None] * side
+    return np.asarray(centre + (radius * across)[:, None] * front + (radius * along)[:, None] * side)
 
 
 def wing(u: Floats, v: Floats) -> Floats:

@@ -13,7 +13,7 @@ PARTS = (
     Part("elbow.obj", data_shapes.elbow, closed=False, vertices=4000),
     Part("bottle.obj", data_shapes.bottle, closed=True, vertices=4500, sharpness=12),
     Part("cast.ply", data_shapes.cast, closed=False, vertices=4500, sharpness=15),
-    Part("wing.stl", data_shapes.wing, closed=True, vertices=5600, grid=(450, 1000), sharpness=5),
+    Part("wing.stl", data_shapes.wing, closed=True, vertices=6200, grid=(450, 1000), sharpness=7),
 )
 
 
