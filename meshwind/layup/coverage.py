@@ -1,0 +1,131 @@
+"""How many layers of band lie over each cell of the surface."""
+
+from dataclasses import dataclass
+from math import floor
+
+import numpy as np
+from numba import njit
+
+from meshwind.cast import Floats, frozen
+from meshwind.errors import BadInputError
+from meshwind.path.paths import Paths
+from meshwind.surface.surface import Surface
+
+_ROWS = 256
+"""Most cells from end to end."""
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """Layers over the cells of an (nu, nv) grid on the (u, v) rectangle, one fibre pitch wide.
+
+    layers (nu, nv) = length of fibre over the cell x width / area of the cell, bridges counted at their feet;
+    area (nu, nv) of the cells; width of the band.  Sum(layers x area) = width x total length, exactly.
+    """
+
+    layers: Floats
+    area: Floats
+    width: float
+
+    @property
+    def min(self) -> float:
+        """Fewest layers over any cell."""
+        return float(self.layers.min())
+
+    @property
+    def median(self) -> float:
+        """Median over the cells."""
+        return float(np.median(self.layers))
+
+    @property
+    def max(self) -> float:
+        """Most layers over any cell."""
+        return float(self.layers.max())
+
+    def at(self, uv: Floats) -> Floats:
+        """Layers at uv (n, 2), linear between the centres of the cells."""
+        nu, nv = self.layers.shape
+        x = np.mod(uv[:, 0] * nu - 0.5, nu)
+        y = np.clip(uv[:, 1] * nv - 0.5, 0.0, nv - 1.0)
+        i, j = np.minimum(x.astype(np.int64), nu - 1), np.minimum(y.astype(np.int64), max(nv - 2, 0))
+        f, g = x - i, y - j
+        right, above = (i + 1) % nu, np.minimum(j + 1, nv - 1)
+        here = (1.0 - f) * self.layers[i, j] + f * self.layers[right, j]
+        there = (1.0 - f) * self.layers[i, above] + f * self.layers[right, above]
+        return np.asarray((1.0 - g) * here + g * there)
+
+
+def coverage(paths: Paths, width: float | None = None) -> Coverage:
+    """Lay a band of `width` (in mesh units) along every path and count layers.
+
+    Without a width, the band is as wide as makes the mean one layer a family.
+    """
+    if width is not None and not (np.isfinite(width) and width > 0.0):
+        raise BadInputError(f"band width {width} is no length; give a number > 0 in the mesh's units")
+    families, count = np.unique(paths.family, return_counts=True)
+    steps = np.linalg.norm(np.diff(paths.points, axis=1), axis=2)
+    nu = max(int(count.max(initial=0)), 1)
+    nv = _rows(paths.surface, nu)
+    area = cell_areas(paths.surface, nu, nv)
+    length = np.zeros((nu, nv))
+    _spread(paths.uv, steps, length)
+    total = float(steps.sum())
+    if width is None:
+        width = len(families) * float(area.sum()) / total if total > 0.0 else 0.0
+    layers = np.divide(width * length, area, out=np.zeros_like(length), where=area > 0.0)
+    return Coverage(frozen(layers), frozen(area), float(width))
+
+
+def _rows(surface: Surface, nu: int) -> int:
+    """Rows that make cells about as long as they are wide."""
+    t = (np.arange(16) + 0.5) / 16
+    u, v = np.meshgrid(t, t, indexing="ij")
+    frames = surface.frames(np.stack([u.ravel(), v.ravel()], axis=1))
+    around, along = np.linalg.norm(frames[:, 1:3], axis=2).mean(axis=0)
+    return int(np.clip(round(nu * along / max(around, 1e-300)), 4, _ROWS))
+
+
+def cell_areas(surface: Surface, nu: int, nv: int) -> Floats:
+    """Areas (nu, nv) of the grid's cells by Gauss quadrature of |s_u x s_v|, 4 points a span."""
+    pieces = [-(-spans // cells) for spans, cells in zip(surface.spans, (nu, nv), strict=True)]
+    node, weight = np.polynomial.legendre.leggauss(4)
+    (u, wu), (v, wv) = (_composite(node, weight, n * many) for n, many in zip((nu, nv), pieces, strict=True))
+    frames = surface.frames(np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2))
+    element = np.linalg.norm(np.cross(frames[:, 1], frames[:, 2]), axis=1).reshape(len(u), len(v))
+    patches = (wu[:, None] * element * wv).reshape(nu, pieces[0] * len(node), nv, pieces[1] * len(node))
+    return np.asarray(patches.sum(axis=(1, 3)))
+
+
+def _composite(node: Floats, weight: Floats, intervals: int) -> tuple[Floats, Floats]:
+    """Gauss nodes and weights on equal intervals of [0, 1]."""
+    at = (np.arange(intervals)[:, None] + 0.5 * (node + 1.0)) / intervals
+    return at.ravel(), np.tile(0.5 * weight / intervals, intervals)
+
+
+@njit(cache=True)
+def _spread(uv: Floats, steps: Floats, length: Floats) -> None:
+    """Add the length of every segment to the cells it passes, in the share it spends in each in (u, v)."""
+    nu, nv = length.shape
+    for p in range(steps.shape[0]):
+        for k in range(steps.shape[1]):
+            x, y = uv[p, k, 0] * nu, uv[p, k, 1] * nv
+            dx, dy = uv[p, k + 1, 0] * nu - x, uv[p, k + 1, 1] * nv - y
+            done = 0.0
+            while done < 1.0:
+                # The next wall strictly ahead; 1e-12 of a cell keeps rounding from standing still on a wall.
+                share = min(_to_wall(x, dx, done), _to_wall(y, dy, done), 1.0)
+                middle = 0.5 * (done + share)
+                i = floor(x + middle * dx) % nu
+                j = min(max(floor(y + middle * dy), 0), nv - 1)
+                length[i, j] += (share - done) * steps[p, k]
+                done = share
+
+
+@njit(inline="always", cache=True)
+def _to_wall(x: float, dx: float, done: float) -> float:
+    """Fraction of the step at which coordinate x + f dx reaches its next whole number after f = done."""
+    if dx == 0.0:
+        return 1.0
+    here = x + done * dx
+    wall = floor(here + 1e-12) + 1.0 if dx > 0.0 else -floor(1e-12 - here) - 1.0
+    return max((wall - x) / dx, done + 1e-12)

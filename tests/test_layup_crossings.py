@@ -1,0 +1,128 @@
+"""Crossings on a cylinder, where straight lines in (u, v) are geodesics and every answer is known."""
+
+import numpy as np
+import pytest
+from layup_shapes import HEIGHT, bridged, cylinder, drawn, helices, straight_uv
+
+from meshwind.cast import Floats
+from meshwind.layup.crossings import crossings
+
+CYLINDER = cylinder()
+CASES = [  # paths per family, revolutions, particles
+    (8, 1.0, 101),  # crossings fall on particles
+    (16, 1.0, 100),
+    (32, 2.5, 401),  # several turns
+    (8, 0.97, 101),  # 2 R N is no whole number
+    (5, 3.03, 77),
+    (12, 0.5, 2),  # one segment a path
+    (1, 3.0, 51),
+]
+
+
+def expected_uv(count: int, revolutions: float) -> Floats:
+    """Path i of +1 and j of -1 meet where 2 R v = (j - i) / N modulo 1; sorted by v, then u."""
+    steps = np.arange(1, int(np.ceil(2 * revolutions * count - 1e-9)))
+    v = steps / (2 * revolutions * count)
+    u = np.arange(count)[:, None] / count + revolutions * v
+    uv = np.stack([np.mod(u, 1.0), np.broadcast_to(v, u.shape)], axis=2).reshape(-1, 2)
+    return np.asarray(uv)
+
+
+def matched(found: Floats, wanted: Floats) -> float:
+    """Largest distance from a wanted point to the nearest found one, u modulo 1."""
+    offset = found[:, None] - wanted[None]
+    offset[..., 0] -= np.round(offset[..., 0])
+    return float(np.abs(offset).max(axis=2).min(axis=0).max())
+
+
+@pytest.mark.parametrize(("count", "revolutions", "particles"), CASES)
+def test_count_position_and_angle(count: int, revolutions: float, particles: int) -> None:
+    found = crossings(helices(count, revolutions, particles, CYLINDER))
+    wanted = expected_uv(count, revolutions)
+    assert len(found) == len(wanted)
+    assert matched(found.uv, wanted) < 1e-12
+    exact = np.column_stack([np.cos(2 * np.pi * found.uv[:, 0]), np.sin(2 * np.pi * found.uv[:, 0]),
+                             HEIGHT * found.uv[:, 1]])
+    assert np.abs(found.points - exact).max() < 1e-9
+    between = 2.0 * np.arctan2(2.0 * np.pi * revolutions, HEIGHT)
+    assert np.abs(found.angle - min(between, np.pi - between)).max() < 1e-8
+    assert found.on_surface.all()
+
+
+def test_positions_along_the_paths_lead_back_to_the_crossing() -> None:
+    paths = helices(7, 1.3, 61, CYLINDER)
+    found = crossings(paths)
+    for path, t in ((found.path_a, found.t_a), (found.path_b, found.t_b)):
+        k = np.minimum(t.astype(int), 59)
+        uv = paths.uv[path, k] + (t - k)[:, None] * (paths.uv[path, k + 1] - paths.uv[path, k])
+        off = uv - found.uv
+        assert np.abs(off[:, 0] - np.round(off[:, 0])).max() < 1e-12
+        assert np.abs(off[:, 1]).max() < 1e-12
+    assert (paths.family[found.path_a] == 1).all()
+    assert (paths.family[found.path_b] == -1).all()
+    assert (found.sense == 1).all()
+
+
+def test_zero_revolutions_never_cross() -> None:
+    assert len(crossings(helices(8, 0.0, 31, CYLINDER))) == 0
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e-13, 0.5, 0.123])
+def test_where_the_seam_lies_changes_nothing(offset: float) -> None:
+    uv, family = straight_uv(6, 1.5, 41, offset)
+    turned = crossings(drawn(CYLINDER, uv + np.array([3.0, 0.0]), family))
+    assert len(turned) == 6 * 17
+    assert matched(turned.uv - [offset, 0.0], expected_uv(6, 1.5)) < 1e-12
+
+
+def test_only_paths_that_are_asked_for_take_part() -> None:
+    paths = helices(8, 1.0, 101, CYLINDER)
+    whole = crossings(paths)
+    among = np.ones(16, dtype=bool)
+    among[[3, 12]] = False
+    part = crossings(paths, among)
+    assert len(part) == (np.isin(whole.path_a, [3, 12]) | np.isin(whole.path_b, [3, 12])).__invert__().sum()
+    assert not np.isin(part.path_a, [3, 12]).any()
+
+
+def test_bridges_cross_off_the_surface_between_their_fibres() -> None:
+    paths = bridged()
+    found = crossings(paths)
+    lifted = (found.uv[:, 1] > 0.31) & (found.uv[:, 1] < 0.69)
+    assert lifted.any()
+    assert not found.on_surface[lifted].any()
+    assert found.on_surface[~lifted].all()
+    radius = np.linalg.norm(found.points[:, :2], axis=1)
+    body = np.linalg.norm(paths.surface.points(found.uv)[:, :2], axis=1)
+    assert (radius[lifted] > body[lifted] + 1e-3).all()
+    assert np.abs(radius[~lifted] - body[~lifted]).max() < 1e-12
+
+
+def test_a_pair_that_crosses_back_counts_each_time() -> None:
+    v = np.linspace(0.0, 1.0, 301)
+    wave = 0.1 * np.sin(3.0 * np.pi * v)  # crosses u = 0 at v = 1/3 and 2/3
+    uv = np.stack([np.column_stack([wave, v]), np.column_stack([0.0 * v, v])])
+    found = crossings(drawn(CYLINDER, uv, np.array([1.0, -1.0])))
+    assert np.allclose(found.uv[:, 1], [1 / 3, 2 / 3], atol=1e-4)
+    assert found.sense.tolist() == [-1, 1]
+
+
+def test_long_steps_of_a_foot_are_followed_around() -> None:
+    """A step of more than half a turn is compared with every turn that it passes."""
+    uv = np.array([[[0.0, 0.0], [2.2, 1.0]], [[0.5, 0.0], [0.5, 1.0]]])
+    found = crossings(drawn(CYLINDER, uv, np.array([1.0, -1.0])))
+    assert np.allclose(found.uv, [[0.5, 0.5 / 2.2], [0.5, 1.5 / 2.2]], atol=1e-12)
+
+
+def test_results_are_read_only() -> None:
+    found = crossings(helices(4, 1.0, 21, CYLINDER))
+    with pytest.raises(ValueError, match="read-only"):
+        found.uv[0, 0] = 1.0
+
+
+def test_order_of_the_paths_does_not_matter() -> None:
+    paths = helices(6, 1.2, 41, CYLINDER)
+    order = np.random.default_rng(1).permutation(12)
+    shuffled = drawn(CYLINDER, np.asarray(paths.uv[order]), paths.family[order])
+    assert matched(crossings(shuffled).uv, crossings(paths).uv) < 1e-12
+    assert len(crossings(shuffled)) == len(crossings(paths))
