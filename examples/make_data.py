@@ -9,9 +9,9 @@ from data_mesher import Part, triangulate
 
 PARTS = (
     Part("vase.stl", data_shapes.vase, closed=False, vertices=4300),
-    Part("tank.ply", data_shapes.tank, closed=True, vertices=4200),
+    Part("tank.ply", data_shapes.tank, closed=True, vertices=5000),
     Part("elbow.obj", data_shapes.elbow, closed=False, vertices=4000),
-    Part("bottle.obj", data_shapes.bottle, closed=True, vertices=4500, sharpness=12),
+    Part("bottle.obj", data_shapes.bottle, closed=True, vertices=5200, sharpness=12),
     Part("cast.ply", data_shapes.cast, closed=False, vertices=4500, sharpness=15),
     Part("wing.stl", data_shapes.wing, closed=True, vertices=6200, grid=(450, 1000), sharpness=7),
 )
