@@ -1,1 +1,59 @@
-"""meshwind winds taut fibres on any freeform triangle mesh."""
+"""meshwind winds taut fibres on any freeform triangle mesh.
+
+    import meshwind as mw
+
+    result = mw.wind("data/vase.stl", paths=12, revolutions=0.8)
+    result.write("out")
+
+or stage by stage: `read`, `annulus`, `flatten`, `fit`, `families`, `solve`, `layup`.  Names load on first use,
+so that importing the package costs next to nothing.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from meshwind.chart import Chart as Chart
+    from meshwind.chart import flatten as flatten
+    from meshwind.errors import BadInputError as BadInputError
+    from meshwind.layup import Families as Families
+    from meshwind.layup import Layup as Layup
+    from meshwind.layup import families as families
+    from meshwind.layup import layup as layup
+    from meshwind.mandrel import Annulus as Annulus
+    from meshwind.mandrel import Mesh as Mesh
+    from meshwind.mandrel import annulus as annulus
+    from meshwind.mandrel import read as read
+    from meshwind.path import Paths as Paths
+    from meshwind.path import Status as Status
+    from meshwind.path import solve as solve
+    from meshwind.pipeline import Result as Result
+    from meshwind.pipeline import wind as wind
+    from meshwind.surface import FitError as FitError
+    from meshwind.surface import Surface as Surface
+    from meshwind.surface import fit as fit
+    from meshwind.surface import shapes as shapes
+
+_HOME = {
+    "BadInputError": "errors",
+    "Mesh": "mandrel", "Annulus": "mandrel", "read": "mandrel", "annulus": "mandrel",
+    "Chart": "chart", "flatten": "chart",
+    "Surface": "surface", "FitError": "surface", "fit": "surface", "shapes": "surface",
+    "Paths": "path", "Status": "path", "solve": "path",
+    "Families": "layup", "Layup": "layup", "families": "layup", "layup": "layup",
+    "Result": "pipeline", "wind": "pipeline",
+}  # fmt: skip
+
+__all__ = sorted(_HOME)  # noqa: PLE0605
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'meshwind' has no attribute {name!r}")
+    value = getattr(import_module(f"meshwind.{_HOME[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -12,7 +12,10 @@ from meshwind.mandrel.annulus import Annulus
 def seam(annulus: Annulus) -> Ints:
     """Vertices of a shortest edge path from the start rim to the end rim that touches each rim once."""
     V, F, n = annulus.vertices, annulus.faces, len(annulus.vertices)
-    i, j = np.concatenate([F, np.roll(F, -1, axis=1)], axis=0).ravel(), np.concatenate([np.roll(F, -1, axis=1), F]).ravel()
+    i, j = (
+        np.concatenate([F, np.roll(F, -1, axis=1)], axis=0).ravel(),
+        np.concatenate([np.roll(F, -1, axis=1), F]).ravel(),
+    )
     pairs = np.unique(np.stack([i, j], axis=1), axis=0)
     length = np.linalg.norm(V[pairs[:, 0]] - V[pairs[:, 1]], axis=1)
     graph = sparse.csr_array((length, (pairs[:, 0], pairs[:, 1])), shape=(n, n))

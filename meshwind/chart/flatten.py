@@ -36,8 +36,13 @@ def flatten(annulus: Annulus) -> Chart:
     area = _area(corner)
     space = igl.doublearea(annulus.vertices, annulus.faces) / 2
     stretch = space / area
-    return Chart(annulus, frozen(uv), frozen(corner), int((area <= 0).sum()),
-                 frozen(stretch * area.sum() / space.sum()))
+    return Chart(
+        annulus,
+        frozen(uv),
+        frozen(corner),
+        int((area <= 0).sum()),
+        frozen(stretch * area.sum() / space.sum()),
+    )
 
 
 def _cotangents(annulus: Annulus) -> Floats:

@@ -87,7 +87,9 @@ def _assemble(X, uv, frames, periodic, before, after, contacts, diagonal, upper,
         det = metric[count, 0] * metric[count, 2] - metric[count, 1] ** 2
         if det > 0.0:
             ru, rv = right[count, 0], right[count, 1]
-            size = (ru * ru * metric[count, 2] - 2.0 * ru * rv * metric[count, 1] + rv * rv * metric[count, 0]) / det
+            size = (
+                ru * ru * metric[count, 2] - 2.0 * ru * rv * metric[count, 1] + rv * rv * metric[count, 0]
+            ) / det
             worst = max(worst, size)
         held = hold
         count += 1
@@ -126,7 +128,7 @@ def _sag(X, touching, before, after):
 
 
 @njit(cache=True)
-def _move(net, periodic, size, step, right, contacts, count, state, trial, tally):
+def _move(net, periodic, size, step, move, contacts, count, state, trial, tally):
     """Write into `trial` the state after a step: touching particles on the surface, lifted ones towards the
     chord, and those that would sink landed on their feet."""
     X, uv, frames, normal, touching, clear = state
@@ -136,7 +138,7 @@ def _move(net, periodic, size, step, right, contacts, count, state, trial, tally
     uw[0], uw[n - 1] = uv[0], uv[n - 1]
     for c in range(count):
         i = contacts[c]
-        u, v = uv[i, 0] + step * right[c, 0], min(max(uv[i, 1] + step * right[c, 1], 0.0), 1.0)
+        u, v = uv[i, 0] + step * move[c, 0], min(max(uv[i, 1] + step * move[c, 1], 0.0), 1.0)
         if not periodic:
             u = min(max(u, 0.0), 1.0)
         uw[i, 0], uw[i, 1] = u, v
@@ -148,16 +150,18 @@ def _move(net, periodic, size, step, right, contacts, count, state, trial, tally
     tally[EVALUATIONS] += count
     i = 0
     c = 0
-    target = np.empty(3)
     while i < n - 1:
         j = contacts[c] if c < count else n - 1
         for m in range(i + 1, j):
+            # carried along by its two touching neighbours, and by `step` towards the chord
             t = (m - i) / (j - i)
             moved = 0.0
             for k in range(3):
-                target[k] = (1.0 - t) * Y[i, k] + t * Y[j, k]
-                Y[m, k] = X[m, k] + step * (target[k] - X[m, k])
-                moved += (Y[m, k] - X[m, k]) ** 2
+                chord = (1.0 - t) * X[i, k] + t * X[j, k]
+                carried = (1.0 - t) * (Y[i, k] - X[i, k]) + t * (Y[j, k] - X[j, k])
+                shift = carried + step * (chord - X[m, k])
+                Y[m, k] = X[m, k] + shift
+                moved += shift * shift
             room = clear[m] - np.sqrt(moved)
             touching_[m] = False
             uw[m] = uv[m]
@@ -198,8 +202,14 @@ def _copy(source, target):
 
 @njit(cache=True)
 def _blank(n):
-    return (np.zeros((n, 3)), np.zeros((n, 2)), np.zeros((n, 6, 3)), np.zeros((n, 3)),
-            np.ones(n, np.bool_), np.zeros(n))
+    return (
+        np.zeros((n, 3)),
+        np.zeros((n, 2)),
+        np.zeros((n, 6, 3)),
+        np.zeros((n, 3)),
+        np.ones(n, np.bool_),
+        np.zeros(n),
+    )
 
 
 @njit(cache=True)
@@ -253,6 +263,8 @@ def relax(net, periodic, size, uv, tolerance, limit, tally):
     before, after = np.zeros(n, np.int64), np.zeros(n, np.int64)
     diagonal, upper = np.empty((n, 3)), np.empty((n, 2, 2))
     metric, right = np.empty((n, 3)), np.empty((n, 2))
+    move, work = np.empty((n, 2)), np.empty((n, 3))
+    shift, least = 0.0, 0.1 * (np.pi / n) ** 2
     kept = np.empty(n, np.bool_)
     energy, length = _energy(state[0])
     residual = np.inf
@@ -270,7 +282,9 @@ def relax(net, periodic, size, uv, tolerance, limit, tally):
             released = lift_once(X, normal, touching, PULL * spacing, before, after)
         else:
             link(touching, before, after)
-        count, force = _assemble(X, uv_, frames, periodic, before, after, contacts, diagonal, upper, metric, right)
+        count, force = _assemble(
+            X, uv_, frames, periodic, before, after, contacts, diagonal, upper, metric, right
+        )
         residual = max(force, _sag(X, touching, before, after)) / spacing
         if released == 0 and residual <= tolerance:
             if caution == 2:
@@ -278,25 +292,33 @@ def relax(net, periodic, size, uv, tolerance, limit, tally):
                 if lift(X, normal, touching, PULL * spacing, before, after) > 0:
                     touching[:] = kept
                     break
-            lifted = solve(diagonal, upper, metric, right, count)
+            stable = solve(diagonal, upper, metric, 0.0, right, count, move, work)
             tally[SOLVES] += 1
-            status = UNSTABLE if lifted > 0 else CONVERGED
+            status = CONVERGED if stable else UNSTABLE
+            break
+        # the source's time step h in the form 1 / h^2: none while H is positive definite (a pure Newton step)
+        definite = False
+        while not definite and shift < 1.0 / least:
+            tally[SOLVES] += 1
+            definite = solve(diagonal, upper, metric, shift, right, count, move, work)
+            if not definite:
+                shift = max(4.0 * shift, least)
+        if not definite:
             break
         slope = 0.0
-        forces = right[:count].copy()
-        solve(diagonal, upper, metric, right, count)
-        tally[SOLVES] += 1
         reach = 0.0
         for c in range(count):
-            slope += forces[c, 0] * right[c, 0] + forces[c, 1] * right[c, 1]
-            reach = max(reach, abs(right[c, 0]), abs(right[c, 1]))
+            slope += right[c, 0] * move[c, 0] + right[c, 1] * move[c, 1]
+            reach = max(reach, abs(move[c, 0]), abs(move[c, 1]))
         step = min(1.0, 0.25 / max(reach, 1e-300))
         accepted = False
         while step > SMALLEST_STEP:
-            _move(net, periodic, size, step, right, contacts, count, state, trial, tally)
+            _move(net, periodic, size, step, move, contacts, count, state, trial, tally)
             energy_, length_ = _energy(trial[0])
             # below round-off the energy cannot judge a step, and Newton's is right
-            if energy_ <= energy - 1e-4 * step * slope or (slope <= 1e-13 * energy and energy_ <= energy * (1 + 1e-12)):
+            if energy_ <= energy - 1e-4 * step * slope or (
+                slope <= 1e-13 * energy and energy_ <= energy * (1 + 1e-12)
+            ):
                 accepted = True
                 break
             step *= 0.5
@@ -304,6 +326,7 @@ def relax(net, periodic, size, uv, tolerance, limit, tally):
             _copy(trial, state)
             energy, length = energy_, length_
             caution = 0
+            shift = 0.25 * shift if shift > least else 0.0
         else:
             touching[:] = kept
             if caution == 2:
@@ -319,7 +342,23 @@ def relax(net, periodic, size, uv, tolerance, limit, tally):
 
 
 @njit(parallel=True, cache=True)
-def relax_all(net, periodic, size, curves, tolerance, limit, X, uv, touching, gap, normal, slip, residual, status, tallies):
+def relax_all(
+    net,
+    periodic,
+    size,
+    curves,
+    tolerance,
+    limit,
+    X,
+    uv,
+    touching,
+    gap,
+    normal,
+    slip,
+    residual,
+    status,
+    tallies,
+):
     """Relax every curve (p, n, 2), one a thread, and write the results path by path."""
     for p in prange(len(curves)):
         state, residual[p], status[p] = relax(net, periodic, size, curves[p], tolerance, limit, tallies[p])

@@ -1,6 +1,5 @@
 """Solve a batch of taut paths on a surface."""
 
-
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -50,7 +49,11 @@ def solve(
     for name, point in (("start", first), ("end", last)):
         if np.any((point[:, 1] < 0) | (point[:, 1] > 1)):
             raise BadInputError(f"a {name} point has v outside [0, 1]; v runs from rim to rim")
-    curves = straight(first, last, particles) if initial is None else floats(initial, "initial", len(first), particles, 2)
+    curves = (
+        straight(first, last, particles)
+        if initial is None
+        else floats(initial, "initial", len(first), particles, 2)
+    )
     count = len(curves)
     if family is None:
         sense = np.where(last[:, 0] >= first[:, 0], 1, -1)
@@ -63,14 +66,35 @@ def solve(
     touching, gap, slip = np.empty(shape, np.bool_), np.empty(shape), np.empty(shape)
     residual, status = np.empty(count), np.empty(count, np.int64)
     tallies = np.zeros((count, 4), np.int64)
-    relax.relax_all(net, surface.periodic, surface.size, curves, tolerance, iterations,
-                    X, uv, touching, gap, normal, slip, residual, status, tallies)
+    relax.relax_all(
+        net,
+        surface.periodic,
+        surface.size,
+        curves,
+        tolerance,
+        iterations,
+        X,
+        uv,
+        touching,
+        gap,
+        normal,
+        slip,
+        residual,
+        status,
+        tallies,
+    )
     total = tallies.sum(axis=0)
     return Paths(
-        surface=surface, points=frozen(X + middle), uv=frozen(uv), on_surface=frozen(touching), gap=frozen(gap),
-        normal=frozen(normal), slip=frozen(slip), family=frozen(sense.astype(np.int64)), status=frozen(status),
-        residual=frozen(residual), friction=friction,
+        surface=surface,
+        points=frozen(X + middle),
+        uv=frozen(uv),
+        on_surface=frozen(touching),
+        gap=frozen(gap),
+        normal=frozen(normal),
+        slip=frozen(slip),
+        family=frozen(sense.astype(np.int64)),
+        status=frozen(status),
+        residual=frozen(residual),
+        friction=friction,
         counters=Counters(*(int(total[k]) for k in range(4))),
     )
-
-

@@ -56,8 +56,13 @@ def fit(chart: Chart, tolerance: float = 1e-5) -> Surface:
     diagonal = float(np.linalg.norm(np.ptp(annulus.vertices, axis=0)))
     rim = np.zeros(len(annulus.vertices), dtype=bool)
     rim[np.concatenate(annulus.rims)] = True
-    samples = _Samples(annulus.vertices - middle, chart.uv.copy(), np.where(annulus.trusted, 1.0, 0.1), rim,
-                       np.asarray(annulus.trusted))
+    samples = _Samples(
+        annulus.vertices - middle,
+        chart.uv.copy(),
+        np.where(annulus.trusted, 1.0, 0.1),
+        rim,
+        np.asarray(annulus.trusted),
+    )
     lengths = _lengths(chart)
     best, *finer = _ladder(lengths, len(annulus.vertices))
     # one thread of BLAS: the bands are narrow, more threads cost up to ten times as much and blur the last bits
@@ -145,7 +150,9 @@ def _certify(surface: Surface, samples: _Samples, chart: Chart, middle: Floats) 
     annulus = chart.annulus
     squared, _, _ = igl.point_mesh_squared_distance(points, annulus.vertices - middle, annulus.faces)
     return FitError(
-        to_surface_rms=float(np.sqrt(np.mean(distance**2))), to_surface_max=float(distance.max()),
-        to_mesh_rms=float(np.sqrt(squared.mean())), to_mesh_max=float(np.sqrt(squared.max())),
+        to_surface_rms=float(np.sqrt(np.mean(distance**2))),
+        to_surface_max=float(distance.max()),
+        to_mesh_rms=float(np.sqrt(squared.mean())),
+        to_mesh_max=float(np.sqrt(squared.max())),
         diagonal=annulus.mesh.diagonal,
     )

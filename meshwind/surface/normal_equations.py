@@ -111,4 +111,6 @@ def solve(stencil: Floats, right: Floats) -> Floats:
     band = np.bincount((row - column) * size + column, value, width * size).reshape(width, size)
     flat = np.empty((size, 3))
     flat[here.ravel()] = right.reshape(-1, 3)
-    return np.asarray(solveh_banded(band, flat, lower=True, overwrite_ab=True, check_finite=False)[here.ravel()]).reshape(nu, nv, 3)
+    return np.asarray(
+        solveh_banded(band, flat, lower=True, overwrite_ab=True, check_finite=False)[here.ravel()]
+    ).reshape(nu, nv, 3)

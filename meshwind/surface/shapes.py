@@ -54,11 +54,15 @@ def cone(radius0: float, radius1: float, height: float, spans: Spans = (128, 8))
     return revolution(lambda z: radius0 + (radius1 - radius0) * z / height, 0.0, height, spans)
 
 
-def ellipsoid(a: float, b: float, c: float, polar0: float, polar1: float, spans: Spans = (192, 96)) -> Surface:
+def ellipsoid(
+    a: float, b: float, c: float, polar0: float, polar1: float, spans: Spans = (192, 96)
+) -> Surface:
     """A band of the ellipsoid with semi-axes a, b, c, from polar angle polar0 to polar1 (radians from -z)."""
     _positive(a=a, b=b, c=c)
     if not 0 < polar0 < polar1 < np.pi:
-        raise BadInputError(f"polar angles {polar0}, {polar1} do not bound a band; give 0 < polar0 < polar1 < pi")
+        raise BadInputError(
+            f"polar angles {polar0}, {polar1} do not bound a band; give 0 < polar0 < polar1 < pi"
+        )
 
     def formula(u: Floats, v: Floats) -> Floats:
         t, q = 2 * np.pi * u, polar0 + v * (polar1 - polar0)

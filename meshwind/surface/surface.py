@@ -58,7 +58,9 @@ class Surface:
     def __post_init__(self) -> None:
         points = floats(self.control_points, "control_points", -1, -1, 3)
         if min(points.shape[:2]) < DEGREE + 1:
-            raise BadInputError(f"a bicubic surface needs at least 4 x 4 control points, got {points.shape[:2]}")
+            raise BadInputError(
+                f"a bicubic surface needs at least 4 x 4 control points, got {points.shape[:2]}"
+            )
         object.__setattr__(self, "control_points", frozen(points))
 
     @property
