@@ -23,9 +23,7 @@ def frozen(array: NDArray[Any]) -> NDArray[Any]:
 def floats(values: ArrayLike, name: str, *shape: int) -> Floats:
     """Cast to a finite float64 array of the given shape, where -1 stands for any length."""
     array = np.ascontiguousarray(values, dtype=np.float64)
-    if array.ndim != len(shape) or any(
-        want not in (-1, got) for want, got in zip(shape, array.shape, strict=True)
-    ):
+    if array.ndim != len(shape) or any(want not in (-1, got) for want, got in zip(shape, array.shape, strict=True)):
         wanted = ", ".join("n" if want < 0 else str(want) for want in shape)
         raise BadInputError(f"{name} has shape {array.shape}; give an array of shape ({wanted})")
     if not np.isfinite(array).all():

@@ -1,18 +1,148 @@
-"""The main job: mesh in, paths out.  Each stage is a library call; this file only strings them together."""
+"""The main job, mesh in and paths out.  Each stage is a library call; this file only strings them together."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 from time import perf_counter
+from typing import Any
 
+from meshwind.cast import frozen
 from meshwind.chart import Chart, flatten
 from meshwind.errors import BadInputError
-from meshwind.layup import Layup, families, layup
-from meshwind.mandrel import Annulus, Mesh, annulus, read
-from meshwind.output import folder, pictures, report, write
+from meshwind.layup import Layup, assess, families
+from meshwind.mandrel import Mesh, annulus, read
+from meshwind.output import driver, folder, write_files
+from meshwind.output.report import report
 from meshwind.path import Paths, Status, solve
 from meshwind.surface import Surface, fit
 
 Tell = Callable[[str], None]
+"""Called with a stage's name as it starts."""
+
+
+@dataclass(frozen=True)
+class Result:
+    """A wound part: what every stage made, and what the run cost.
+
+    seconds holds each stage's wall time; notes are lines for the user about what could not be done.
+    """
+
+    mesh: Mesh
+    chart: Chart
+    layup: Layup
+    revolutions: float
+    command: str
+    seconds: dict[str, float]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def surface(self) -> Surface:
+        """The fitted surface."""
+        return self.layup.paths.surface
+
+    @property
+    def paths(self) -> Paths:
+        """All paths, family +1 first."""
+        return self.layup.paths
+
+    @property
+    def settled(self) -> bool:
+        """Whether every path came to rest."""
+        return bool((self.paths.status == Status.CONVERGED).all())
+
+    def report(self) -> dict[str, Any]:
+        """The figures that report.json holds; lengths in the mesh's units, angles in degrees."""
+        return report(
+            self.layup,
+            self.mesh,
+            self.chart,
+            revolutions=self.revolutions,
+            command=self.command,
+            seconds=self.seconds,
+        )
+
+    def write(self, out: str | PathLike[str], render: bool = True) -> "Result":
+        """Write all files of the run into the folder `out`, whole or not at all.
+
+        Returns the result with the time that writing and drawing took and, where there is no OpenGL driver for
+        the picture, a note that says what to install.
+        """
+        return _write(self, Path(out), render, _Clock(None))
+
+
+class _Clock:
+    """Tells each stage as it starts and adds up what it took."""
+
+    def __init__(self, tell: Tell | None) -> None:
+        self.tell = tell
+        self.seconds: dict[str, float] = {}
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        if self.tell is not None:
+            self.tell(name)
+        start = perf_counter()
+        yield
+        self.seconds[name] = self.seconds.get(name, 0.0) + perf_counter() - start
+
+
+def wind(
+    mesh: str | PathLike[str] | Mesh,
+    *,
+    paths: int = 12,
+    revolutions: float = 0.5,
+    friction: float = 0.0,
+    ends: str = "auto",
+    opening: float | None = None,
+    tolerance: float = 1e-5,
+    particles: int = 401,
+    out: str | PathLike[str] | None = None,
+    render: bool = True,
+    command: str = "",
+    progress: Tell | None = None,
+) -> Result:
+    """Lay two families of taut paths on a triangle mesh.
+
+    mesh: a file or a `Mesh`; paths: a family; revolutions: turns from end to end; friction: coefficient (0 for
+    now); ends: "auto", "x", "y", "z" or two points "x,y,z x,y,z"; opening: radius at a closed end in the mesh's
+    units; tolerance: largest fit error over the mesh's diagonal; particles: a path; out: folder for the files;
+    render: draw winding.png as well.  Raises BadInputError, in one line, for whatever the caller can mend.
+    """
+    if friction != 0.0:
+        raise BadInputError(f"friction {friction:g} is not supported yet; use 0")
+    clock = _Clock(progress)
+    if out is not None:
+        folder.prepare(Path(out))
+        if render:
+            driver.start_probe()
+    with clock.stage("read"):
+        part = mesh if isinstance(mesh, Mesh) else read(mesh)
+    with clock.stage("ends"):
+        opened = annulus(part, ends=ends, opening=opening)
+    with clock.stage("flatten"):
+        chart = flatten(opened)
+    with clock.stage("fit"):
+        surface = fit(chart, tolerance)
+    with clock.stage("wind"):
+        rims = families(surface, paths, revolutions)
+        laid = solve(surface, rims.start, rims.end, family=rims.family, particles=particles)
+    with clock.stage("assess"):
+        layup = assess(laid)
+    result = Result(part, chart, layup, revolutions, command, clock.seconds)
+    return result if out is None else _write(result, Path(out), render, clock)
+
+
+def _write(result: Result, out: Path, render: bool, clock: _Clock) -> Result:
+    notes = result.notes
+    with folder.writing(out) as staging:
+        with clock.stage("write"):
+            write_files(staging, result.layup, result.mesh)
+        if render:
+            with clock.stage("render"):
+                note = driver.draw(staging / "winding.png", result.layup, result.mesh.name)
+            notes = (*notes, note) if note else notes
+        result = replace(result, seconds=result.seconds | clock.seconds, notes=notes)
+        write_report(staging / "report.json", result.report() | {"notes": list(notes)})
+    return result

@@ -8,7 +8,7 @@ from layup_shapes import bridged, cylinder, drawn, helices, straight_uv
 
 from meshwind.cast import Ints, frozen
 from meshwind.layup.crossings import crossings
-from meshwind.layup.layup import layup
+from meshwind.layup.layup import assess
 from meshwind.layup.quads import QuadMesh, edge_counts, quads
 from meshwind.path.paths import Paths, Status
 
@@ -154,9 +154,9 @@ def test_layup_meshes_the_converged_paths() -> None:
     paths = helices(8, 1.0, 101, CYLINDER)
     status = np.zeros(16, dtype=np.int64)
     status[[1, 9]] = Status.SLID_OFF_END
-    result = layup(replace(paths, status=frozen(status)))
+    result = assess(replace(paths, status=frozen(status)))
     assert not np.isin(result.crossings.path_a, [1, 9]).any()
     assert len(result.crossings) == 120 - 15 - 15 + 1  # the two meet half way
     check_annulus(result.quads)
     status[:6] = Status.STALLED
-    assert len(layup(replace(paths, status=frozen(status))).crossings) == 120
+    assert len(assess(replace(paths, status=frozen(status))).crossings) == 120

@@ -53,8 +53,6 @@ def _law(v: Floats, speed: Floats, area: Floats) -> PchipInterpolator:
         return PchipInterpolator(fine, fine)
     knots = np.r_[np.full(4, 0.0), np.quantile(middle, np.arange(1, pieces) / pieces), np.full(4, 1.0)]
     smooth = make_lsq_spline(middle, np.log(mean), knots, k=3)
-    rate = np.exp(
-        np.clip(smooth(np.clip(fine, middle[0], middle[-1])), np.log(mean).min(), np.log(mean).max())
-    )
+    rate = np.exp(np.clip(smooth(np.clip(fine, middle[0], middle[-1])), np.log(mean).min(), np.log(mean).max()))
     total = np.r_[0.0, np.cumsum(0.5 * (rate[1:] + rate[:-1]))]
     return PchipInterpolator(fine, total / total[-1])

@@ -18,24 +18,16 @@ def wind(
         Path,
         typer.Argument(help="Triangle mesh: STL, OBJ, PLY, OFF, GLB, 3MF, VTK, MSH, INP.", metavar="MESH"),
     ],
-    out: Annotated[
-        Path | None, typer.Option(help="Folder for the results.  [default: MESH's name + -wound]")
-    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the results.  [default: MESH's name + -wound]")] = None,
     paths: Annotated[int, typer.Option(help="Paths a family.", min=1)] = 12,
     revolutions: Annotated[float, typer.Option(help="Turns of a path from end to end.", min=0.0)] = 0.5,
     friction: Annotated[float, typer.Option(help="Coefficient of friction of fibre on part.", min=0.0)] = 0.0,
-    ends: Annotated[
-        str, typer.Option(help='Where the ends are: auto, x, y, z, or two points "x,y,z x,y,z".')
-    ] = "auto",
+    ends: Annotated[str, typer.Option(help='Where the ends are: auto, x, y, z, or two points "x,y,z x,y,z".')] = "auto",
     opening: Annotated[
         float | None,
-        typer.Option(
-            help="Radius of the opening at a closed end, in the mesh's units.  [default: from the part]"
-        ),
+        typer.Option(help="Radius of the opening at a closed end, in the mesh's units.  [default: from the part]"),
     ] = None,
-    tolerance: Annotated[
-        float, typer.Option(help="Largest fit error over the part's diagonal.", min=1e-12)
-    ] = 1e-5,
+    tolerance: Annotated[float, typer.Option(help="Largest fit error over the part's diagonal.", min=1e-12)] = 1e-5,
     render: Annotated[bool, typer.Option("--render/--no-render", help="Draw winding.png.")] = True,
 ) -> int:
     """Lay two families of taut fibres on MESH and write paths, bridges, crossings, quads, maps and a report.

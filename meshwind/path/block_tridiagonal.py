@@ -1,6 +1,5 @@
 """Symmetric 2 x 2 block tridiagonal systems by block Cholesky: O(n), and a test of definiteness on the way."""
 
-import numpy as np
 from numba import njit
 
 DEFINITE = 1e-11

@@ -5,9 +5,10 @@ from numpy.typing import ArrayLike
 
 from meshwind.cast import Floats, floats, frozen
 from meshwind.errors import BadInputError
-from meshwind.path import relax
 from meshwind.path.paths import Counters, Paths
+from meshwind.path.relax import relax_all
 from meshwind.surface.surface import Surface
+from meshwind.threads import spread
 
 TOLERANCE = 1e-10
 """Largest unbalanced force at rest, over the tension (an angle in radians)."""
@@ -50,9 +51,7 @@ def solve(
         if np.any((point[:, 1] < 0) | (point[:, 1] > 1)):
             raise BadInputError(f"a {name} point has v outside [0, 1]; v runs from rim to rim")
     curves = (
-        straight(first, last, particles)
-        if initial is None
-        else floats(initial, "initial", len(first), particles, 2)
+        straight(first, last, particles) if initial is None else floats(initial, "initial", len(first), particles, 2)
     )
     count = len(curves)
     if family is None:
@@ -62,27 +61,11 @@ def solve(
     middle = surface.control_points.reshape(-1, 3).mean(axis=0)
     net = np.ascontiguousarray(surface.net - middle)
     shape = (count, particles)
-    X, uv, normal = np.empty((*shape, 3)), np.empty((*shape, 2)), np.empty((*shape, 3))
-    touching, gap, slip = np.empty(shape, np.bool_), np.empty(shape), np.empty(shape)
-    residual, status = np.empty(count), np.empty(count, np.int64)
-    tallies = np.zeros((count, 4), np.int64)
-    relax.relax_all(
-        net,
-        surface.periodic,
-        surface.size,
-        curves,
-        tolerance,
-        iterations,
-        X,
-        uv,
-        touching,
-        gap,
-        normal,
-        slip,
-        residual,
-        status,
-        tallies,
-    )
+    X, normal, uv = np.empty((*shape, 3)), np.empty((*shape, 3)), np.array(curves)
+    touching, gap, slip = np.empty(shape, np.bool_), np.zeros(shape), np.empty(shape)
+    residual, status, tallies = np.empty(count), np.empty(count, np.int64), np.zeros((count, 4), np.int64)
+    results = X, uv, normal, touching, gap, slip, residual, status, tallies
+    spread(relax_all, count, 1, net, surface.periodic, surface.size, tolerance, iterations, *results)
     total = tallies.sum(axis=0)
     return Paths(
         surface=surface,

@@ -8,7 +8,7 @@ the end polynomial is continued.
 from math import floor
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 S, SU, SV, SUU, SUV, SVV = range(6)
 """Rows of a frame: position, first and second derivatives."""
@@ -132,8 +132,8 @@ def unit_normal(frame, out):
     return size
 
 
-@njit(parallel=True, cache=True)
-def frames(net, periodic, uv, out):
-    """Write the frame of every row of uv (n, 2) into out (n, 6, 3), over all cores."""
-    for i in prange(len(uv)):
+@njit(nogil=True, cache=True)
+def frames(first, last, net, periodic, uv, out):
+    """Write the frames of rows first to last of uv (n, 2) into out (n, 6, 3)."""
+    for i in range(first, last):
         frame(net, periodic, uv[i, 0], uv[i, 1], out[i])

@@ -11,6 +11,7 @@ from meshwind.chart.chart import Chart
 from meshwind.surface import normal_equations
 from meshwind.surface.foot import feet
 from meshwind.surface.surface import FitError, Surface
+from meshwind.threads import spread
 
 ROUNDS = 4
 """Refits after moving every vertex's parameters to its foot; the error settles in 3 or 4."""
@@ -130,7 +131,7 @@ def _correct(surface: Surface, samples: _Samples, uv: Floats) -> tuple[Floats, F
     """Move every vertex's parameters to its foot, on a rim along the rim; returns (uv, distances)."""
     moved = uv.copy()
     frames = np.empty((len(uv), 6, 3))
-    feet(surface.net, True, samples.points, moved, frames)
+    spread(feet, len(moved), 500, surface.net, True, samples.points, moved, frames)
     rim = samples.rim
     moved[rim, 1] = uv[rim, 1]
     at = surface.frames(uv[rim])

@@ -1,7 +1,7 @@
 """Foot points: where on the surface a point is nearest, by Newton from a guess (5.4 to 5.7)."""
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, S, frame, position
 
@@ -83,8 +83,8 @@ def foot(net, periodic, point, guess, at):
     return count
 
 
-@njit(parallel=True, cache=True)
-def feet(net, periodic, points, guesses, frames):
-    """Move every guess (n, 2) to the foot of its point (n, 3) and leave the frames (n, 6, 3) there."""
-    for i in prange(len(points)):
+@njit(nogil=True, cache=True)
+def feet(first, last, net, periodic, points, guesses, frames):
+    """Move guesses (n, 2) first to last to the feet of their points (n, 3); leave the frames (n, 6, 3) there."""
+    for i in range(first, last):
         foot(net, periodic, points[i], guesses[i], frames[i])

@@ -28,9 +28,7 @@ def parametric(formula: Formula, spans: Spans = (128, 128), periodic: bool = Tru
     return interpolate(formula, spans, periodic)
 
 
-def revolution(
-    radius: Callable[[Floats], Floats], z0: float, z1: float, spans: Spans = (128, 128)
-) -> Surface:
+def revolution(radius: Callable[[Floats], Floats], z0: float, z1: float, spans: Spans = (128, 128)) -> Surface:
     """The profile r = radius(z), z from z0 (v=0) to z1 (v=1), turned about the z axis."""
     if not z0 < z1:
         raise BadInputError(f"the profile runs from z0={z0} to z1={z1}; give z0 < z1")
@@ -54,15 +52,11 @@ def cone(radius0: float, radius1: float, height: float, spans: Spans = (128, 8))
     return revolution(lambda z: radius0 + (radius1 - radius0) * z / height, 0.0, height, spans)
 
 
-def ellipsoid(
-    a: float, b: float, c: float, polar0: float, polar1: float, spans: Spans = (192, 96)
-) -> Surface:
+def ellipsoid(a: float, b: float, c: float, polar0: float, polar1: float, spans: Spans = (192, 96)) -> Surface:
     """A band of the ellipsoid with semi-axes a, b, c, from polar angle polar0 to polar1 (radians from -z)."""
     _positive(a=a, b=b, c=c)
     if not 0 < polar0 < polar1 < np.pi:
-        raise BadInputError(
-            f"polar angles {polar0}, {polar1} do not bound a band; give 0 < polar0 < polar1 < pi"
-        )
+        raise BadInputError(f"polar angles {polar0}, {polar1} do not bound a band; give 0 < polar0 < polar1 < pi")
 
     def formula(u: Floats, v: Floats) -> Floats:
         t, q = 2 * np.pi * u, polar0 + v * (polar1 - polar0)

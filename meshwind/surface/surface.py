@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from meshwind.cast import Floats, floats, frozen
 from meshwind.errors import BadInputError
 from meshwind.surface import evaluate
+from meshwind.threads import spread
 
 DEGREE = 3
 
@@ -58,9 +59,7 @@ class Surface:
     def __post_init__(self) -> None:
         points = floats(self.control_points, "control_points", -1, -1, 3)
         if min(points.shape[:2]) < DEGREE + 1:
-            raise BadInputError(
-                f"a bicubic surface needs at least 4 x 4 control points, got {points.shape[:2]}"
-            )
+            raise BadInputError(f"a bicubic surface needs at least 4 x 4 control points, got {points.shape[:2]}")
         object.__setattr__(self, "control_points", frozen(points))
 
     @property
@@ -92,7 +91,7 @@ class Surface:
         """Position and derivatives (n, 6, 3) in the order s, s_u, s_v, s_uu, s_uv, s_vv at uv (n, 2)."""
         where = floats(uv, "uv", -1, 2)
         out = np.empty((len(where), 6, 3))
-        evaluate.frames(self.net, self.periodic, where, out)
+        spread(evaluate.frames, len(where), 2000, self.net, self.periodic, where, out)
         return out
 
     def points(self, uv: ArrayLike) -> Floats:
