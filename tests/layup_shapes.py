@@ -1,6 +1,7 @@
 """Exact synthetic layups: shapes of revolution as splines, with paths that are drawn rather than solved."""
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,15 +29,18 @@ def revolved(radius: Callable[[Floats], Floats], nu: int = 256, nv: int = 32) ->
     turn = 2.0 * np.pi * u[:, None]
     ring = radius(v)
     samples = np.stack([np.cos(turn) * ring, np.sin(turn) * ring, 0.0 * turn + HEIGHT * v])
-    left = np.linalg.pinv(collocation(nu, u, True))
-    right = np.linalg.pinv(collocation(nv, v, False))
-    return Surface(np.moveaxis(left @ samples @ right.T, 0, -1))
+    left, right = collocation(nu, u, True), collocation(nv, v, False)
+    rows = np.linalg.solve(left.T @ left, left.T @ samples)
+    control = np.linalg.solve(right.T @ right, right.T @ np.swapaxes(rows, 1, 2))
+    return Surface(np.moveaxis(control, (0, 1, 2), (2, 1, 0)))
 
 
+@cache
 def cylinder(nu: int = 256) -> Surface:
     return revolved(np.ones_like, nu, 8)
 
 
+@cache
 def waisted() -> Surface:
     return revolved(lambda v: 1.0 - 0.35 * np.exp(-(((v - 0.5) / 0.16) ** 2)), 64, 64)
 

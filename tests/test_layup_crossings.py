@@ -11,7 +11,7 @@ CYLINDER = cylinder()
 CASES = [  # paths per family, revolutions, particles
     (8, 1.0, 101),  # crossings fall on particles
     (16, 1.0, 100),
-    (32, 2.5, 401),  # several turns
+    (12, 2.5, 401),  # several turns
     (8, 0.97, 101),  # 2 R N is no whole number
     (5, 3.03, 77),
     (12, 0.5, 2),  # one segment a path

@@ -22,7 +22,7 @@ class Layup:
     coverage: Coverage
 
 
-def layup(paths: Paths, width: float | None = None) -> Layup:
+def assess(paths: Paths, width: float | None = None) -> Layup:
     """Cross, mesh and cover: `width` of the band in mesh units, by default one layer a family on average.
 
     Crossings and quads are those of the converged paths, or of all where a family has fewer than three such.

@@ -1,0 +1,72 @@
+"""The side to look at a part from, and how large it comes out."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshwind.cast import Floats, Ints
+
+_TILT = np.radians(14.0)
+"""How far the eye is turned towards an end of the part, so that its roundness shows."""
+_TURNS = 24
+
+
+@dataclass(frozen=True)
+class View:
+    """A parallel projection: unit vectors towards the right, the top and the eye (3,), centre, extents.
+
+    centre (3,) is the middle of what is seen; width and height its extents on the picture, in mesh units.
+    """
+
+    right: Floats
+    up: Floats
+    eye: Floats
+    centre: Floats
+    width: float
+    height: float
+
+
+def best_view(points: Floats, quads: Ints, marks: Floats, outward: Floats, weight: Floats) -> View:
+    """Look square onto the long axis, from where most of the part and of the marks are in sight.
+
+    points (k, 3) and quads (q, 4) are the part; marks (m, 3) with outward normals (m, 3) and weights (m,) are
+    what the picture is about.  A part that stands up along z is shown upright, others lie along the picture.
+    """
+    area, normal = _facets(points, quads)
+    middle = points[quads].mean(axis=1)
+    centre = (area[:, None] * middle).sum(axis=0) / area.sum()
+    spread = (middle - centre).T @ (area[:, None] * (middle - centre))
+    long = np.linalg.eigh(spread)[1][:, -1]
+    long = long * np.sign(long[np.abs(long).argmax()])
+    across = _perpendicular(long)
+    turn = 2.0 * np.pi * np.arange(_TURNS) / _TURNS
+    sides = np.cos(turn)[:, None] * across + np.sin(turn)[:, None] * np.cross(long, across)
+    shadow = np.abs(normal @ sides.T).T @ area / (2.0 * area.sum())
+    seen = np.maximum(outward @ sides.T, 0.0).T @ weight / max(float(weight.sum()), 1e-300)
+    # A tie, as on a body of revolution, goes to the side that faces -y: the customary front.
+    eye = sides[int(np.argmax(shadow + 0.5 * seen - 1e-3 * sides[:, 1]))]
+    upright = abs(long[2]) > 0.7
+    side = np.cross(eye, long) * (-1.0 if upright else 1.0)
+    if not upright and side[2] < 0.0:
+        long, side = -long, -side
+    eye, long = np.cos(_TILT) * eye + np.sin(_TILT) * long, np.cos(_TILT) * long - np.sin(_TILT) * eye
+    right, up = (side, long) if upright else (long, side)
+    flat = np.concatenate([points, marks]) @ np.stack([right, up, eye]).T
+    low, high = flat.min(axis=0), flat.max(axis=0)
+    middle = 0.5 * (low + high) @ np.stack([right, up, eye])
+    return View(right, up, eye, middle, float(high[0] - low[0]), float(high[1] - low[1]))
+
+
+def _facets(points: Floats, quads: Ints) -> tuple[Floats, Floats]:
+    """Areas (q,) and unit normals (q, 3)."""
+    corner = points[quads]
+    cross = 0.5 * np.cross(corner[:, 2] - corner[:, 0], corner[:, 3] - corner[:, 1])
+    area = np.linalg.norm(cross, axis=1)
+    return area, np.divide(cross, area[:, None], out=np.zeros_like(cross), where=area[:, None] > 0.0)
+
+
+def _perpendicular(axis: Floats) -> Floats:
+    """A unit vector square to `axis`, as near as may be to -y, or to z where the axis runs along y."""
+    start = np.array([0.0, -1.0, 0.0]) if abs(axis[1]) < 0.9 else np.array([0.0, 0.0, 1.0])
+    square = start - (start @ axis) * axis
+    return np.asarray(square / np.linalg.norm(square))

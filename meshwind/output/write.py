@@ -1,0 +1,26 @@
+"""All files of a run but the report and the picture."""
+
+from pathlib import Path
+
+from meshwind.layup.layup import Layup
+from meshwind.mandrel.mesh import Mesh
+from meshwind.output.fibres import write_bridges, write_crossings, write_paths
+from meshwind.output.maps import distance_to_mesh, grid, maps
+from meshwind.output.quad_files import write_obj, write_quads
+from meshwind.output.surface_files import write_surface, write_surface_npz
+
+
+def write_files(out: Path, layup: Layup, mesh: Mesh | None = None) -> None:
+    """Write the fibres, the quad mesh and the surface into a folder that is there.
+
+    With the mesh, surface.vtu carries the fit error: how far each of its points lies from the mesh.
+    """
+    write_paths(out / "paths.vtp", layup.paths)
+    write_bridges(out / "bridges.vtp", layup.paths)
+    write_crossings(out / "crossings.vtp", layup.crossings)
+    write_quads(out / "quads.vtu", layup.quads)
+    write_obj(out / "quads.obj", layup.quads)
+    on = grid(layup.paths.surface)
+    fit_error = None if mesh is None else distance_to_mesh(on.points, mesh)
+    write_surface(out / "surface.vtu", on, maps(on, layup, fit_error))
+    write_surface_npz(out / "surface.npz", layup.paths.surface)
