@@ -1,0 +1,121 @@
+"""Choose the two ends of a part: open rims, or poles to be opened."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshwind.cast import Floats, Ints, floats
+from meshwind.errors import BadInputError
+from meshwind.mandrel.axis import forward, longest_axis
+from meshwind.mandrel.holes import loop_size
+from meshwind.mandrel.measure import loop_area_vector, loop_centroid, perimeter
+from meshwind.mandrel.poles import nearest, pole
+
+_AXES = {"x": 0, "y": 1, "z": 2}
+_NEAR_EXTREME = 0.05  # rims within this part of the extent are equally far out
+
+
+@dataclass(frozen=True)
+class End:
+    """One end: its centre (3,), and the loop of its rim where it is open; otherwise the centre is a pole."""
+
+    centre: Floats
+    loop: Ints | None = None
+
+
+@dataclass(frozen=True)
+class Wish:
+    """Where the ends are wanted: along a model axis (3,), at two points (2, 3), or anywhere."""
+
+    axis: Floats | None = None
+    points: Floats | None = None
+    text: str = "auto"
+
+
+def parse(text: str) -> Wish:
+    """Understand 'auto', 'x', 'y', 'z' or 'x,y,z x,y,z'; anything else raises BadInputError."""
+    word = text.strip().lower()
+    if word == "auto":
+        return Wish()
+    if word in _AXES:
+        return Wish(axis=np.eye(3)[_AXES[word]], text=word)
+    try:
+        points = floats([[float(x) for x in part.split(",")] for part in word.split()], "ends", 2, 3)
+    except ValueError as error:
+        raise BadInputError(f"ends {text!r}: give auto, x, y, z or two points as in '0,0,0 0,0,100'") from error
+    if (points[0] == points[1]).all():
+        raise BadInputError(f"ends {text!r}: the two points are the same; give one at each end of the part")
+    return Wish(points=points, text=word)
+
+
+def choose(vertices: Floats, faces: Ints, rims: list[Ints], wish: Wish) -> tuple[list[End], str]:
+    """The start and the end of a part with the given boundary loops, and in words how they were chosen."""
+    ends = [End(loop_centroid(vertices, loop), loop) for loop in rims]
+    if len(ends) >= 2:
+        return _two_rims(vertices, faces, ends, wish)
+    return _one_rim(vertices, faces, rims[0], wish) if rims else _two_poles(vertices, faces, wish)
+
+
+def _two_rims(vertices: Floats, faces: Ints, ends: list[End], wish: Wish) -> tuple[list[End], str]:
+    if wish.points is not None:
+        away = np.array([[_distance(vertices, end, point) for end in ends] for point in wish.points])
+        total = away[0][:, None] + away[1] + np.diag(np.full(len(ends), np.inf))
+        first, second = np.unravel_index(np.argmin(total), total.shape)
+        return [ends[first], ends[second]], "the open rims nearest to the given points"
+    if wish.axis is not None:
+        return _rims_along(vertices, ends, wish.axis), f"the open rims furthest out along {wish.text}"
+    sizes = [loop_size(vertices, end.loop) for end in ends if end.loop is not None]
+    a, b = (ends[k] for k in np.argsort(sizes, kind="stable")[:-3:-1])
+    long, short = (perimeter(vertices, end.loop) for end in (a, b) if end.loop is not None)
+    if abs(long - short) > 1e-3 * max(long, short):
+        pair = [a, b] if long > short else [b, a]
+        return pair, "the two largest open rims, from the longer to the shorter"
+    if forward(vertices, faces, b.centre - a.centre) @ (b.centre - a.centre) < 0:
+        a, b = b, a
+    return [a, b], "the two largest open rims, from the fuller end of the part"
+
+
+def _distance(vertices: Floats, end: End, point: Floats) -> float:
+    """Distance of a point to a rim or to its centre, whichever is nearer."""
+    ring = np.concatenate([end.centre[None], vertices[end.loop]])
+    return float(np.linalg.norm(ring - point, axis=1).min())
+
+
+def _rims_along(vertices: Floats, ends: list[End], axis: Floats) -> list[End]:
+    """The rims at the lower and at the upper extreme of an axis, the larger one where several are that far out."""
+    height = np.array([end.centre @ axis for end in ends])
+    size = np.array([loop_size(vertices, end.loop) for end in ends if end.loop is not None])
+    slack = _NEAR_EXTREME * np.ptp(vertices @ axis)
+    low = int(np.argmax(np.where(height <= height.min() + slack, size, -1.0)))
+    rest = np.arange(len(ends)) != low
+    high = int(np.argmax(np.where(rest & (height >= height[rest].max() - slack), size, -1.0)))
+    return [ends[low], ends[high]] if height[low] <= height[high] else [ends[high], ends[low]]
+
+
+def _one_rim(vertices: Floats, faces: Ints, loop: Ints, wish: Wish) -> tuple[list[End], str]:
+    rim = End(loop_centroid(vertices, loop), loop)
+    away = vertices.mean(axis=0) - rim.centre
+    if wish.points is not None:
+        at_second = _distance(vertices, rim, wish.points[0]) > _distance(vertices, rim, wish.points[1])
+        other = End(nearest(vertices, faces, wish.points[0 if at_second else 1]))
+        return [other, rim] if at_second else [rim, other], "the open rim and a pole at a given point"
+    if wish.axis is not None:
+        direction = wish.axis if wish.axis @ away >= 0 else -wish.axis
+        other = End(pole(vertices, faces, direction))
+        below = rim.centre @ wish.axis <= other.centre @ wish.axis
+        return [rim, other] if below else [other, rim], f"the open rim and the pole across it along {wish.text}"
+    normal = loop_area_vector(vertices, loop)
+    direction = normal / np.linalg.norm(normal) * (1.0 if normal @ away >= 0 else -1.0)
+    return [rim, End(pole(vertices, faces, direction))], "the open rim, and the pole across it"
+
+
+def _two_poles(vertices: Floats, faces: Ints, wish: Wish) -> tuple[list[End], str]:
+    if wish.points is not None:
+        a, b = (End(nearest(vertices, faces, point)) for point in wish.points)
+        return [a, b], "poles at the given points"
+    if wish.axis is not None:
+        axis, words = wish.axis, f"poles on the {wish.text} axis"
+    else:
+        axis, kind = longest_axis(vertices, faces)
+        axis, words = forward(vertices, faces, axis), f"poles on {kind}"
+    return [End(pole(vertices, faces, sign * axis)) for sign in (-1.0, 1.0)], words

@@ -1,0 +1,131 @@
+"""Readers of mesh files through trimesh, VTK and meshio: each gives vertices (n, 3) and triangles (m, 3)."""
+
+import logging
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from meshwind.cast import Floats, Ints
+from meshwind.errors import BadInputError
+from meshwind.mandrel.cells import CellBlock, triangles
+
+_VTK_KINDS = {
+    5: "triangle", 7: "polygon", 9: "quad", 10: "tetra", 12: "hexahedron", 13: "wedge", 14: "pyramid",
+    22: "triangle6", 23: "quad8", 24: "tetra10", 25: "hexahedron20", 26: "wedge15", 27: "pyramid13",
+    28: "quad9", 29: "hexahedron27", 69: "triangle", 70: "quad", 71: "tetra", 72: "hexahedron",
+}  # fmt: skip
+
+
+def reader_errors(suffix: str) -> tuple[type[BaseException], ...]:
+    """Exception types of the format's own library, which no builtin covers."""
+    if suffix in (".msh", ".inp"):
+        import meshio
+
+        return (meshio.ReadError,)
+    return ()
+
+
+def by_trimesh(path: Path) -> tuple[Floats, Ints]:
+    """Read STL, PLY, OBJ, OFF, GLB or GLTF; the parts of a scene are joined where it places them."""
+    import trimesh
+
+    log = logging.getLogger("trimesh")
+    before, log.disabled = log.disabled, True
+    try:
+        loaded = trimesh.load(path, force="mesh", process=False)
+    finally:
+        log.disabled = before
+    faces = np.asarray(getattr(loaded, "faces", np.empty((0, 3))), dtype=np.int64)
+    return np.asarray(loaded.vertices, dtype=np.float64), faces
+
+
+def by_meshio(path: Path) -> tuple[Floats, Ints]:
+    """Read MSH or INP: surface cells, or the skin of the volume cells where there are any."""
+    import meshio
+
+    if path.suffix.lower() == ".msh":
+        _check_sections(path.read_bytes())
+    mesh = meshio.read(path)
+    points = np.asarray(mesh.points, dtype=np.float64)
+    if points.shape[1] == 2:
+        points = np.column_stack([points, np.zeros(len(points))])
+    return points, triangles([(block.type, _sizes_and_nodes(block.data)) for block in mesh.cells], len(points))
+
+
+def by_vtk(path: Path) -> tuple[Floats, Ints]:
+    """Read VTP, VTU or legacy VTK of polygons or of an unstructured grid.
+
+    VTK's filters end the process on damaged connectivity, so only its raw arrays are used.
+    """
+    from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
+
+    data = _vtk_output(path)
+    if isinstance(data, vtkPolyData):
+        cells, kinds = data.GetPolys(), None
+    elif isinstance(data, vtkUnstructuredGrid):
+        cells, kinds = data.GetCells(), data.GetCellTypesArray()
+    else:
+        raise BadInputError(f"{path.name}: holds no polygons or cells; save the part's surface as VTP, PLY or STL")
+    if data.GetPoints() is None or cells is None or cells.GetNumberOfCells() == 0:
+        return np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
+    points = _array(data.GetPoints().GetData(), np.float64)
+    offsets = _array(cells.GetOffsetsArray(), np.int64)
+    nodes = _array(cells.GetConnectivityArray(), np.int64)
+    sizes = np.diff(offsets)
+    if offsets[0] != 0 or (sizes < 0).any() or offsets[-1] != len(nodes):
+        raise ValueError("its cells are damaged")
+    kind = np.full(len(sizes), 7) if kinds is None else _array(kinds, np.int64)
+    if len(kind) != len(sizes):
+        raise ValueError("its cell types are damaged")
+    of_node = np.repeat(kind, sizes)
+    blocks: list[CellBlock] = [
+        (name, (sizes[kind == code], nodes[of_node == code]))
+        for code, name in _VTK_KINDS.items()
+        if (kind == code).any()
+    ]
+    return points, triangles(blocks, len(points))
+
+
+def _vtk_output(path: Path) -> Any:
+    """Run VTK's reader for the file, silently."""
+    from vtkmodules.vtkCommonCore import vtkObject
+    from vtkmodules.vtkIOLegacy import vtkGenericDataObjectReader
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
+
+    readers: dict[str, Any] = {".vtp": vtkXMLPolyDataReader, ".vtu": vtkXMLUnstructuredGridReader}
+    reader = readers.get(path.suffix.lower(), vtkGenericDataObjectReader)()
+    reader.SetFileName(str(path))
+    loud = vtkObject.GetGlobalWarningDisplay()
+    vtkObject.SetGlobalWarningDisplay(0)
+    try:
+        reader.Update()
+    finally:
+        vtkObject.SetGlobalWarningDisplay(loud)
+    if reader.GetErrorCode() != 0 or reader.GetOutput() is None:
+        raise ValueError("damaged, cut short or of another format")
+    return reader.GetOutput()
+
+
+def _array(values: Any, dtype: type) -> Any:
+    """Copy of a VTK array."""
+    from vtkmodules.util import numpy_support
+
+    return numpy_support.vtk_to_numpy(values).astype(dtype)  # type: ignore[no-untyped-call]
+
+
+def _sizes_and_nodes(data: Any) -> tuple[Ints, Ints]:
+    """Flatten a block of cells, given as a table or as rows of different length."""
+    if isinstance(data, np.ndarray) and data.ndim == 2:
+        return np.full(len(data), data.shape[1], dtype=np.int64), data.astype(np.int64).ravel()
+    sizes = np.array([len(row) for row in data], dtype=np.int64)
+    return sizes, np.concatenate([np.asarray(row, dtype=np.int64) for row in data])
+
+
+def _check_sections(text: bytes) -> None:
+    """Refuse a MSH file with a section that is not closed: meshio reads on for ever behind its end."""
+    opened = set(re.findall(rb"^\$(?!End)(\w+)", text, re.MULTILINE))
+    closed = set(re.findall(rb"^\$End(\w+)", text, re.MULTILINE))
+    if not opened or opened != closed:
+        raise ValueError("damaged, cut short or of another format")

@@ -1,0 +1,107 @@
+"""Cut an opening about a pole: the part of the surface around it that lies within a sphere."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from meshwind.cast import Floats, Ints
+from meshwind.mandrel.measure import areas, edge_lengths
+from meshwind.mandrel.skin import Skin, edge_points, with_vertices
+from meshwind.mandrel.subdivide import crossing
+from meshwind.mandrel.topology import boundary, compact, edges, euler, patches
+
+SNAP = 0.05
+"""A vertex closer to the rim than this part of an edge slides along it onto the rim, which spares slivers."""
+_FINEST = 0.5  # longest edge near the rim over its radius
+_ROUNDS = 40
+
+
+def opened(surface: Skin, pole: Floats, radius: float, most: float) -> Skin | None:
+    """Cut the opening whose rim lies at Euclidean distance `radius` from the pole, to round-off.
+
+    None where the sphere holds no disc of the surface about the pole, where the disc reaches a boundary, or
+    where its area is over `most`.
+    """
+    fine = _refined(surface, pole, radius)
+    rim = np.unique(boundary(fine.faces))
+    split, side = _split(fine, pole, radius)
+    removed = _disc(split, side, pole)
+    if removed is None:
+        return None
+    disc = split.faces[removed]
+    if np.isin(rim, disc).any() or euler(disc) != 1 or areas(split.vertices, disc).sum() > most:
+        return None
+    return _kept(replace(split, faces=split.faces[~removed]))
+
+
+def _refined(surface: Skin, pole: Floats, radius: float) -> Skin:
+    """Halve long edges near the rim, so that it gets enough vertices even on the large faces of a flat end."""
+    for _ in range(_ROUNDS):
+        corners = surface.vertices[surface.faces]
+        middle = corners.mean(axis=1)
+        reach = np.linalg.norm(corners - middle[:, None], axis=2).max(axis=1)
+        near = np.linalg.norm(middle - pole, axis=1) - reach < radius
+        long = edge_lengths(surface.vertices, surface.faces[near]) > _FINEST * radius
+        if not long.any():
+            break
+        found = edges(surface.faces)
+        cut = found.ends[np.unique(found.of_face[near][long])]
+        surface = with_vertices(surface, cut, edge_points(surface, cut, np.full(len(cut), 0.5)))
+    return surface
+
+
+def _split(surface: Skin, pole: Floats, radius: float) -> tuple[Skin, Ints]:
+    """Split the surface along the sphere; also gives the side (n,) of each vertex, -1 within, 0 on it."""
+    side = np.sign(np.linalg.norm(surface.vertices - pole, axis=1) - radius).astype(np.int64)
+    cut = crossing(surface.faces, side)
+    t = _where(surface, cut, side, pole, radius)
+    points = edge_points(surface, cut, t)
+    surface, side = _snapped(surface, side, cut, t, points)
+    still = (side[cut] != 0).all(axis=1)
+    side = np.concatenate([side, np.zeros(int(still.sum()), dtype=np.int64)])
+    return with_vertices(surface, cut[still], points[still]), side
+
+
+def _where(surface: Skin, cut: Ints, side: Ints, pole: Floats, radius: float) -> Floats:
+    """Parameter (k,) at which each edge cubic crosses the sphere, by bisection to the last bit."""
+    low, high = np.zeros(len(cut)), np.ones(len(cut))
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        distance = np.linalg.norm(edge_points(surface, cut, middle) - pole, axis=1)
+        on_low_side = np.sign(distance - radius) == side[cut[:, 0]]
+        low, high = np.where(on_low_side, middle, low), np.where(on_low_side, high, middle)
+    return 0.5 * (low + high)
+
+
+def _snapped(surface: Skin, side: Ints, cut: Ints, t: Floats, points: Floats) -> tuple[Skin, Ints]:
+    """Slide vertices close to the sphere onto it, each along the edge on which it is closest."""
+    close = np.minimum(t, 1.0 - t)
+    order = np.argsort(close, kind="stable")
+    order = order[close[order] < SNAP]
+    vertex = np.where(t[order] < 0.5, cut[order, 0], cut[order, 1])
+    slid, first = np.unique(vertex, return_index=True)
+    vertices, trusted, side = surface.vertices.copy(), surface.trusted.copy(), side.copy()
+    vertices[slid] = points[order[first]]
+    trusted[slid] = False
+    side[slid] = 0
+    return replace(surface, vertices=vertices, trusted=trusted), side
+
+
+def _disc(surface: Skin, side: Ints, pole: Floats) -> np.ndarray | None:
+    """Mask (m,) of the faces within the sphere that hang together with the vertex closest to the pole."""
+    within = np.flatnonzero((side[surface.faces] <= 0).all(axis=1))
+    if len(within) == 0:
+        return None
+    faces = surface.faces[within]
+    label = patches(faces)
+    distance = np.linalg.norm(surface.vertices[faces] - pole, axis=2).min(axis=1)
+    removed = np.zeros(len(surface.faces), dtype=bool)
+    removed[within[label == label[np.argmin(distance)]]] = True
+    return removed
+
+
+def _kept(surface: Skin) -> Skin:
+    """Surface without the vertices that no face uses."""
+    keep, renumber = compact(surface.faces, len(surface.vertices))
+    return Skin(surface.vertices[keep], renumber[surface.faces], surface.trusted[keep],
+                surface.normals[keep], surface.creased[keep])  # fmt: skip

@@ -1,0 +1,96 @@
+"""Read a triangle mesh from a file, whatever its format."""
+
+import contextlib
+import io
+import json
+import struct
+import zipfile
+import zlib
+from collections.abc import Callable
+from os import PathLike
+from pathlib import Path
+from xml.etree.ElementTree import ParseError
+
+from meshwind.cast import Floats, Ints
+from meshwind.errors import BadInputError
+from meshwind.mandrel import formats, threemf
+from meshwind.mandrel.mesh import Mesh
+from meshwind.mandrel.repair import mesh_from
+
+_READERS: dict[str, Callable[[Path], tuple[Floats, Ints]]] = {
+    ".stl": formats.by_trimesh,
+    ".ply": formats.by_trimesh,
+    ".obj": formats.by_trimesh,
+    ".off": formats.by_trimesh,
+    ".glb": formats.by_trimesh,
+    ".gltf": formats.by_trimesh,
+    ".3mf": threemf.read,
+    ".vtk": formats.by_vtk,
+    ".vtu": formats.by_vtk,
+    ".vtp": formats.by_vtk,
+    ".msh": formats.by_meshio,
+    ".inp": formats.by_meshio,
+}
+SUFFIXES = tuple(_READERS)
+"""File name endings that `read` understands."""
+
+# What the libraries were seen to raise on cut, overwritten and foreign files; meshio ends the process, and
+# RuntimeWarning comes from a cast where the caller turns warnings into errors.
+_GARBAGE = (
+    ValueError, LookupError, ArithmeticError, TypeError, AttributeError, AssertionError, NotImplementedError,
+    RuntimeError, RuntimeWarning, EOFError, MemoryError, OSError, struct.error, zlib.error, zipfile.BadZipFile,
+    json.JSONDecodeError, ParseError, SystemExit,
+)  # fmt: skip
+
+
+def read(path: str | PathLike[str]) -> Mesh:
+    """Read the mesh in the file at `path` and repair it.
+
+    STL, PLY, OBJ, OFF, GLB, GLTF, 3MF, VTK, VTU, VTP, MSH and INP; polygons are cut into triangles, and a
+    volume mesh is taken by its skin.  Raises BadInputError where the file cannot be used.
+    """
+    file = Path(path)
+    reader = _reader(file)
+    try:
+        # The libraries' chatter is no news to the user: the one line below is.
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            vertices, faces = reader(file)
+    except BadInputError:
+        raise
+    except formats.reader_errors(file.suffix.lower()) + _GARBAGE as error:
+        kind = file.suffix[1:].upper()
+        raise BadInputError(
+            f"{file.name}: cannot be read as {kind} ({_first_line(error)}); export the mesh again, or convert it to STL"
+        ) from error
+    if len(faces) == 0:
+        raise BadInputError(f"{file.name}: holds no triangles; export the part's surface as a triangle mesh")
+    return mesh_from(vertices, faces, file.name)
+
+
+def _reader(file: Path) -> Callable[[Path], tuple[Floats, Ints]]:
+    """Choose the reader by the file's suffix, once the file is known to be there and to hold something."""
+    advice = "give the path of a triangle mesh (STL, OBJ, PLY, ...)"
+    try:
+        if file.is_dir():
+            raise BadInputError(f"{file.name}: is a folder; {advice}")
+        if not file.exists():
+            raise BadInputError(f"{file.name}: file not found; {advice}")
+        if file.stat().st_size == 0:
+            raise BadInputError(f"{file.name}: is empty; {advice}")
+    except (OSError, ValueError) as error:
+        if isinstance(error, BadInputError):
+            raise
+        raise BadInputError(f"{file.name}: cannot be opened ({_first_line(error)}); {advice}") from error
+    if file.suffix.lower() not in _READERS:
+        known = ", ".join(suffix[1:].upper() for suffix in SUFFIXES)
+        raise BadInputError(f"{file.name}: unknown format {file.suffix!r}; convert the mesh to one of {known}")
+    return _READERS[file.suffix.lower()]
+
+
+def _first_line(error: BaseException) -> str:
+    """Say what went wrong in a few words, whatever the library put in its message."""
+    lines = str(error).strip().splitlines()
+    words = lines[0].strip() if lines else ""
+    if isinstance(error, SystemExit | KeyError) or not words:
+        words = "damaged, cut short or of another format"
+    return words if len(words) <= 100 else words[:97] + "..."
