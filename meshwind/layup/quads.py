@@ -20,7 +20,7 @@ class QuadMesh:
 
     points (k, 3); uv (k, 2) with u in [0, 1); quads (q, 4) and triangles (t, 3) indices of points; on_surface
     (k,); left_out holds the paths that could not take part, because they run along a rim or cross their own
-    family; note says why the mesh is empty, or is "".
+    family; note says why there are no faces, and points are but the ends of the paths, or is "".
     """
 
     points: Floats
@@ -49,29 +49,31 @@ def edge_counts(quads: Ints, triangles: Ints) -> tuple[Ints, Ints]:
 def quads(paths: Paths, crossings: Crossings) -> QuadMesh:
     """Mesh the part by its crossings, over the paths that `crossings` compared.
 
-    The result is a manifold annulus, or empty with a `note` that says why.
+    The result is a manifold annulus, or has no face and a `note` that says why.
     """
     kept = crossings.compared & _spans_the_part(paths)
     kept &= ~_cross_their_own(paths, kept)
     left_out = tuple(np.flatnonzero(crossings.compared & ~kept).tolist())
     graph = _Graph.of(paths, crossings, kept)
     if not len(graph.crossing):
-        return _empty(left_out, "the two families never cross: use more revolutions")
+        return _empty(paths, left_out, "the two families never cross: use more revolutions")
     polygons = trace(graph.tail, graph.angle, graph.outer)
     if polygons is None:
-        return _empty(left_out, "the fibres do not divide the part into cells: use more paths per family")
+        return _empty(paths, left_out, "the fibres do not divide the part into cells: use more paths per family")
     points, uv, on_surface = graph.nodes(paths, crossings)
     fours, threes = split(polygons, points)
     mesh = QuadMesh(frozen(points), frozen(uv), frozen(fours), frozen(threes), frozen(on_surface), left_out)
     if mesh.euler != 0 or edge_counts(fours, threes)[1].max(initial=0) > 2:
-        return _empty(left_out, "the fibres' cells do not join to a manifold: use more paths per family")
+        return _empty(paths, left_out, "the fibres' cells do not join to a manifold: use more paths per family")
     return mesh
 
 
-def _empty(left_out: tuple[int, ...], note: str) -> QuadMesh:
-    points, uv = frozen(np.zeros((0, 3))), frozen(np.zeros((0, 2)))
+def _empty(paths: Paths, left_out: tuple[int, ...], note: str) -> QuadMesh:
+    points, uv = (each[:, [0, -1]].reshape(-1, each.shape[2]) for each in (paths.points, paths.uv))
+    uv = uv - np.floor(uv) * [1.0, 0.0]
     fours, threes = (frozen(np.zeros((0, n), dtype=np.int64)) for n in (4, 3))
-    return QuadMesh(points, uv, fours, threes, frozen(np.zeros(0, dtype=bool)), left_out, note)
+    on_surface = frozen(np.ones(len(points), dtype=bool))
+    return QuadMesh(frozen(points), frozen(uv), fours, threes, on_surface, left_out, note)
 
 
 def _spans_the_part(paths: Paths) -> Bools:

@@ -11,7 +11,7 @@ from meshwind.cast import Floats, Ints
 
 Data: TypeAlias = Mapping[str, NDArray[Any]]
 
-QUAD, TRIANGLE = 9, 5
+VERTEX, TRIANGLE, QUAD = 1, 5, 9
 """VTK's numbers of the cell types."""
 
 
@@ -30,17 +30,23 @@ def write_vertices(path: Path, points: Floats, point_data: Data) -> None:
 
 
 def write_faces(path: Path, points: Floats, quads: Ints, triangles: Ints, point_data: Data) -> None:
-    """Write an unstructured grid of quads (q, 4) and triangles (t, 3), in this order."""
+    """Write an unstructured grid of quads (q, 4) and triangles (t, 3), in this order.
+
+    Without faces the points become vertex cells: meshio cannot read a grid that has no cell.
+    """
     from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
     grid = vtkUnstructuredGrid()
     grid.SetPoints(_points(points))
     _add(grid.GetPointData(), point_data)
-    sizes = np.repeat([4, 3], [len(quads), len(triangles)])
-    kinds = np.repeat(np.array([QUAD, TRIANGLE], dtype=np.uint8), [len(quads), len(triangles)])
-    starts = np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
-    grid.SetCells(_array(kinds), _cells(starts, np.concatenate([quads.ravel(), triangles.ravel()])))
+    blocks = [(QUAD, quads), (TRIANGLE, triangles)]
+    if not len(quads) + len(triangles):
+        blocks = [(VERTEX, np.arange(len(points))[:, None])]
+    kinds = np.concatenate([np.full(len(block), kind, dtype=np.uint8) for kind, block in blocks])
+    sizes = np.concatenate([np.full(len(block), block.shape[1]) for _, block in blocks])
+    corners = np.concatenate([block.ravel() for _, block in blocks])
+    grid.SetCells(_array(kinds), _cells(np.concatenate([[0], np.cumsum(sizes)]), corners))
     _write(vtkXMLUnstructuredGridWriter(), path, grid)
 
 

@@ -1,0 +1,92 @@
+"""Maps on the surface against closed forms."""
+
+import numpy as np
+import pytest
+from layup_shapes import HEIGHT, cylinder, helices, revolved, waisted
+
+from meshwind.cast import Floats
+from meshwind.layup.layup import assess
+from meshwind.output.maps import grid, maps, principal_curvatures, windability
+from meshwind.output.winding_angle import winding_angle
+from meshwind.surface.surface import Surface
+
+
+def waist_curvatures(v: Floats) -> tuple[Floats, Floats]:
+    """Hoop and meridian curvature of the waisted shape, positive where it bulges."""
+    x, z_v = (v - 0.5) / 0.16, HEIGHT
+    bump = 0.35 * np.exp(-(x**2))
+    slope = bump * 2.0 * x / 0.16 / z_v
+    bend = bump * (2.0 - 4.0 * x**2) / 0.16**2 / z_v**2
+    root = np.sqrt(1.0 + slope**2)
+    return 1.0 / ((1.0 - bump) * root), -bend / root**3
+
+
+def test_curvatures_of_a_waist() -> None:
+    on = grid(waisted())
+    hoop, meridian = waist_curvatures(on.uv[:, 1])
+    _, k1, k2 = principal_curvatures(on.frames)
+    assert np.abs(k1 - np.maximum(hoop, meridian)).max() < 0.02
+    assert np.abs(k2 - np.minimum(hoop, meridian)).max() < 0.02
+
+
+def test_curvatures_of_a_cylinder_and_their_sign() -> None:
+    normal, k1, k2 = principal_curvatures(grid(cylinder()).frames)
+    assert k1 == pytest.approx(np.ones(len(k1)), abs=1e-4)
+    assert np.abs(k2).max() < 1e-4
+    assert np.abs(normal[:, 2]).max() < 1e-9
+
+
+def test_windability_is_the_share_of_pressing_directions() -> None:
+    rng = np.random.default_rng(3)
+    low, high = np.sort(rng.uniform(-1.0, 1.0, (2, 50)), axis=0)
+    turn = (np.arange(20000) + 0.5) / 20000 * np.pi
+    share = (high[:, None] * np.cos(turn) ** 2 + low[:, None] * np.sin(turn) ** 2 > 0.0).mean(axis=1)
+    assert np.abs(windability(high, low, 0.0) - share).max() < 1e-3
+    ends = windability(np.array([1.0, 1.0, -1.0, 1.0]), np.array([0.5, 0.0, -2.0, -1.0]), 1e-9)
+    assert ends == pytest.approx([1.0, 1.0, 0.0, 0.5])
+
+
+def test_class_and_windability_of_a_waist() -> None:
+    layup = assess(helices(6, 0.5, 51, waisted()))
+    on = grid(waisted())
+    data = maps(on, layup)
+    v = on.uv[:, 1]
+    waist, ends = np.abs(v - 0.5) < 0.05, np.abs(v - 0.5) > 0.4
+    assert (data["class"][waist] == 0).all()
+    assert (data["windability"][waist] < 0.75).all()
+    assert (data["class"][ends] == 1).all()
+    assert (data["windability"][ends] == 1.0).all()
+    assert "fit_error" not in data
+
+
+def test_inside_out_is_concave() -> None:
+    net = cylinder().control_points
+    cup = revolved(lambda v: 1.0 - 0.4 * (2.0 * v - 1.0) ** 2, 64, 32)
+    on = grid(Surface(cup.control_points[::-1]))
+    data = maps(on, assess(helices(6, 0.5, 51, Surface(net[::-1]))))
+    assert (data["class"] == -1).all()
+    assert (data["windability"] == 0.0).all()
+
+
+@pytest.mark.parametrize("revolutions", [0.0, 0.3, 2.0])
+def test_winding_angle_of_helices(revolutions: float) -> None:
+    angle = winding_angle(helices(6, revolutions, 101, cylinder()), 24, 33)
+    assert angle == pytest.approx(np.full((24, 33), np.arctan2(2 * np.pi * revolutions, HEIGHT)), abs=1e-7)
+
+
+def test_winding_angle_of_one_family_alone_is_finite() -> None:
+    paths = helices(1, 0.5, 21, cylinder())
+    assert np.isfinite(winding_angle(paths, 9, 7)).all()
+
+
+@pytest.mark.parametrize(("spans", "shape"), [((256, 5), (200, 21)), ((32, 5), (128, 21))])
+def test_grid_takes_four_samples_a_span_up_to_a_limit(
+        spans: tuple[int, int], shape: tuple[int, int]) -> None:
+    assert grid(revolved(np.ones_like, spans[0], spans[1] + 3)).shape == shape
+
+
+def test_an_open_surface_has_both_its_edges() -> None:
+    net = cylinder().control_points[:40]
+    on = grid(Surface(np.ascontiguousarray(net), periodic=False))
+    assert on.uv[:, 0].max() == 1.0
+    assert len(on.quads) == (on.shape[0] - 1) * (on.shape[1] - 1)
