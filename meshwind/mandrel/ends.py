@@ -9,7 +9,7 @@ from meshwind.errors import BadInputError
 from meshwind.mandrel.axis import forward, longest_axis
 from meshwind.mandrel.holes import loop_size
 from meshwind.mandrel.measure import loop_area_vector, loop_centroid, perimeter
-from meshwind.mandrel.poles import nearest, pole
+from meshwind.mandrel.poles import Lip, extreme, nearest
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 _NEAR_EXTREME = 0.05  # rims within this part of the extent are equally far out
@@ -17,10 +17,11 @@ _NEAR_EXTREME = 0.05  # rims within this part of the extent are equally far out
 
 @dataclass(frozen=True)
 class End:
-    """One end: its centre (3,), and the loop of its rim where it is open; otherwise the centre is a pole."""
+    """One end: its centre (3,), and the loop of its rim or its lip; with neither the centre is a pole."""
 
     centre: Floats
     loop: Ints | None = None
+    lip: Lip | None = None
 
 
 @dataclass(frozen=True)
@@ -101,12 +102,17 @@ def _one_rim(vertices: Floats, faces: Ints, loop: Ints, wish: Wish) -> tuple[lis
         return [other, rim] if at_second else [rim, other], "the open rim and a pole at a given point"
     if wish.axis is not None:
         direction = wish.axis if wish.axis @ away >= 0 else -wish.axis
-        other = End(pole(vertices, faces, direction))
+        other = _closed_end(vertices, faces, direction)
         below = rim.centre @ wish.axis <= other.centre @ wish.axis
         return [rim, other] if below else [other, rim], f"the open rim and the pole across it along {wish.text}"
     normal = loop_area_vector(vertices, loop)
     direction = normal / np.linalg.norm(normal) * (1.0 if normal @ away >= 0 else -1.0)
-    return [rim, End(pole(vertices, faces, direction))], "the open rim, and the pole across it"
+    return [rim, _closed_end(vertices, faces, direction)], "the open rim, and the pole across it"
+
+
+def _closed_end(vertices: Floats, faces: Ints, direction: Floats) -> End:
+    centre, lip = extreme(vertices, faces, direction)
+    return End(centre, lip=lip)
 
 
 def _two_poles(vertices: Floats, faces: Ints, wish: Wish) -> tuple[list[End], str]:
@@ -118,4 +124,4 @@ def _two_poles(vertices: Floats, faces: Ints, wish: Wish) -> tuple[list[End], st
     else:
         axis, kind = longest_axis(vertices, faces)
         axis, words = forward(vertices, faces, axis), f"poles on {kind}"
-    return [End(pole(vertices, faces, sign * axis)) for sign in (-1.0, 1.0)], words
+    return [_closed_end(vertices, faces, sign * axis) for sign in (-1.0, 1.0)], words

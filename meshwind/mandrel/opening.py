@@ -1,14 +1,19 @@
-"""Cut an opening about a pole: the part of the surface around it that lies within a sphere."""
+"""Cut openings: the part of the surface about a pole within a sphere, or all that lies beyond a lip."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import TypeAlias
 
 import numpy as np
 
 from meshwind.cast import Floats, Ints
 from meshwind.mandrel.measure import areas, edge_lengths
+from meshwind.mandrel.poles import Lip
 from meshwind.mandrel.skin import Skin, edge_points, with_vertices
 from meshwind.mandrel.subdivide import crossing
 from meshwind.mandrel.topology import boundary, compact, edges, euler, patches
+
+_Field: TypeAlias = Callable[[Floats], Floats]  # signed distance of points to the rim's sphere or plane
 
 SNAP = 0.05
 """A vertex closer to the rim than this part of an edge slides along it onto the rim, which spares slivers."""
@@ -24,7 +29,7 @@ def opened(surface: Skin, pole: Floats, radius: float, most: float) -> Skin | No
     """
     fine = _refined(surface, pole, radius)
     rim = np.unique(boundary(fine.faces))
-    split, side = _split(fine, pole, radius)
+    split, side = _split(fine, lambda points: np.linalg.norm(points - pole, axis=1) - radius)
     removed = _disc(split, side, pole)
     if removed is None:
         return None
@@ -32,6 +37,15 @@ def opened(surface: Skin, pole: Floats, radius: float, most: float) -> Skin | No
     if np.isin(rim, disc).any() or euler(disc) != 1 or areas(split.vertices, disc).sum() > most:
         return None
     return _kept(replace(split, faces=split.faces[~removed]))
+
+
+def without_lining(surface: Skin, lip: Lip) -> Skin:
+    """Cut the surface at the lip and keep the largest piece below it: the outside of the cup."""
+    split, side = _split(surface, lambda points: points @ lip.direction - lip.height)
+    below = split.faces[(side[split.faces] <= 0).all(axis=1)]
+    label = patches(below)
+    largest = np.argmax(np.bincount(label, areas(split.vertices, below)))
+    return _kept(replace(split, faces=below[label == largest]))
 
 
 def _refined(surface: Skin, pole: Floats, radius: float) -> Skin:
@@ -50,11 +64,11 @@ def _refined(surface: Skin, pole: Floats, radius: float) -> Skin:
     return surface
 
 
-def _split(surface: Skin, pole: Floats, radius: float) -> tuple[Skin, Ints]:
-    """Split the surface along the sphere; also gives the side (n,) of each vertex, -1 within, 0 on it."""
-    side = np.sign(np.linalg.norm(surface.vertices - pole, axis=1) - radius).astype(np.int64)
+def _split(surface: Skin, field: _Field) -> tuple[Skin, Ints]:
+    """Split the surface where the field is 0; also gives the sign (n,) of the field at each vertex."""
+    side = np.sign(field(surface.vertices)).astype(np.int64)
     cut = crossing(surface.faces, side)
-    t = _where(surface, cut, side, pole, radius)
+    t = _where(surface, cut, side, field)
     points = edge_points(surface, cut, t)
     surface, side = _snapped(surface, side, cut, t, points)
     still = (side[cut] != 0).all(axis=1)
@@ -62,19 +76,18 @@ def _split(surface: Skin, pole: Floats, radius: float) -> tuple[Skin, Ints]:
     return with_vertices(surface, cut[still], points[still]), side
 
 
-def _where(surface: Skin, cut: Ints, side: Ints, pole: Floats, radius: float) -> Floats:
-    """Parameter (k,) at which each edge cubic crosses the sphere, by bisection to the last bit."""
+def _where(surface: Skin, cut: Ints, side: Ints, field: _Field) -> Floats:
+    """Parameter (k,) at which the field is 0 on each edge cubic, by bisection to the last bit."""
     low, high = np.zeros(len(cut)), np.ones(len(cut))
     for _ in range(60):
         middle = 0.5 * (low + high)
-        distance = np.linalg.norm(edge_points(surface, cut, middle) - pole, axis=1)
-        on_low_side = np.sign(distance - radius) == side[cut[:, 0]]
+        on_low_side = np.sign(field(edge_points(surface, cut, middle))) == side[cut[:, 0]]
         low, high = np.where(on_low_side, middle, low), np.where(on_low_side, high, middle)
     return 0.5 * (low + high)
 
 
 def _snapped(surface: Skin, side: Ints, cut: Ints, t: Floats, points: Floats) -> tuple[Skin, Ints]:
-    """Slide vertices close to the sphere onto it, each along the edge on which it is closest."""
+    """Slide vertices close to the rim onto it, each along the edge on which it is closest."""
     close = np.minimum(t, 1.0 - t)
     order = np.argsort(close, kind="stable")
     order = order[close[order] < SNAP]

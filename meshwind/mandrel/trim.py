@@ -9,7 +9,7 @@ from meshwind.mandrel.ends import End, choose, parse
 from meshwind.mandrel.holes import filled, is_defect
 from meshwind.mandrel.measure import areas, edge_lengths, volume
 from meshwind.mandrel.mesh import Mesh
-from meshwind.mandrel.opening import opened
+from meshwind.mandrel.opening import opened, without_lining
 from meshwind.mandrel.skin import Skin, skin
 from meshwind.mandrel.topology import euler, loops, patches
 
@@ -28,7 +28,8 @@ def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Ann
 
     With 'auto' the ends are the two largest open rims, the longer one first; where there is but one, it comes
     first and the pole across it second; a closed part gets poles on its axis, the fuller end of the part
-    first.  With an axis the start is the end with the lower coordinate, with points the first one.
+    first.  With an axis the start is the end with the lower coordinate, with points the first one.  An end
+    that is hollow like a cup is cut at its lip, and its lining dropped.
 
     Raises BadInputError where the part is no tube and no blob, where an end cannot be opened, or where `ends`
     or `opening` cannot be used.
@@ -86,7 +87,10 @@ def _without_defects(mesh: Mesh, rims: list[Ints]) -> tuple[Floats, Ints, list[I
 
 
 def _with_openings(surface: Skin, pair: list[End], wanted: float | None, name: str) -> tuple[Skin, list[float]]:
-    """Open each pole; also gives the radii."""
+    """Cut at each lip and open each pole; also gives the radii."""
+    for end in pair:
+        if end.lip is not None:
+            surface = without_lining(surface, end.lip)
     area = float(areas(surface.vertices, surface.faces).sum())
     direction = pair[1].centre - pair[0].centre
     gap = float(np.linalg.norm(direction))
@@ -96,7 +100,7 @@ def _with_openings(surface: Skin, pair: list[End], wanted: float | None, name: s
     edge = float(edge_lengths(surface.vertices, surface.faces).mean())
     radii = []
     for end in pair:
-        if end.loop is None:
+        if end.loop is None and end.lip is None:
             radius = wanted or mean_radius * max(_DEFAULT, min(_EDGES * edge / mean_radius, _WIDEST_BY_EDGES))
             least = _LEAST * mean_radius
             surface, radius = _open(surface, end.centre, radius, least, _SHARE * area, wanted is None, name)
@@ -158,6 +162,8 @@ def _offset(rim: Floats, pair: list[End]) -> float:
 def _told(words: str, pair: list[End], radii: list[float], opening: float | None) -> str:
     """How the ends were chosen, in a sentence."""
     places = " and ".join(_point(end.centre) for end in pair)
+    if any(end.lip is not None for end in pair):
+        words += ", the lip where one is hollow"
     if not radii:
         unused = "" if opening is None else ", no opening cut as both are open"
         return f"{words}, at {places}{unused}"
