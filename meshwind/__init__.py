@@ -5,7 +5,7 @@
     result = mw.wind("data/vase.stl", paths=12, revolutions=0.8)
     result.write("out")
 
-or stage by stage: `read`, `annulus`, `flatten`, `fit`, `families`, `solve`, `layup`.  Names load on first use,
+or stage by stage: `read`, `annulus`, `flatten`, `fit`, `families`, `solve`, `assess`.  Names load on first use,
 so that importing the package costs next to nothing.
 """
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from meshwind.layup import Families as Families
     from meshwind.layup import Layup as Layup
     from meshwind.layup import families as families
-    from meshwind.layup import layup as layup
+    from meshwind.layup import assess as assess
     from meshwind.mandrel import Annulus as Annulus
     from meshwind.mandrel import Mesh as Mesh
     from meshwind.mandrel import annulus as annulus
@@ -40,7 +40,7 @@ _HOME = {
     "Chart": "chart", "flatten": "chart",
     "Surface": "surface", "FitError": "surface", "fit": "surface", "shapes": "surface",
     "Paths": "path", "Status": "path", "solve": "path",
-    "Families": "layup", "Layup": "layup", "families": "layup", "layup": "layup",
+    "Families": "layup", "Layup": "layup", "families": "layup", "assess": "layup",
     "Result": "pipeline", "wind": "pipeline",
 }  # fmt: skip
 

@@ -8,13 +8,14 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from meshwind.cast import frozen
 from meshwind.chart import Chart, flatten
 from meshwind.errors import BadInputError
-from meshwind.layup import Layup, assess, families
+from meshwind.layup.families import families
+from meshwind.layup.layup import Layup, assess
 from meshwind.mandrel import Mesh, annulus, read
-from meshwind.output import driver, folder, write_files
-from meshwind.output.report import report
+from meshwind.output import driver, folder
+from meshwind.output.report import report, write_report
+from meshwind.output.write import write_files
 from meshwind.path import Paths, Status, solve
 from meshwind.surface import Surface, fit
 

@@ -15,7 +15,7 @@ def summary(result: "Result", folder: Path) -> str:
     fit = surface["fit_error"]
     lines = [
         f"part      {result.mesh.name}: {report['mesh']['vertices']} vertices, {report['mesh']['faces']} faces; "
-        f"{result.annulus.ends}",
+        f"{result.chart.annulus.ends}",
         f"surface   {surface['control_points'][0]} x {surface['control_points'][1]} control points, "
         f"fit error rms {fit['rms']:.2g}, max {fit['max']:.2g} ({fit['relative_max']:.1e} of the part)",
         f"paths     {paths['converged']} of {total} at rest, length {paths['length_total']:.6g}, "

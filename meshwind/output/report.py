@@ -12,7 +12,7 @@ import numpy as np
 from meshwind.cast import Bools, Floats
 from meshwind.chart.chart import Chart
 from meshwind.layup.layup import Layup
-from meshwind.layup.lengths import lengths
+from meshwind.layup.lengths import bridges, lengths
 from meshwind.mandrel.mesh import Mesh
 from meshwind.path.paths import Paths, Status
 from meshwind.surface.surface import Surface
@@ -102,7 +102,7 @@ def _surface(surface: Surface, chart: Chart | None) -> dict[str, Any]:
 
 
 def _paths(paths: Paths) -> dict[str, Any]:
-    figures = lengths(paths)
+    figures, spans = lengths(paths), bridges(paths)
     taut = paths.status == Status.CONVERGED
     told: Bools = taut if taut.any() else np.ones(len(paths), dtype=bool)
     total = figures.length[told].sum()
@@ -111,6 +111,8 @@ def _paths(paths: Paths) -> dict[str, Any]:
         "not_converged": [_failure(int(k), Status(int(paths.status[k]))) for k in np.flatnonzero(~taut)],
         "length_total": figures.length.sum(),
         "bridged_fraction": figures.bridged[told].sum() / total if total > 0 else 0.0,
+        "bridges": len(spans.path),
+        "longest_bridge": float(spans.length.max(initial=0.0)),
         "max_gap": figures.max_gap[told].max(initial=0.0),
         "max_slip": figures.max_slip[told].max(initial=0.0),
         "max_residual": paths.residual[told].max(initial=0.0),

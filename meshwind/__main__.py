@@ -1,0 +1,5 @@
+"""`python -m meshwind`."""
+
+from meshwind.cli import main
+
+main()

@@ -1,0 +1,68 @@
+"""The house rules that a reader relies on: imports go one way, heavy libraries come late, files stay short."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).parents[1] / "meshwind"
+ORDER = ["errors", "cast", "threads", "mandrel", "chart", "surface", "path", "layup", "output", "pipeline", "cli", "__main__"]
+"""Whatever stands later may import what stands earlier, never the other way round."""
+LONGEST = 350
+FILES = sorted(PACKAGE.rglob("*.py"))
+
+
+def room(file: Path) -> str:
+    """The package or module right below meshwind that a file belongs to."""
+    return file.relative_to(PACKAGE).parts[0].removesuffix(".py")
+
+
+def imported(tree: ast.AST) -> set[str]:
+    """Names of meshwind's rooms that a module imports at run time."""
+    skipped = {id(n) for t in ast.walk(tree) if isinstance(t, ast.If) and "TYPE_CHECKING" in ast.dump(t.test)
+               for n in ast.walk(t)}  # fmt: skip
+    names: set[str] = set()
+    for node in ast.walk(tree):
+        if id(node) in skipped:
+            continue
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("meshwind"):
+            parts = node.module.split(".")
+            names |= {parts[1]} if len(parts) > 1 else {alias.name for alias in node.names}
+        elif isinstance(node, ast.Import):
+            names |= {a.name.split(".")[1] for a in node.names if a.name.startswith("meshwind.")}
+    return names
+
+
+@pytest.mark.parametrize("file", [f for f in FILES if room(f) != "__init__"], ids=lambda f: str(f.relative_to(PACKAGE)))
+def test_imports_go_one_way(file: Path) -> None:
+    here = ORDER.index(room(file))
+    for name in imported(ast.parse(file.read_text(encoding="utf-8"))):
+        assert ORDER.index(name) <= here, f"{file.name} imports {name}"
+
+
+def test_every_room_has_its_place() -> None:
+    assert {room(f) for f in FILES} - {"__init__"} == set(ORDER)
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda f: str(f.relative_to(PACKAGE)))
+def test_files_stay_short(file: Path) -> None:
+    assert len(file.read_text(encoding="utf-8").splitlines()) <= LONGEST
+
+
+@pytest.mark.parametrize("module", ["meshwind", "meshwind.cli"])
+def test_heavy_libraries_load_late(module: str) -> None:
+    heavy = ["numba", "scipy", "igl", "trimesh", "pyvista", "vtk", "meshio"]
+    code = f"import sys, {module}; print([m for m in {heavy} if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_public_names_exist() -> None:
+    import meshwind as mw
+
+    for name in mw.__all__:
+        assert getattr(mw, name) is not None
+    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+        _ = mw.nonsense
