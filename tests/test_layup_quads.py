@@ -124,6 +124,14 @@ def test_a_path_that_runs_along_a_rim_is_left_out() -> None:
     check_annulus(mesh)
 
 
+def test_families_that_all_slide_along_a_rim_are_told() -> None:
+    uv, family = straight_uv(8, 1.0, 201)
+    uv[..., 1] = np.clip(2.0 * uv[..., 1] - 1.0, 0.0, 1.0)
+    mesh = meshed(drawn(CYLINDER, uv, family))
+    assert mesh.left_out == tuple(range(16))
+    assert "fewer revolutions" in mesh.note
+
+
 def test_two_fibres_that_meet_twice_with_nothing_between_leave_no_face() -> None:
     uv, family = straight_uv(6, 0.5, 201)
     v = uv[8, :, 1]

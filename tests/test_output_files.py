@@ -163,12 +163,12 @@ def test_surface_itself_comes_back_from_the_npz(written: tuple[Layup, Path]) -> 
 
 def test_a_bridge_from_the_fixed_end_includes_it() -> None:
     paths = LAID["bridged"].paths
-    flags = np.ones(paths.gap.shape, dtype=bool)
+    flags = np.ones((len(paths), paths.gap.shape[1]), dtype=bool)
     flags[0, :4] = False
     flags[2, -3:] = False
     flags[2, 10] = False
     spans = bridges(replace(paths, on_surface=flags, gap=np.where(flags, 0.0, 0.5)))
-    last = flags.shape[1] - 1
+    last = paths.gap.shape[1] - 1
     assert np.column_stack([spans.path, spans.first, spans.last]).tolist() == [
         [0, 0, 4], [2, 9, 11], [2, last - 3, last]]
     assert spans.max_gap.tolist() == [0.5, 0.5, 0.5]

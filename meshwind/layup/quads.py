@@ -54,6 +54,8 @@ def quads(paths: Paths, crossings: Crossings) -> QuadMesh:
     kept = crossings.compared & _spans_the_part(paths)
     kept &= ~_cross_their_own(paths, kept)
     left_out = tuple(np.flatnonzero(crossings.compared & ~kept).tolist())
+    if not all((kept & (paths.family == family)).any() for family in (1, -1)):
+        return _empty(paths, left_out, "no path of one family runs clear from rim to rim: use fewer revolutions")
     graph = _Graph.of(paths, crossings, kept)
     if not len(graph.crossing):
         return _empty(paths, left_out, "the two families never cross: use more revolutions")

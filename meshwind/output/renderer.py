@@ -50,7 +50,7 @@ def draw(plotter: Any, scene: dict[str, Any]) -> None:
     plotter.render()
     image = Image.fromarray(plotter.screenshot(return_img=True))
     annotate(image, scene, scale)
-    image.save(str(scene["picture"]))
+    image.save(str(scene["picture"]), compress_level=1)
 
 
 def mesh_units_per_pixel(extent: Any) -> float:
@@ -64,8 +64,14 @@ def add_part(plotter: Any, scene: dict[str, Any]) -> None:
     part = pv.PolyData.from_regular_faces(scene["points"], scene["quads"])
     part.point_data["Normals"] = scene["normals"] / np.linalg.norm(scene["normals"], axis=1, keepdims=True)
     part.point_data.active_normals_name = "Normals"
-    plotter.add_mesh(part, color=PART, smooth_shading=True, specular=0.0, ambient=0.3, diffuse=0.8,
-                     backface_params={"color": INSIDE, "specular": 0.0, "ambient": 0.25})
+    add_smooth(plotter, part, color=PART, ambient=0.3, diffuse=0.8,
+               backface_params={"color": INSIDE, "ambient": 0.25, "interpolation": "Phong"})
+
+
+def add_smooth(plotter: Any, mesh: Any, **look: Any) -> None:
+    """Add a mesh that brings its normals: `smooth_shading` would compute them anew, a third of the time."""
+    actor = plotter.add_mesh(mesh, **look)
+    actor.prop.interpolation = "Phong"
 
 
 def add_fibres(plotter: Any, scene: dict[str, Any], radius: float) -> None:
@@ -81,8 +87,7 @@ def add_tubes(plotter: Any, points: Any, size: int, radius: float, colour: str) 
     """Tubes around paths (p, size, 3)."""
     if len(points):
         lines = polylines(points.reshape(-1, 3), np.full(len(points), size))
-        plotter.add_mesh(lines.tube(radius=radius, n_sides=8), color=colour, smooth_shading=True, ambient=0.4,
-                         diffuse=0.7)
+        add_smooth(plotter, lines.tube(radius=radius, n_sides=8), color=colour, ambient=0.4, diffuse=0.7)
 
 
 def add_bridges(plotter: Any, scene: dict[str, Any], radius: float) -> None:
@@ -91,9 +96,9 @@ def add_bridges(plotter: Any, scene: dict[str, Any], radius: float) -> None:
         return
     lines = polylines(scene["bridges"] + radius * scene["bridge_normals"], scene["bridge_sizes"])
     lines.point_data["gap"] = scene["bridge_gap"]
-    tubes = lines.tube(radius=1.8 * radius, n_sides=10)
-    plotter.add_mesh(tubes, scalars="gap", cmap=GAPS, show_scalar_bar=False,
-                     clim=[0.0, float(scene["max_gap"])], smooth_shading=True, ambient=0.4, diffuse=0.65)
+    tubes = lines.tube(radius=1.6 * radius, n_sides=10)
+    add_smooth(plotter, tubes, scalars="gap", cmap=GAPS, show_scalar_bar=False,
+               clim=[0.0, float(scene["max_gap"])], ambient=0.4, diffuse=0.65)
 
 
 def polylines(points: Any, sizes: Any) -> Any:

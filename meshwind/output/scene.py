@@ -63,7 +63,7 @@ def _title(paths: Paths, name: str) -> str:
 def _subtitle(layup: Layup, units: str) -> str:
     figures = lengths(layup.paths)
     total = float(figures.length.sum())
-    parts = [f"{total:.4g} {units} of fibre", f"{len(layup.crossings)} crossings"]
+    parts = [f"{float(f'{total:.4g}'):,.10g} {units} of fibre", f"{len(layup.crossings)} crossings"]
     failed = int((layup.paths.status != Status.CONVERGED).sum())
     share = float(figures.bridged.sum()) / total if total > 0.0 else 0.0
     parts.append(f"{100.0 * share:.1f} % of the length bridges" if share > 0.0 else "no bridging")
