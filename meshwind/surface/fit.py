@@ -1,6 +1,6 @@
 """Fit the smooth surface to a chart: least squares on the vertices with parameter correction (Hoschek)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import igl
 import numpy as np
@@ -10,6 +10,7 @@ from meshwind.cast import Bools, Floats
 from meshwind.chart.chart import Chart
 from meshwind.surface import normal_equations
 from meshwind.surface.foot import feet
+from meshwind.surface.infill import infill
 from meshwind.surface.surface import FitError, Surface
 from meshwind.threads import spread
 
@@ -22,6 +23,8 @@ GAIN = 0.7
 PATIENCE = 2
 """So many finer nets in a row without that gain end the search: one alone may be bad luck."""
 COARSEST = 8
+INFILL = 0.05
+"""Weight of a point between vertices against a vertex: enough to hold a span that has nothing else."""
 
 
 @dataclass(frozen=True)
@@ -33,6 +36,16 @@ class _Samples:
     weight: Floats
     rim: Bools
     trusted: Bools
+    chart: Chart
+
+    def between(self, spans: tuple[int, int]) -> tuple[Floats, Floats]:
+        """Points between vertices for a net of so many spans: (k, 2) in the plane, (k, 3) about the middle."""
+        faces = self.chart.annulus.faces
+        turns = np.round(self.chart.corner_uv[..., 0] - self.chart.uv[faces][..., 0])
+        corners = self.uv[faces]
+        corners[..., 0] += turns
+        uv, points = infill(self.chart.annulus, corners, spans)
+        return uv, points + (self.points[0] - self.chart.annulus.vertices[0])
 
 
 @dataclass(frozen=True)
@@ -63,6 +76,7 @@ def fit(chart: Chart, tolerance: float = 1e-5) -> Surface:
         np.where(annulus.trusted, 1.0, 0.1),
         rim,
         np.asarray(annulus.trusted),
+        chart,
     )
     lengths = _lengths(chart)
     best, *finer = _ladder(lengths, len(annulus.vertices))
@@ -117,14 +131,16 @@ def _fit(samples: _Samples, spans: tuple[int, int], lengths: tuple[float, float]
     for _ in range(ROUNDS):
         if surface is not None:
             uv, _ = _correct(surface, samples, uv)
+            samples = replace(samples, uv=uv)
         stencil, right = bending.copy(), np.zeros((nu, nv, 3))
         normal_equations.accumulate(uv, samples.points, samples.weight, *spans, stencil, right)
+        inner, points = samples.between(spans)
+        normal_equations.accumulate(inner, points, np.full(len(inner), INFILL), *spans, stencil, right)
         surface = Surface(normal_equations.solve(stencil, right))
     assert surface is not None  # ROUNDS >= 1
     uv, distance = _correct(surface, samples, uv)
-    moved = _Samples(samples.points, uv, samples.weight, samples.rim, samples.trusted)
     distance = distance[samples.trusted]
-    return _Fitted(surface, moved, float(np.sqrt(np.mean(distance**2))), float(distance.max()))
+    return _Fitted(surface, replace(samples, uv=uv), float(np.sqrt(np.mean(distance**2))), float(distance.max()))
 
 
 def _correct(surface: Surface, samples: _Samples, uv: Floats) -> tuple[Floats, Floats]:
