@@ -70,7 +70,7 @@ def sphere_band(radius: float, polar0: float, polar1: float, spans: Spans = (192
     return ellipsoid(radius, radius, radius, polar0, polar1, spans)
 
 
-def torus(major: float, minor: float, bend: float = 2 * np.pi, spans: Spans = (128, 128)) -> Surface:
+def torus(major: float, minor: float, bend: float = 2 * np.pi, spans: Spans = (192, 256)) -> Surface:
     """A torus about z cut open: u around the tube (0 on the outside), v along the bend of `bend` radians."""
     _positive(major=major, minor=minor, bend=bend)
     if minor >= major:
