@@ -97,9 +97,12 @@ def _one_rim(vertices: Floats, faces: Ints, loop: Ints, wish: Wish) -> tuple[lis
     rim = End(loop_centroid(vertices, loop), loop)
     away = vertices.mean(axis=0) - rim.centre
     if wish.points is not None:
-        at_second = _distance(vertices, rim, wish.points[0]) > _distance(vertices, rim, wish.points[1])
-        other = End(nearest(vertices, faces, wish.points[0 if at_second else 1]))
-        return [other, rim] if at_second else [rim, other], "the open rim and a pole at a given point"
+        feet = [nearest(vertices, faces, point) for point in wish.points]
+        to_rim = [_distance(vertices, rim, point) for point in wish.points]
+        to_foot = [float(np.linalg.norm(foot - point)) for foot, point in zip(feet, wish.points, strict=True)]
+        if to_rim[0] + to_foot[1] <= to_rim[1] + to_foot[0]:
+            return [rim, End(feet[1])], "the open rim, and a pole at the second point"
+        return [End(feet[0]), rim], "a pole at the first point, and the open rim"
     if wish.axis is not None:
         direction = wish.axis if wish.axis @ away >= 0 else -wish.axis
         other = _closed_end(vertices, faces, direction)

@@ -5,7 +5,7 @@ import numpy as np
 
 from meshwind.cast import Floats, Ints
 from meshwind.errors import BadInputError
-from meshwind.mandrel.measure import areas
+from meshwind.mandrel.measure import areas, volume
 from meshwind.mandrel.topology import Edges, components, edges, pairs, patches
 
 
@@ -97,7 +97,7 @@ def _wedges(vertices: Floats, faces: Ints, found: Edges) -> tuple[Ints, Ints]:
     half = np.flatnonzero(found.count[found.of_face.ravel()] > 2)
     edge = found.of_face.ravel()[half]
     low, high = (vertices[found.ends[edge, k]] for k in range(2))
-    along = faces.ravel()[half] == found.ends[edge, 0]
+    along = (faces.ravel()[half] == found.ends[edge, 0]) == (volume(vertices, faces) >= 0)
     axis = high - low
     apex = vertices[faces.ravel()[_next(_next(half))]] - low
     across = np.eye(3)[np.argmin(np.abs(axis), axis=1)]
@@ -106,7 +106,7 @@ def _wedges(vertices: Floats, faces: Ints, found: Edges) -> tuple[Ints, Ints]:
     angle = np.arctan2(np.einsum("ij,ij->i", apex, up), np.einsum("ij,ij->i", apex, side))
     order = np.lexsort((angle, edge))
     half, edge, along = half[order], edge[order], along[order]
-    # A face along the edge has the solid before it, one against the edge behind it: start on the latter.
+    # An outward face along the edge has the solid before it, one against the edge behind it: start on the latter.
     starts = np.flatnonzero(np.r_[True, edge[1:] != edge[:-1]]) if len(edge) else np.empty(0, dtype=np.int64)
     size = np.diff(np.r_[starts, len(edge)])
     place = np.arange(len(edge)) - np.repeat(starts, size)

@@ -93,8 +93,6 @@ def _make_manifold(vertices: Floats, faces: Ints, notes: list[str]) -> tuple[Flo
     _note(notes, len(faces) - len(calm), "dropped {} at edges with more than two faces")
     turned = manifold.oriented(calm)
     _note(notes, _minority(calm, turned), "turned {} to agree with the neighbours")
-    if volume(vertices, turned) < 0:
-        turned = turned[:, ::-1]
     used = len(np.unique(turned))
     points, split = manifold.separated(vertices, turned)
     _note(notes, len(points) - used, "split the surface at {} where parts of it touch", "vertex", "vertices")

@@ -16,7 +16,7 @@ from meshwind.mandrel.topology import euler, loops, patches
 _FLAT = 1e-6  # volume over area^(3/2): 0.094 for a ball, 6e-3 for a rod a thousand times as long as thick
 _SHARE = 1.0 / 3.0  # of the area, the most that an opening may take
 _DEFAULT, _LEAST, _WIDEST_BY_EDGES = 0.25, 0.02, 0.5  # radius of an opening over the mean radius of the part
-_EDGES = 3.0  # of the mean length that a default opening spans at least
+_EDGES = 3.0  # that a default opening spans at least, by the faces' shortest ones: long ones tell nothing
 
 
 def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Annulus:
@@ -97,7 +97,7 @@ def _with_openings(surface: Skin, pair: list[End], wanted: float | None, name: s
     if gap < 1e-6 * float(np.linalg.norm(np.ptp(surface.vertices, axis=0))):
         raise BadInputError(f"{name}: both ends fall on one place, {_point(pair[0].centre)}; give ends further apart")
     mean_radius = area / (2.0 * np.pi * float(np.ptp(surface.vertices @ (direction / gap))))
-    edge = float(edge_lengths(surface.vertices, surface.faces).mean())
+    edge = float(np.median(edge_lengths(surface.vertices, surface.faces).min(axis=1)))
     radii = []
     for end in pair:
         if end.loop is None and end.lip is None:
