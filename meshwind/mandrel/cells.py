@@ -10,12 +10,13 @@ CellBlock: TypeAlias = tuple[str, tuple[Ints, Ints]]
 """Kind of the cells, their sizes (c,) and their nodes, one cell after the other."""
 
 # Corners of a kind; its further nodes lie on edges, faces or inside.
-_CORNERS = {"triangle": 3, "quad": 4, "tetra": 4, "hexahedron": 8, "wedge": 6, "pyramid": 5}
+_CORNERS = {"triangle": 3, "quad": 4, "tetra": 4, "hexahedron": 8, "wedge": 6, "vtk-wedge": 6, "pyramid": 5}
 # Faces of a volume cell, outward; a triangle is a quadrangle without its last corner, -1.
 _SIDES = {
     "tetra": [[0, 2, 1, -1], [0, 1, 3, -1], [1, 2, 3, -1], [0, 3, 2, -1]],
     "hexahedron": [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]],
     "wedge": [[0, 2, 1, -1], [3, 4, 5, -1], [0, 1, 4, 3], [1, 2, 5, 4], [2, 0, 3, 5]],
+    "vtk-wedge": [[0, 1, 2, -1], [3, 5, 4, -1], [0, 3, 4, 1], [1, 4, 5, 2], [2, 5, 3, 0]],  # VTK mirrors it
     "pyramid": [[0, 3, 2, 1], [0, 1, 4, -1], [1, 2, 4, -1], [2, 3, 4, -1], [3, 0, 4, -1]],
 }
 

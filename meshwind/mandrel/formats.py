@@ -12,8 +12,8 @@ from meshwind.errors import BadInputError
 from meshwind.mandrel.cells import CellBlock, triangles
 
 _VTK_KINDS = {
-    5: "triangle", 7: "polygon", 9: "quad", 10: "tetra", 12: "hexahedron", 13: "wedge", 14: "pyramid",
-    22: "triangle6", 23: "quad8", 24: "tetra10", 25: "hexahedron20", 26: "wedge15", 27: "pyramid13",
+    5: "triangle", 7: "polygon", 9: "quad", 10: "tetra", 12: "hexahedron", 13: "vtk-wedge", 14: "pyramid",
+    22: "triangle6", 23: "quad8", 24: "tetra10", 25: "hexahedron20", 26: "vtk-wedge15", 27: "pyramid13",
     28: "quad9", 29: "hexahedron27", 69: "triangle", 70: "quad", 71: "tetra", 72: "hexahedron",
 }  # fmt: skip
 
@@ -65,7 +65,7 @@ def by_vtk(path: Path) -> tuple[Floats, Ints]:
     if isinstance(data, vtkPolyData):
         cells, kinds = data.GetPolys(), None
     elif isinstance(data, vtkUnstructuredGrid):
-        cells, kinds = data.GetCells(), data.GetCellTypesArray()
+        cells, kinds = data.GetCells(), _kinds(data)
     else:
         raise BadInputError(f"{path.name}: holds no polygons or cells; save the part's surface as VTP, PLY or STL")
     if data.GetPoints() is None or cells is None or cells.GetNumberOfCells() == 0:
@@ -76,7 +76,7 @@ def by_vtk(path: Path) -> tuple[Floats, Ints]:
     sizes = np.diff(offsets)
     if offsets[0] != 0 or (sizes < 0).any() or offsets[-1] != len(nodes):
         raise ValueError("its cells are damaged")
-    kind = np.full(len(sizes), 7) if kinds is None else _array(kinds, np.int64)
+    kind = np.full(len(sizes), 7) if kinds is None else kinds
     if len(kind) != len(sizes):
         raise ValueError("its cell types are damaged")
     of_node = np.repeat(kind, sizes)
@@ -86,6 +86,13 @@ def by_vtk(path: Path) -> tuple[Floats, Ints]:
         if (kind == code).any()
     ]
     return points, triangles(blocks, len(points))
+
+
+def _kinds(grid: Any) -> Ints:
+    """VTK's number of each cell's kind; its own method for this is not the same in all versions."""
+    import pyvista
+
+    return np.asarray(pyvista.wrap(grid).celltypes, dtype=np.int64)
 
 
 def _vtk_output(path: Path) -> Any:
