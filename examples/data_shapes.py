@@ -26,7 +26,7 @@ def vase(u: Floats, v: Floats) -> Floats:
     radius = 40 + 13 * bump(v, 0.28, 0.22) - 13 * bump(v, 0.7, 0.18) + 8 * bump(v, 1.04, 0.18)
     radius *= 1 + 0.07 * np.cos(2 * turn - 0.6 - 0.8 * v) + 0.02 * np.cos(3 * turn + 1.1 * v)
     centre_x = 14 * v**2
-    centre_y = 5 * np.sin(np.pi * v)
+    centre_y = 3 * np.sin(np.pi * v)
     return np.column_stack([centre_x + radius * np.cos(turn), centre_y + radius * np.sin(turn), 200 * v])
 
 
@@ -48,16 +48,15 @@ def tank(u: Floats, v: Floats) -> Floats:
 def bottle(u: Floats, v: Floats) -> Floats:
     """Return a closed bottle 220 mm high, its axis bent, with three unequal lobes twisting below its neck."""
     turn, height = 2 * np.pi * u, -np.cos(np.pi * v)
-    closing = np.sin(np.pi * v) * np.sqrt((1 + height**2) * (1 + height**4))
-    # one factor more of 1 - h^16 below makes a base to stand on
-    closing *= np.sqrt(1 + height**8 * (1 - rise(height, 0.0, 0.3)))
-    radius = closing * (20 + 28 * (1 - rise(height, 0.34, 0.2)) + 4 * bump(height, -0.55, 0.35))
+    # domed at both ends, so that fibres hold there: 1 - h^4 in factors, which keeps its digits at the poles
+    closing = np.sin(np.pi * v) * np.sqrt(1 + height**2)
+    radius = closing * (22 + 26 * (1 - rise(height, 0.34, 0.2)) + 4 * bump(height, -0.55, 0.35))
     twisted = turn + 0.55 * (height + 1)
-    lobes = 0.17 * np.cos(3 * twisted) + 0.05 * np.cos(2 * twisted + 0.7) + 0.06 * np.cos(twisted - 0.4)
+    lobes = 0.12 * np.cos(3 * twisted) + 0.04 * np.cos(2 * twisted + 0.7) + 0.03 * np.cos(twisted - 0.4)
     # the square of the sine keeps the lobes smooth where they fade into the poles
     radius *= 1 + lobes * np.sin(np.pi * v) ** 2 * 1.15 * (1 - rise(height, 0.5, 0.25)) * (1 + 0.25 * height)
-    centre_x = 9 * np.sin(1.3 * height + 0.4)
-    centre_y = 5 * np.cos(1.9 * height - 0.3)
+    centre_x = 4 * np.sin(1.3 * height + 0.4)
+    centre_y = 3 * np.cos(1.9 * height - 0.3)
     return np.column_stack(
         [centre_x + radius * np.cos(turn), centre_y + radius * np.sin(turn), 110 * (height + 1)]
     )
