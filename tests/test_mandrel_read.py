@@ -9,6 +9,7 @@ import pytest
 import pyvista
 import trimesh
 from mandrel_shapes import Part, pear
+from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
 
 from meshwind.errors import BadInputError
 from meshwind.mandrel import SUFFIXES, Mesh, read
@@ -46,6 +47,13 @@ def save(path: Path, part: Part, kind: str) -> None:
         cells.write(path)
     elif kind.startswith("vtu"):
         pyvista.wrap(surface).cast_to_unstructured_grid().save(path, binary="ascii" not in kind)
+    elif kind == "vtk_old":
+        writer = vtkPolyDataWriter()
+        writer.SetFileVersion(42)
+        writer.SetFileTypeToBinary()
+        writer.SetInputData(pyvista.wrap(surface))
+        writer.SetFileName(str(path))
+        writer.Write()
     elif kind == "vtk_grid":
         pyvista.wrap(surface).cast_to_unstructured_grid().save(path)
     else:
@@ -53,7 +61,7 @@ def save(path: Path, part: Part, kind: str) -> None:
 
 
 KINDS = ["stl", "stl_ascii", "ply", "ply_ascii", "obj", "off", "glb", "3mf", "msh", "msh22", "inp",
-         "vtk", "vtk_ascii", "vtk_grid", "vtu", "vtu_ascii", "vtp", "vtp_ascii"]  # fmt: skip
+         "vtk", "vtk_ascii", "vtk_grid", "vtk_old", "vtu", "vtu_ascii", "vtp", "vtp_ascii"]  # fmt: skip
 
 
 @pytest.mark.parametrize("kind", KINDS)

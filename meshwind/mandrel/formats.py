@@ -10,6 +10,7 @@ import numpy as np
 from meshwind.cast import Floats, Ints
 from meshwind.errors import BadInputError
 from meshwind.mandrel.cells import CellBlock, triangles
+from meshwind.mandrel.legacy import check_legacy
 
 _VTK_KINDS = {
     5: "triangle", 7: "polygon", 9: "quad", 10: "tetra", 12: "hexahedron", 13: "vtk-wedge", 14: "pyramid",
@@ -102,6 +103,8 @@ def _vtk_output(path: Path) -> Any:
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
     readers: dict[str, Any] = {".vtp": vtkXMLPolyDataReader, ".vtu": vtkXMLUnstructuredGridReader}
+    if path.suffix.lower() not in readers:
+        check_legacy(path.read_bytes())
     reader = readers.get(path.suffix.lower(), vtkGenericDataObjectReader)()
     reader.SetFileName(str(path))
     loud = vtkObject.GetGlobalWarningDisplay()

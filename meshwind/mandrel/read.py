@@ -37,7 +37,7 @@ SUFFIXES = tuple(_READERS)
 # What the libraries were seen to raise on cut, overwritten and foreign files; meshio ends the process, and
 # RuntimeWarning comes from a cast where the caller turns warnings into errors.
 _GARBAGE = (
-    ValueError, LookupError, ArithmeticError, TypeError, AttributeError, AssertionError, NotImplementedError,
+    ValueError, LookupError, NameError, ArithmeticError, TypeError, AttributeError, AssertionError, NotImplementedError,
     RuntimeError, RuntimeWarning, EOFError, MemoryError, OSError, struct.error, zlib.error, zipfile.BadZipFile,
     json.JSONDecodeError, ParseError, SystemExit,
 )  # fmt: skip

@@ -15,7 +15,7 @@ from meshwind.mandrel.topology import euler, loops, patches
 
 _FLAT = 1e-6  # volume over area^(3/2): 0.094 for a ball, 6e-3 for a rod a thousand times as long as thick
 _SHARE = 1.0 / 3.0  # of the area, the most that an opening may take
-_DEFAULT, _LEAST, _WIDEST_BY_EDGES = 0.25, 0.02, 0.5  # radius of an opening over the mean radius of the part
+_DEFAULT, _LEAST, _WIDEST_BY_EDGES = 0.4, 0.02, 0.5  # radius of an opening over the mean radius of the part
 _EDGES = 3.0  # that a default opening spans at least, by the faces' shortest ones: long ones tell nothing
 
 
