@@ -119,9 +119,9 @@ def test_tank_lies_on_its_superellipsoid_and_is_convex() -> None:
 
 
 def test_vase_and_bottle_have_hollows_to_bridge() -> None:
-    for name in ("vase.stl", "bottle.obj", "cast.ply"):
+    for name, share in (("vase.stl", 0.75), ("bottle.obj", 0.97), ("cast.ply", 0.75)):
         body = trimesh.Trimesh(*capped(*load(name)), process=False)
-        assert body.volume < 0.95 * body.convex_hull.volume
+        assert body.volume < share * body.convex_hull.volume
 
 
 def test_files_are_small() -> None:
