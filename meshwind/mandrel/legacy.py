@@ -6,7 +6,7 @@ import numpy as np
 
 from meshwind.cast import Ints
 
-_LISTS = rb"^(?:VERTICES|LINES|POLYGONS|TRIANGLE_STRIPS|CELLS) (\d{1,10}) (\d{1,10})[ \r]*\n"
+_LISTS = rb"^(?:VERTICES|LINES|POLYGONS|TRIANGLE_STRIPS|CELLS)\s+(\d{1,10})\s+(\d{1,10})[ \t\r]*\n"
 _DAMAGED = "damaged, cut short or of another format"
 
 
