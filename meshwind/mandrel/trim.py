@@ -23,7 +23,7 @@ def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Ann
     """Choose the two ends of a repaired mesh and trim it to them.
 
     ends: 'auto', a model axis 'x', 'y' or 'z', or two points 'x,y,z x,y,z' in the mesh's units.  opening: the
-    radius of the hole cut about each pole, in the mesh's units; by default a quarter of the part's mean
+    radius of the hole cut about each pole, in the mesh's units; by default 0.4 of the part's mean
     radius.  Open rims are ends as they are.
 
     With 'auto' the ends are the two largest open rims, the longer one first; where there is but one, it comes
@@ -101,8 +101,8 @@ def _with_openings(surface: Skin, pair: list[End], wanted: float | None, name: s
     radii = []
     for end in pair:
         if end.loop is None and end.lip is None:
-            radius = wanted or mean_radius * max(_DEFAULT, min(_EDGES * edge / mean_radius, _WIDEST_BY_EDGES))
-            least = _LEAST * mean_radius
+            usual = max(_DEFAULT * mean_radius, min(_EDGES * edge, _WIDEST_BY_EDGES * mean_radius))
+            radius, least = wanted or usual, _LEAST * mean_radius
             surface, radius = _open(surface, end.centre, radius, least, _SHARE * area, wanted is None, name)
             radii.append(radius)
     return surface, radii
