@@ -57,9 +57,7 @@ def bottle(u: Floats, v: Floats) -> Floats:
     radius *= 1 + lobes * np.sin(np.pi * v) ** 2 * 1.15 * (1 - rise(height, 0.5, 0.25)) * (1 + 0.25 * height)
     centre_x = 4 * np.sin(1.3 * height + 0.4)
     centre_y = 3 * np.cos(1.9 * height - 0.3)
-    return np.column_stack(
-        [centre_x + radius * np.cos(turn), centre_y + radius * np.sin(turn), 110 * (height + 1)]
-    )
+    return np.column_stack([centre_x + radius * np.cos(turn), centre_y + radius * np.sin(turn), 110 * (height + 1)])
 
 
 def cast(u: Floats, v: Floats) -> Floats:

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from meshwind.errors import BadInputError as BadInputError
     from meshwind.layup import Families as Families
     from meshwind.layup import Layup as Layup
-    from meshwind.layup import families as families
     from meshwind.layup import assess as assess
+    from meshwind.layup import families as families
     from meshwind.mandrel import Annulus as Annulus
     from meshwind.mandrel import Mesh as Mesh
     from meshwind.mandrel import annulus as annulus
@@ -44,7 +44,7 @@ _HOME = {
     "Result": "pipeline", "wind": "pipeline",
 }  # fmt: skip
 
-__all__ = sorted(_HOME)  # noqa: PLE0605
+__all__ = sorted(_HOME)
 
 
 def __getattr__(name: str) -> Any:

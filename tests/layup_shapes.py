@@ -32,7 +32,7 @@ def revolved(radius: Callable[[Floats], Floats], nu: int = 256, nv: int = 32) ->
     left, right = collocation(nu, u, True), collocation(nv, v, False)
     rows = np.linalg.solve(left.T @ left, left.T @ samples)
     control = np.linalg.solve(right.T @ right, right.T @ np.swapaxes(rows, 1, 2))
-    return Surface(np.moveaxis(control, (0, 1, 2), (2, 1, 0)))
+    return Surface(np.ascontiguousarray(control.transpose(2, 1, 0)))
 
 
 @cache
@@ -52,11 +52,19 @@ def drawn(surface: Surface, uv: Floats, family: ArrayLike) -> Paths:
     slip = np.zeros((p, n))
     slip[:, [0, -1]] = np.nan
     return Paths(
-        surface=surface, points=frozen(surface.points(flat).reshape(p, n, 3)), uv=frozen(uv),
-        on_surface=frozen(np.ones((p, n), dtype=bool)), gap=frozen(np.zeros((p, n))),
-        normal=frozen(surface.normals(flat).reshape(p, n, 3)), slip=frozen(slip),
-        family=frozen(np.asarray(family, dtype=np.int64)), status=frozen(np.zeros(p, dtype=np.int64)),
-        residual=frozen(np.zeros(p)), friction=0.0, counters=Counters(0, 0, 0, 0))
+        surface=surface,
+        points=frozen(surface.points(flat).reshape(p, n, 3)),
+        uv=frozen(uv),
+        on_surface=frozen(np.ones((p, n), dtype=bool)),
+        gap=frozen(np.zeros((p, n))),
+        normal=frozen(surface.normals(flat).reshape(p, n, 3)),
+        slip=frozen(slip),
+        family=frozen(np.asarray(family, dtype=np.int64)),
+        status=frozen(np.zeros(p, dtype=np.int64)),
+        residual=frozen(np.zeros(p)),
+        friction=0.0,
+        counters=Counters(0, 0, 0, 0),
+    )
 
 
 def straight_uv(count: int, revolutions: float, particles: int, offset: float = 0.0) -> tuple[Floats, Floats]:
@@ -86,5 +94,17 @@ def bridged(count: int = 16, revolutions: float = 0.25, particles: int = 201) ->
     surface_flag[:, span] = False
     gap = np.where(surface_flag, 0.0, np.linalg.norm(points - on.points, axis=2))
     slip = np.where(surface_flag, on.slip, np.nan)
-    return Paths(on.surface, frozen(points), on.uv, frozen(surface_flag), frozen(gap), normal, frozen(slip),
-                 on.family, on.status, on.residual, 0.0, on.counters)
+    return Paths(
+        on.surface,
+        frozen(points),
+        on.uv,
+        frozen(surface_flag),
+        frozen(gap),
+        normal,
+        frozen(slip),
+        on.family,
+        on.status,
+        on.residual,
+        0.0,
+        on.counters,
+    )

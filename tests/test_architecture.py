@@ -8,7 +8,20 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).parents[1] / "meshwind"
-ORDER = ["errors", "cast", "threads", "mandrel", "chart", "surface", "path", "layup", "output", "pipeline", "cli", "__main__"]
+ORDER = [
+    "errors",
+    "cast",
+    "threads",
+    "mandrel",
+    "chart",
+    "surface",
+    "path",
+    "layup",
+    "output",
+    "pipeline",
+    "cli",
+    "__main__",
+]
 """Whatever stands later may import what stands earlier, never the other way round."""
 LONGEST = 350
 FILES = sorted(PACKAGE.rglob("*.py"))

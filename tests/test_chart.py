@@ -78,9 +78,7 @@ def test_the_seam_leaves_no_trace() -> None:
     place = np.empty(n, dtype=np.int64)
     place[order] = np.arange(n)
     rims = tuple(np.roll(place[rim], 17) for rim in part.rims)
-    rolled = Annulus(
-        part.mesh, part.vertices[order], place[part.faces], (rims[0], rims[1]), part.trusted, "rolled"
-    )
+    rolled = Annulus(part.mesh, part.vertices[order], place[part.faces], (rims[0], rims[1]), part.trusted, "rolled")
     apart = flatten(rolled).uv[place] - flatten(part).uv
     apart[:, 0] -= apart[0, 0]
     apart[:, 0] -= np.round(apart[:, 0])

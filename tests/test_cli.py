@@ -89,7 +89,7 @@ def test_a_file_in_the_way_of_the_folder(tmp_path: Path) -> None:
     assert (tmp_path / "out").read_text() == "mine"
 
 
-def test_a_folder_without_write_permission(tmp_path: Path) -> None:
+def test_a_folder_without_write_permission() -> None:
     """/proc takes no files, not even from root, whom permission bits do not stop."""
     done = meshwind("wind", DATA / "tank.ply", "--out", "/proc/meshwind-out")
     assert done.returncode == 2

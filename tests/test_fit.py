@@ -33,15 +33,12 @@ def test_vertices_carry_the_surface_far_below_the_facets() -> None:
     error = surface.error
     assert error is not None
     assert np.sqrt(np.mean(true_error(surface) ** 2)) < 1e-5 * error.diagonal
-    assert (
-        error.to_surface_rms < 1e-5 * error.diagonal < error.to_mesh_rms
-    )  # the facets are the coarser of the two
+    assert error.to_surface_rms < 1e-5 * error.diagonal < error.to_mesh_rms  # the facets are the coarser of the two
 
 
 def test_error_falls_with_third_order_or_better() -> None:
     errors = [
-        np.sqrt(np.mean(true_error(fit(flatten(annulus(vase, n, 0.7)), 1e-12)) ** 2))
-        for n in (1000, 4000, 16000)
+        np.sqrt(np.mean(true_error(fit(flatten(annulus(vase, n, 0.7)), 1e-12)) ** 2)) for n in (1000, 4000, 16000)
     ]
     assert np.log2(errors[0] / errors[2]) / 2 >= 3.0
 

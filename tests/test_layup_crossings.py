@@ -41,8 +41,9 @@ def test_count_position_and_angle(count: int, revolutions: float, particles: int
     wanted = expected_uv(count, revolutions)
     assert len(found) == len(wanted)
     assert matched(found.uv, wanted) < 1e-12
-    exact = np.column_stack([np.cos(2 * np.pi * found.uv[:, 0]), np.sin(2 * np.pi * found.uv[:, 0]),
-                             HEIGHT * found.uv[:, 1]])
+    exact = np.column_stack(
+        [np.cos(2 * np.pi * found.uv[:, 0]), np.sin(2 * np.pi * found.uv[:, 0]), HEIGHT * found.uv[:, 1]]
+    )
     assert np.abs(found.points - exact).max() < 1e-9
     between = 2.0 * np.arctan2(2.0 * np.pi * revolutions, HEIGHT)
     assert np.abs(found.angle - min(between, np.pi - between)).max() < 1e-8

@@ -46,10 +46,11 @@ def outward(mesh: QuadMesh) -> bool:
     return bool((np.concatenate(looks) > 0).all())
 
 
-@pytest.mark.parametrize(("count", "revolutions", "particles"), [
-    (8, 1.0, 101), (16, 1.0, 100), (32, 2.5, 401), (6, 0.5, 11), (3, 1 / 3, 50), (12, 2 / 3, 2)])
-def test_whole_patterns_give_quads_with_triangles_at_the_rims(
-        count: int, revolutions: float, particles: int) -> None:
+@pytest.mark.parametrize(
+    ("count", "revolutions", "particles"),
+    [(8, 1.0, 101), (16, 1.0, 100), (32, 2.5, 401), (6, 0.5, 11), (3, 1 / 3, 50), (12, 2 / 3, 2)],
+)
+def test_whole_patterns_give_quads_with_triangles_at_the_rims(count: int, revolutions: float, particles: int) -> None:
     mesh = meshed(helices(count, revolutions, particles, CYLINDER))
     check_annulus(mesh)
     assert outward(mesh)

@@ -18,8 +18,11 @@ from meshwind.output.maps import grid
 from meshwind.output.report import plain, report, write_report
 from meshwind.output.write import write_files
 
-LAID = {"bridged": assess(bridged()), "plain": assess(helices(8, 1.0, 101, cylinder())),
-        "uncrossed": assess(helices(6, 0.0, 31, cylinder()))}
+LAID = {
+    "bridged": assess(bridged()),
+    "plain": assess(helices(8, 1.0, 101, cylinder())),
+    "uncrossed": assess(helices(6, 0.0, 31, cylinder())),
+}
 
 
 def part_of(layup: Layup) -> Mesh:
@@ -38,7 +41,14 @@ def written(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
 
 def test_all_files_are_there(written: tuple[Layup, Path]) -> None:
     assert sorted(file.name for file in written[1].iterdir()) == [
-        "bridges.vtp", "crossings.vtp", "paths.vtp", "quads.obj", "quads.vtu", "surface.npz", "surface.vtu"]
+        "bridges.vtp",
+        "crossings.vtp",
+        "paths.vtp",
+        "quads.obj",
+        "quads.vtu",
+        "surface.npz",
+        "surface.vtu",
+    ]
 
 
 def test_paths(written: tuple[Layup, Path]) -> None:
@@ -51,14 +61,18 @@ def test_paths(written: tuple[Layup, Path]) -> None:
     cells = poly.lines.reshape(p, n + 1)
     assert np.array_equal(cells, np.column_stack([np.full(p, n), np.arange(p * n).reshape(p, n)]))
     figures = lengths(paths)
-    for name, values in {"uv": paths.uv, "gap": paths.gap, "normal": paths.normal, "slip": paths.slip,
-                         "arc_length": figures.arc_length}.items():
+    for name, values in {
+        "uv": paths.uv,
+        "gap": paths.gap,
+        "normal": paths.normal,
+        "slip": paths.slip,
+        "arc_length": figures.arc_length,
+    }.items():
         assert np.array_equal(poly.point_data[name].ravel(), values.ravel(), equal_nan=True), name
         assert poly.point_data[name].dtype == np.float64, name
     assert poly.point_data["on_surface"].dtype == np.uint8
     assert np.array_equal(poly.point_data["on_surface"], paths.on_surface.ravel())
-    assert set(poly.cell_data.keys()) == {
-        "path", "family", "length", "bridged_length", "max_gap", "max_slip", "status"}
+    assert set(poly.cell_data.keys()) == {"path", "family", "length", "bridged_length", "max_gap", "max_slip", "status"}
     steps = np.linalg.norm(np.diff(poly.points.reshape(p, n, 3), axis=1), axis=2)
     assert np.allclose(poly.cell_data["length"], steps.sum(axis=1), rtol=1e-12)
     assert np.array_equal(poly.cell_data["path"], np.arange(p))
@@ -78,7 +92,7 @@ def test_bridges(written: tuple[Layup, Path]) -> None:
     cells = np.asarray(poly.lines)
     at = 0
     for k in range(wanted):
-        line = cells[at + 1:at + 1 + cells[at]]
+        line = cells[at + 1 : at + 1 + cells[at]]
         at += cells[at] + 1
         gap = poly.point_data["gap"][line]
         assert gap[[0, -1]].tolist() == [0.0, 0.0]
@@ -133,8 +147,17 @@ def test_surface_grid_and_maps(written: tuple[Layup, Path]) -> None:
     assert read.points.dtype == np.float64
     (block,) = read.cells
     assert block.type == "quad"
-    names = {"uv", "normal", "gaussian_curvature", "mean_curvature", "windability", "class", "angle", "coverage",
-             "fit_error"}
+    names = {
+        "uv",
+        "normal",
+        "gaussian_curvature",
+        "mean_curvature",
+        "windability",
+        "class",
+        "angle",
+        "coverage",
+        "fit_error",
+    }
     assert set(read.point_data) == names
     assert all(np.isfinite(values).all() for values in read.point_data.values())
     assert np.allclose(read.points, surface.points(read.point_data["uv"]), atol=1e-14)
@@ -170,7 +193,10 @@ def test_a_bridge_from_the_fixed_end_includes_it() -> None:
     spans = bridges(replace(paths, on_surface=flags, gap=np.where(flags, 0.0, 0.5)))
     last = paths.gap.shape[1] - 1
     assert np.column_stack([spans.path, spans.first, spans.last]).tolist() == [
-        [0, 0, 4], [2, 9, 11], [2, last - 3, last]]
+        [0, 0, 4],
+        [2, 9, 11],
+        [2, last - 3, last],
+    ]
     assert spans.max_gap.tolist() == [0.5, 0.5, 0.5]
 
 
@@ -184,12 +210,16 @@ def test_report_agrees_with_the_files(written: tuple[Layup, Path]) -> None:
     figures = json.loads((out / "report.json").read_text(), parse_constant=refuse)
     (out / "report.json").unlink()
     wanted = {
-        "meshwind": None, "command": None, "mesh": {"vertices", "faces", "units", "repairs"},
+        "meshwind": None,
+        "command": None,
+        "mesh": {"vertices", "faces", "units", "repairs"},
         "surface": {"control_points", "fit_error", "flipped_triangles"},
         "winding": {"revolutions", "paths_per_family", "particles", "friction"},
         "paths": {"converged", "not_converged", "length_total", "bridged_fraction", "max_gap", "max_slip"},
-        "crossings": {"count", "angle"}, "coverage": {"min", "median", "max"},
-        "quads": {"faces", "quads", "triangles"}, "model": {"lifting", "friction", "surface_evaluations"},
+        "crossings": {"count", "angle"},
+        "coverage": {"min", "median", "max"},
+        "quads": {"faces", "quads", "triangles"},
+        "model": {"lifting", "friction", "surface_evaluations"},
         "seconds": {"fit"},
     }
     assert set(figures) >= set(wanted)
@@ -213,7 +243,9 @@ def test_report_names_every_path_that_failed() -> None:
     paths = replace(layup.paths, status=status)
     failed = report(assess(paths), part_of(layup), None, revolutions=1.0)["paths"]["not_converged"]
     assert [(item["path"], item["status"], item["name"]) for item in failed] == [
-        (3, 2, "slid_off_end"), (7, 4, "stalled")]
+        (3, 2, "slid_off_end"),
+        (7, 4, "stalled"),
+    ]
     assert all("use" in item["why"] or "try" in item["why"] for item in failed)
 
 

@@ -80,8 +80,7 @@ def test_winding_angle_of_one_family_alone_is_finite() -> None:
 
 
 @pytest.mark.parametrize(("spans", "shape"), [((256, 5), (200, 21)), ((32, 5), (128, 21))])
-def test_grid_takes_four_samples_a_span_up_to_a_limit(
-        spans: tuple[int, int], shape: tuple[int, int]) -> None:
+def test_grid_takes_four_samples_a_span_up_to_a_limit(spans: tuple[int, int], shape: tuple[int, int]) -> None:
     assert grid(revolved(np.ones_like, spans[0], spans[1] + 3)).shape == shape
 
 

@@ -67,9 +67,17 @@ def test_a_renderer_that_is_not_needed_ends() -> None:
 
 def test_writing_alone_does_not_load_vtk() -> None:
     told = subprocess.run(
-        [sys.executable, "-c", "import sys, meshwind.output, meshwind.output.driver, meshwind.output.folder\n"
-         "print(sorted({name.split('.')[0] for name in sys.modules} & {'vtkmodules', 'vtk', 'pyvista', 'meshio'}))"],
-        capture_output=True, text=True, check=True, cwd=Path(__file__).parents[1])
+        [
+            sys.executable,
+            "-c",
+            "import sys, meshwind.output, meshwind.output.driver, meshwind.output.folder\n"
+            "print(sorted({name.split('.')[0] for name in sys.modules} & {'vtkmodules', 'vtk', 'pyvista', 'meshio'}))",
+        ],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=Path(__file__).parents[1],
+    )
     assert told.stdout.strip() == "[]"
 
 

@@ -41,8 +41,7 @@ def test_position_converges_with_second_order(name: str) -> None:
     problem = next(p for p in PROBLEMS if p.name == name)
     fine = lay(problem, 1601).points[0]
     errors = [
-        np.linalg.norm(lay(problem, n).points[0] - fine[:: 1600 // (n - 1)], axis=1).max()
-        for n in (51, 101, 201)
+        np.linalg.norm(lay(problem, n).points[0] - fine[:: 1600 // (n - 1)], axis=1).max() for n in (51, 101, 201)
     ]
     assert np.log2(errors[0] / errors[2]) / 2 >= 1.9
 

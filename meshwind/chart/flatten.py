@@ -1,5 +1,7 @@
 """Flatten an annulus to the periodic rectangle: two sparse harmonic systems, positive weights where needed."""
 
+from typing import Any
+
 import igl
 import numpy as np
 from scipy import sparse
@@ -62,7 +64,7 @@ def _mean_values(annulus: Annulus) -> Floats:
     return np.asarray(np.stack([tangent / la, tangent / lb], axis=2))
 
 
-def _edges(annulus: Annulus, weights: Floats, jump: Floats) -> tuple[Floats, ...]:
+def _edges(annulus: Annulus, weights: Floats, jump: Floats) -> tuple[Any, ...]:
     """Directed edges as (from, to, weight, jump of u), from cotangents (m, 3) or mean values (m, 3, 2)."""
     F = annulus.faces
     i, j = np.roll(F, -1, axis=1), np.roll(F, 1, axis=1)
@@ -91,7 +93,7 @@ def _solve(annulus: Annulus, weights: Floats, jump: Floats) -> Floats:
     return uv
 
 
-def _inner(laplacian: sparse.csc_array, free: Bools, right: Floats) -> Floats:
+def _inner(laplacian: sparse.csc_array, free: Bools, right: Any) -> Floats:
     where = np.flatnonzero(free)
     if not len(where):
         return np.zeros(0)

@@ -132,7 +132,8 @@ class _Strand:
             duv=_between(np.gradient(paths.uv, axis=1), path, t),
             points=_between(paths.points, path, t),
             chord=paths.points[path, k + 1] - paths.points[path, k],
-            on_surface=paths.on_surface[path, k] & paths.on_surface[path, k + 1])
+            on_surface=paths.on_surface[path, k] & paths.on_surface[path, k + 1],
+        )
 
     def tangent(self, frames: Floats) -> Floats:
         """The fibre's direction: in the tangent plane where it touches, along its chord where it bridges."""

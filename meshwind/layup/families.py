@@ -37,10 +37,7 @@ def families(surface: Surface, paths: int, revolutions: float) -> Families:
     turn = np.arange(paths) / paths
     first = _places(surface, 0.0, turn)
     start = np.stack([first, np.zeros(paths)], axis=1)
-    ends = [
-        np.stack([_places(surface, 1.0, turn + r), np.ones(paths)], axis=1)
-        for r in (revolutions, -revolutions)
-    ]
+    ends = [np.stack([_places(surface, 1.0, turn + r), np.ones(paths)], axis=1) for r in (revolutions, -revolutions)]
     family = np.repeat([1, -1], paths)
     return Families(frozen(np.concatenate([start, start])), frozen(np.concatenate(ends)), frozen(family))
 

@@ -46,8 +46,13 @@ def lengths(paths: Paths) -> Lengths:
     np.cumsum(steps, axis=1, out=arc[:, 1:])
     clear = ~(paths.on_surface[:, :-1] & paths.on_surface[:, 1:])
     slip = np.fmax.reduce(paths.slip, axis=1, initial=0.0)  # fmax passes over NaN
-    return Lengths(frozen(arc), frozen(arc[:, -1]), frozen((steps * clear).sum(axis=1)),
-                   frozen(paths.gap.max(axis=1, initial=0.0)), frozen(slip))
+    return Lengths(
+        frozen(arc),
+        frozen(arc[:, -1]),
+        frozen((steps * clear).sum(axis=1)),
+        frozen(paths.gap.max(axis=1, initial=0.0)),
+        frozen(slip),
+    )
 
 
 def bridges(paths: Paths) -> Bridges:

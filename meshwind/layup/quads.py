@@ -127,7 +127,7 @@ class _Graph:
         tail, angle = (np.concatenate(part) for part in zip(strands, *loops, strict=True))
         outer = np.zeros(len(tail), dtype=bool)
         start, end = len(strands[0]), len(strands[0]) + len(loops[0][0])
-        outer[start + 1:end:2] = True  # against u on the start rim, along u on the end rim: the void is left
+        outer[start + 1 : end : 2] = True  # against u on the start rim, along u on the end rim: the void is left
         outer[end::2] = True
         return _Graph(tail, angle, outer, used, (kin[rims[0][1]], kin[rims[1][1]]))
 
@@ -159,9 +159,7 @@ def _loop_edges(count: int, first: int) -> tuple[Ints, Floats]:
     return _pairs(here, there, np.zeros(count), np.full(count, np.pi))
 
 
-def _strand_edges(
-    paths: Paths, crossings: Crossings, used: Ints, kin: Ints, ends: list[Ints]
-) -> tuple[Ints, Floats]:
+def _strand_edges(paths: Paths, crossings: Crossings, used: Ints, kin: Ints, ends: list[Ints]) -> tuple[Ints, Floats]:
     """Half-edges between consecutive nodes along each path, with their angles in the (u, v) plane."""
     step = np.diff(paths.uv[kin], axis=1)
     leave = np.arctan2(step[:, 0, 1], step[:, 0, 0])
@@ -171,8 +169,9 @@ def _strand_edges(
     node = np.arange(len(used))
     last = paths.uv.shape[1] - 1
     path = np.concatenate([kin, crossings.path_a[used], crossings.path_b[used], kin])
-    t = np.concatenate([np.full(len(kin), -1.0), crossings.t_a[used], crossings.t_b[used],
-                        np.full(len(kin), last + 1.0)])
+    t = np.concatenate(
+        [np.full(len(kin), -1.0), crossings.t_a[used], crossings.t_b[used], np.full(len(kin), last + 1.0)]
+    )
     nodes = np.concatenate([ends[0], node, node, ends[1]])
     forward = np.concatenate([leave, np.zeros(len(used)), sideways, leave])
     backward = np.concatenate([arrive, np.full(len(used), np.pi), sideways + np.pi, arrive])

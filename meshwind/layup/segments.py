@@ -81,7 +81,7 @@ def meetings(a: Floats, b: Floats, nu: int, nv: int) -> tuple[Ints, Ints, Floats
         for i in range(first, first + width):
             for j in range(low, high + 1):
                 cell = (i % nu) * nv + j
-                for m in members[starts[cell]:starts[cell + 1]]:
+                for m in members[starts[cell] : starts[cell + 1]]:
                     if seen[m] == k:  # met already in another cell that both touch
                         continue
                     seen[m] = k

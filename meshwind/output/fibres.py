@@ -15,13 +15,20 @@ def write_paths(path: Path, paths: Paths) -> None:
     p, n = paths.gap.shape
     figures = lengths(paths)
     point_data = {
-        "uv": paths.uv.reshape(-1, 2), "on_surface": paths.on_surface.ravel(), "gap": paths.gap.ravel(),
-        "normal": paths.normal.reshape(-1, 3), "slip": paths.slip.ravel(),
+        "uv": paths.uv.reshape(-1, 2),
+        "on_surface": paths.on_surface.ravel(),
+        "gap": paths.gap.ravel(),
+        "normal": paths.normal.reshape(-1, 3),
+        "slip": paths.slip.ravel(),
         "arc_length": figures.arc_length.ravel(),
     }
     cell_data = {
-        "path": np.arange(p), "family": paths.family, "length": figures.length,
-        "bridged_length": figures.bridged, "max_gap": figures.max_gap, "max_slip": figures.max_slip,
+        "path": np.arange(p),
+        "family": paths.family,
+        "length": figures.length,
+        "bridged_length": figures.bridged,
+        "max_gap": figures.max_gap,
+        "max_slip": figures.max_slip,
         "status": paths.status,
     }
     write_lines(path, paths.points.reshape(-1, 3), np.arange(p + 1) * n, point_data, cell_data)
@@ -40,7 +47,15 @@ def write_bridges(path: Path, paths: Paths) -> None:
 
 def write_crossings(path: Path, crossings: Crossings) -> None:
     """Write one vertex a crossing; the angle in degrees."""
-    write_vertices(path, crossings.points, {
-        "path_a": crossings.path_a, "path_b": crossings.path_b, "angle": np.degrees(crossings.angle),
-        "quality": np.abs(np.cos(crossings.angle)), "uv": crossings.uv, "on_surface": crossings.on_surface,
-    })
+    write_vertices(
+        path,
+        crossings.points,
+        {
+            "path_a": crossings.path_a,
+            "path_b": crossings.path_b,
+            "angle": np.degrees(crossings.angle),
+            "quality": np.abs(np.cos(crossings.angle)),
+            "uv": crossings.uv,
+            "on_surface": crossings.on_surface,
+        },
+    )

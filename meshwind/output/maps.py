@@ -86,8 +86,12 @@ def maps(on: Grid, layup: Layup, fit_error: Floats | None = None) -> dict[str, F
     flat = _FLAT / on.surface.size
     kind = np.where(k2 >= -flat, 1, np.where(k1 <= flat, -1, 0))
     data = {
-        "uv": on.uv, "normal": normal, "gaussian_curvature": k1 * k2, "mean_curvature": 0.5 * (k1 + k2),
-        "windability": windability(k1, k2, flat), "class": kind,
+        "uv": on.uv,
+        "normal": normal,
+        "gaussian_curvature": k1 * k2,
+        "mean_curvature": 0.5 * (k1 + k2),
+        "windability": windability(k1, k2, flat),
+        "class": kind,
         "angle": np.degrees(winding_angle(layup.paths, *on.shape)).ravel(),
         "coverage": layup.coverage.at(on.uv),
     }

@@ -64,8 +64,14 @@ def add_part(plotter: Any, scene: dict[str, Any]) -> None:
     part = pv.PolyData.from_regular_faces(scene["points"], scene["quads"])
     part.point_data["Normals"] = scene["normals"] / np.linalg.norm(scene["normals"], axis=1, keepdims=True)
     part.point_data.active_normals_name = "Normals"
-    add_smooth(plotter, part, color=PART, ambient=0.3, diffuse=0.8,
-               backface_params={"color": INSIDE, "ambient": 0.25, "interpolation": "Phong"})
+    add_smooth(
+        plotter,
+        part,
+        color=PART,
+        ambient=0.3,
+        diffuse=0.8,
+        backface_params={"color": INSIDE, "ambient": 0.25, "interpolation": "Phong"},
+    )
 
 
 def add_smooth(plotter: Any, mesh: Any, **look: Any) -> None:
@@ -97,8 +103,16 @@ def add_bridges(plotter: Any, scene: dict[str, Any], radius: float) -> None:
     lines = polylines(scene["bridges"] + radius * scene["bridge_normals"], scene["bridge_sizes"])
     lines.point_data["gap"] = scene["bridge_gap"]
     tubes = lines.tube(radius=1.6 * radius, n_sides=10)
-    add_smooth(plotter, tubes, scalars="gap", cmap=GAPS, show_scalar_bar=False,
-               clim=[0.0, float(scene["max_gap"])], ambient=0.4, diffuse=0.65)
+    add_smooth(
+        plotter,
+        tubes,
+        scalars="gap",
+        cmap=GAPS,
+        show_scalar_bar=False,
+        clim=[0.0, float(scene["max_gap"])],
+        ambient=0.4,
+        diffuse=0.65,
+    )
 
 
 def polylines(points: Any, sizes: Any) -> Any:

@@ -43,13 +43,17 @@ def report(
         "winding": {
             "revolutions": revolutions,
             "paths_per_family": int(max((paths.family == family).sum() for family in (1, -1))),
-            "particles": paths.gap.shape[1], "friction": paths.friction,
+            "particles": paths.gap.shape[1],
+            "friction": paths.friction,
         },
         "paths": _paths(paths),
         "crossings": {"count": len(layup.crossings), "angle": _spread(np.degrees(layup.crossings.angle))},
         "coverage": {
-            "min": layup.coverage.min, "median": layup.coverage.median, "max": layup.coverage.max,
-            "band_width": layup.coverage.width, "cells": list(layup.coverage.layers.shape),
+            "min": layup.coverage.min,
+            "median": layup.coverage.median,
+            "max": layup.coverage.max,
+            "band_width": layup.coverage.width,
+            "cells": list(layup.coverage.layers.shape),
         },
         "quads": _quads(layup),
         "model": _model(paths) | dict(model or {}),
@@ -84,8 +88,11 @@ def _version() -> str:
 
 def _mesh(mesh: Mesh, units: str) -> dict[str, Any]:
     return {
-        "name": mesh.name, "vertices": mesh.read_vertices or len(mesh.vertices),
-        "faces": mesh.read_faces or len(mesh.faces), "units": units, "diagonal": mesh.diagonal,
+        "name": mesh.name,
+        "vertices": mesh.read_vertices or len(mesh.vertices),
+        "faces": mesh.read_faces or len(mesh.faces),
+        "units": units,
+        "diagonal": mesh.diagonal,
         "repairs": list(mesh.repairs),
     }
 
@@ -94,11 +101,18 @@ def _surface(surface: Surface, chart: Chart | None) -> dict[str, Any]:
     error = surface.error
     fit: dict[str, Any] = {"rms": None, "max": None, "relative_max": None}
     if error is not None:
-        fit |= {"rms": error.rms, "max": error.max, "relative_max": error.relative_max,
-               "to_surface": {"rms": error.to_surface_rms, "max": error.to_surface_max},
-               "to_mesh": {"rms": error.to_mesh_rms, "max": error.to_mesh_max}}
-    return {"control_points": list(surface.control_points.shape[:2]), "fit_error": fit,
-            "flipped_triangles": 0 if chart is None else chart.flipped}
+        fit |= {
+            "rms": error.rms,
+            "max": error.max,
+            "relative_max": error.relative_max,
+            "to_surface": {"rms": error.to_surface_rms, "max": error.to_surface_max},
+            "to_mesh": {"rms": error.to_mesh_rms, "max": error.to_mesh_max},
+        }
+    return {
+        "control_points": list(surface.control_points.shape[:2]),
+        "fit_error": fit,
+        "flipped_triangles": 0 if chart is None else chart.flipped,
+    }
 
 
 def _paths(paths: Paths) -> dict[str, Any]:
@@ -131,14 +145,22 @@ def _spread(values: Floats) -> dict[str, float | None]:
 
 def _quads(layup: Layup) -> dict[str, Any]:
     mesh = layup.quads
-    return {"faces": len(mesh.quads) + len(mesh.triangles), "quads": len(mesh.quads),
-            "triangles": len(mesh.triangles), "left_out": list(mesh.left_out), "note": mesh.note}
+    return {
+        "faces": len(mesh.quads) + len(mesh.triangles),
+        "quads": len(mesh.quads),
+        "triangles": len(mesh.triangles),
+        "left_out": list(mesh.left_out),
+        "note": mesh.note,
+    }
 
 
 def _model(paths: Paths) -> dict[str, Any]:
     cost = paths.counters
     return {
-        "lifting": bool((~paths.on_surface).any()), "friction": paths.friction > 0.0,
-        "surface_evaluations": cost.evaluations, "foot_points": cost.feet, "block_solves": cost.solves,
+        "lifting": bool((~paths.on_surface).any()),
+        "friction": paths.friction > 0.0,
+        "surface_evaluations": cost.evaluations,
+        "foot_points": cost.feet,
+        "block_solves": cost.solves,
         "iterations": cost.iterations,
     }

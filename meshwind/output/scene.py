@@ -21,16 +21,25 @@ def scene(layup: Layup, name: str, units: str = "mm") -> dict[str, Any]:
     paths = layup.paths
     stride = -(-paths.gap.shape[1] // _MOST_POINTS)
     kept = np.unique(np.r_[np.arange(0, paths.gap.shape[1], stride), paths.gap.shape[1] - 1])
-    view = best_view(on.points, on.quads, paths.points.reshape(-1, 3), paths.normal.reshape(-1, 3),
-                     paths.gap.ravel())
+    view = best_view(on.points, on.quads, paths.points.reshape(-1, 3), paths.normal.reshape(-1, 3), paths.gap.ravel())
     normals = np.cross(on.frames[:, 1], on.frames[:, 2])
     return {
-        "title": _title(paths, name), "subtitle": _subtitle(layup, units), "units": units,
-        "points": on.points, "quads": on.quads, "normals": normals,
-        "paths": paths.points[:, kept], "path_normals": paths.normal[:, kept],
-        "family": paths.family, "taut": paths.status == Status.CONVERGED,
-        "max_gap": bridges(paths).max_gap.max(initial=0.0), "pitch": _pitch(layup),
-        "right": view.right, "up": view.up, "eye": view.eye, "centre": view.centre,
+        "title": _title(paths, name),
+        "subtitle": _subtitle(layup, units),
+        "units": units,
+        "points": on.points,
+        "quads": on.quads,
+        "normals": normals,
+        "paths": paths.points[:, kept],
+        "path_normals": paths.normal[:, kept],
+        "family": paths.family,
+        "taut": paths.status == Status.CONVERGED,
+        "max_gap": bridges(paths).max_gap.max(initial=0.0),
+        "pitch": _pitch(layup),
+        "right": view.right,
+        "up": view.up,
+        "eye": view.eye,
+        "centre": view.centre,
         "extent": np.array([view.width, view.height]),
     } | _bridges(paths, stride)
 
@@ -50,8 +59,12 @@ def _bridges(paths: Paths, stride: int) -> dict[str, Floats]:
     keep = (step % stride == 0) | (step == np.repeat(whole - 1, whole))
     row, column = np.repeat(spans.path, whole)[keep], (np.repeat(spans.first, whole) + step)[keep]
     sizes = np.add.reduceat(keep.astype(np.int64), begin) if len(begin) else begin
-    return {"bridges": paths.points[row, column], "bridge_normals": paths.normal[row, column],
-            "bridge_gap": paths.gap[row, column], "bridge_sizes": sizes}
+    return {
+        "bridges": paths.points[row, column],
+        "bridge_normals": paths.normal[row, column],
+        "bridge_gap": paths.gap[row, column],
+        "bridge_sizes": sizes,
+    }
 
 
 def _title(paths: Paths, name: str) -> str:

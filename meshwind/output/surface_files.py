@@ -20,5 +20,11 @@ def write_surface_npz(path: Path, surface: Surface) -> None:
     """Write the spline: with `periodic_u`, repeat the first three rows for scipy's BSpline."""
     knots_u, knots_v = surface.knots
     with path.open("wb") as file:
-        np.savez(file, control_points=surface.control_points, knots_u=knots_u, knots_v=knots_v,
-                 degree=np.int64(DEGREE), periodic_u=np.bool_(surface.periodic))
+        np.savez(
+            file,
+            control_points=surface.control_points,
+            knots_u=knots_u,
+            knots_v=knots_v,
+            degree=np.int64(DEGREE),
+            periodic_u=np.bool_(surface.periodic),
+        )

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshwind.cast import Floats, floats, frozen
+from meshwind.cast import Floats, floats, frozen, ints
 from meshwind.errors import BadInputError
 from meshwind.path.paths import Counters, Paths
 from meshwind.path.relax import relax_all
@@ -54,10 +54,7 @@ def solve(
         straight(first, last, particles) if initial is None else floats(initial, "initial", len(first), particles, 2)
     )
     count = len(curves)
-    if family is None:
-        sense = np.where(last[:, 0] >= first[:, 0], 1, -1)
-    else:
-        sense = np.asarray(family, dtype=np.int64)
+    sense = np.where(last[:, 0] >= first[:, 0], 1, -1) if family is None else ints(family, "family", count)
     middle = surface.control_points.reshape(-1, 3).mean(axis=0)
     net = np.ascontiguousarray(surface.net - middle)
     shape = (count, particles)

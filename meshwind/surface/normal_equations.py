@@ -63,7 +63,7 @@ def _bands(spans: int, order: int, periodic: bool) -> Floats:
     for p in range(4):
         rows = (np.arange(spans) + p) % n
         for r in range(4):
-            np.add.at(out, (rows, r - p + REACH), gram[p, r])
+            out[rows, r - p + REACH] += gram[p, r]
     return out
 
 
@@ -71,11 +71,11 @@ def thin_plate(spans_u: int, spans_v: int, length_u: float, length_v: float) -> 
     """Stencil (nu, nv, 7, 7) of the bending energy of a net that measures length_u by length_v on the part."""
     u = [_bands(spans_u, order, True) for order in range(3)]
     v = [_bands(spans_v, order, False) for order in range(3)]
-    out = 0.0
+    out = np.zeros((spans_u, spans_v + REACH, 7, 7))
     for a, b, factor in ((2, 0, 1.0), (1, 1, 2.0), (0, 2, 1.0)):
         scale = factor * length_u ** (1 - 2 * a) * length_v ** (1 - 2 * b)
-        out = out + scale * u[a][:, None, :, None] * v[b][None, :, None, :]
-    return np.asarray(out)
+        out += scale * u[a][:, None, :, None] * v[b][None, :, None, :]
+    return out
 
 
 def _fold(rows: int) -> Ints:
