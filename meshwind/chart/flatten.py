@@ -1,105 +1,139 @@
-"""Flatten an annulus to the periodic rectangle: two sparse harmonic systems, positive weights where needed."""
+"""Flatten an annulus to the periodic rectangle by sparse harmonic systems whose weights even out the stretch."""
 
-from typing import Any
+from dataclasses import dataclass
 
 import igl
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from meshwind.cast import Bools, Floats, frozen
+from meshwind.cast import Bools, Floats, Ints, frozen
 from meshwind.chart.chart import Chart
 from meshwind.chart.cut import far_side, seam
+from meshwind.chart.phase import canonical
 from meshwind.chart.spacing import even_speed
 from meshwind.errors import BadInputError
 from meshwind.mandrel.annulus import Annulus
+
+EVEN = 1.05
+"""Mean stretch (1 at best) up to which a chart is left as it is: mandrel-like parts need no second solve."""
+GAIN = 0.98
+"""Another round of re-weighting must bring the mean stretch below this share of the last."""
+ROUNDS = 8
+EXPONENT = 0.5
+"""Of the area stretch by which weights are divided: 0.25 needs twice the rounds, 1 overshoots."""
+LEAST_WEIGHT = 1e-2
+"""Weights that must be positive are at least this share of the median."""
 
 
 def flatten(annulus: Annulus) -> Chart:
     """Map the annulus one to one to u in turns and v in [0, 1], v = 0 on the start rim and 1 on the end rim.
 
     v is harmonic between the rims; u is harmonic with natural conditions at the rims and gains one turn across
-    the cut, so the twist between the ends comes out by itself and the cut leaves no trace.  Cotangent weights
-    are taken where they give an embedding; otherwise mean-value weights, which are positive and always do: the
-    annulus mirrored into a torus is then a discrete one-form embedding (Gortler, Gotsman and Thurston 2006).
-    v is then re-spaced so that the mean speed on the part is constant.  Raises BadInputError if a triangle
-    still flips, which only degenerate triangles can bring about.
+    the cut, so the twist between the ends comes out by itself and the cut leaves no trace.  Weights are
+    cotangents where these give an embedding, positive ones otherwise, which always do: the annulus mirrored
+    into a torus is then a discrete one-form embedding (Gortler, Gotsman and Thurston 2006).  Where the map
+    squeezes parts of the surface, weights are divided by the stretch and the systems solved again (Yoshizawa,
+    Belyaev and Seidel 2004), which keeps them positive.  At last v is re-spaced to a constant mean speed and u
+    turned to a canonical place.  Raises BadInputError if a triangle still flips, which only degenerate triangles
+    can bring about.
     """
     jump = far_side(annulus, seam(annulus)).astype(np.float64)
-    for weights in (_cotangents, _mean_values):
-        uv = _solve(annulus, weights(annulus), jump)
+    net = _Net.of(annulus, jump)
+    weights = net.cotangents
+    uv = _harmonic(annulus, net, weights)
+    corner = _corners(annulus, uv, jump)
+    if (_area(corner) <= 0).any():
+        weights = net.positive
+        uv = _harmonic(annulus, net, weights)
         corner = _corners(annulus, uv, jump)
-        if not (_area(corner) <= 0).any():
-            break
-    else:
         count = int((_area(corner) <= 0).sum())
-        raise BadInputError(f"{count} triangles flip in the flattening; remesh the part without slivers")
-    uv, corner = even_speed(annulus, uv, corner)
+        if count:
+            raise BadInputError(f"{count} triangles flip in the flattening; remesh the part without slivers")
+    uv, corner = _evened(annulus, net, weights, uv, corner, jump)
+    uv, corner = canonical(annulus, *even_speed(annulus, uv, corner))
     area = _area(corner)
-    space = igl.doublearea(annulus.vertices, annulus.faces) / 2
-    stretch = space / area
-    return Chart(
-        annulus,
-        frozen(uv),
-        frozen(corner),
-        int((area <= 0).sum()),
-        frozen(stretch * area.sum() / space.sum()),
-    )
+    return Chart(annulus, frozen(uv), frozen(corner), int((area <= 0).sum()), frozen(_stretch(annulus, area)))
 
 
-def _cotangents(annulus: Annulus) -> Floats:
-    """Half cotangents of the angles opposite the edges (1,2), (2,0), (0,1) of each triangle, (m, 3)."""
-    return np.asarray(igl.cotmatrix_entries(annulus.vertices, annulus.faces))
+@dataclass(frozen=True)
+class _Net:
+    """Undirected edges of the annulus: ends (e, 2), the turns that u gains along each, and cotangent weights."""
+
+    ends: Ints
+    gain: Floats
+    cotangents: Floats
+
+    @staticmethod
+    def of(annulus: Annulus, jump: Floats) -> "_Net":
+        F = annulus.faces
+        i, j = np.roll(F, -1, axis=1).ravel(), np.roll(F, 1, axis=1).ravel()
+        gain = (np.roll(jump, 1, axis=1) - np.roll(jump, -1, axis=1)).ravel()
+        low, high = np.minimum(i, j), np.maximum(i, j)
+        # two directed copies of an edge, from its two triangles, agree but for the sign of the turn
+        _, first, place = np.unique(low * len(annulus.vertices) + high, return_index=True, return_inverse=True)
+        cotangent = igl.cotmatrix_entries(annulus.vertices, F).ravel()
+        return _Net(
+            np.stack([low[first], high[first]], axis=1),
+            np.where(i[first] < j[first], gain[first], -gain[first]),
+            np.bincount(place, cotangent),
+        )
+
+    @property
+    def positive(self) -> Floats:
+        """The cotangents, raised to a positive bound where they are below it."""
+        return np.maximum(self.cotangents, LEAST_WEIGHT * np.median(np.abs(self.cotangents)))
 
 
-def _mean_values(annulus: Annulus) -> Floats:
-    """Mean-value weights of each corner towards the next and the previous one, (m, 3, 2) (Floater 2003)."""
-    V, F = annulus.vertices, annulus.faces
-    a = V[np.roll(F, -1, axis=1)] - V[F]
-    b = V[np.roll(F, 1, axis=1)] - V[F]
-    la, lb = np.linalg.norm(a, axis=2), np.linalg.norm(b, axis=2)
-    dot = (a * b).sum(axis=2) / (la * lb)
-    cross = np.linalg.norm(np.cross(a, b), axis=2) / (la * lb)
-    tangent = cross / (1 + dot)
-    return np.asarray(np.stack([tangent / la, tangent / lb], axis=2))
-
-
-def _edges(annulus: Annulus, weights: Floats, jump: Floats) -> tuple[Any, ...]:
-    """Directed edges as (from, to, weight, jump of u), from cotangents (m, 3) or mean values (m, 3, 2)."""
-    F = annulus.faces
-    i, j = np.roll(F, -1, axis=1), np.roll(F, 1, axis=1)
-    ti, tj = np.roll(jump, -1, axis=1), np.roll(jump, 1, axis=1)
-    if weights.ndim == 2:
-        pairs = [(i, j, weights, tj - ti), (j, i, weights, ti - tj)]
-    else:
-        pairs = [(F, i, weights[..., 0], ti - jump), (F, j, weights[..., 1], tj - jump)]
-    return tuple(np.concatenate([p[k].ravel() for p in pairs]) for k in range(4))
-
-
-def _solve(annulus: Annulus, weights: Floats, jump: Floats) -> Floats:
+def _harmonic(annulus: Annulus, net: _Net, weights: Floats) -> Floats:
+    """Solve for u and v with the given edge weights, (n, 2)."""
     n = len(annulus.vertices)
-    start, end, weight, gain = _edges(annulus, weights, jump)
-    off = sparse.csc_array((weight, (start, end)), shape=(n, n))
+    (i, j), turned = net.ends.T, weights * net.gain
+    off = sparse.csc_array((np.r_[weights, weights], (np.r_[i, j], np.r_[j, i])), shape=(n, n))
     laplacian = (sparse.diags_array(np.asarray(off.sum(axis=1))) - off).tocsc()
-    turned = np.bincount(start, weights=weight * gain, minlength=n)
     uv = np.zeros((n, 2))
-    free_u = np.ones(n, dtype=bool)
-    free_u[annulus.rims[0][0]] = False
-    uv[free_u, 0] = _inner(laplacian, free_u, turned[free_u])
+    free = np.ones(n, dtype=bool)
+    free[annulus.rims[0][0]] = False
+    uv[free, 0] = _inner(laplacian, free, np.bincount(i, turned, n) - np.bincount(j, turned, n))
     uv[annulus.rims[1], 1] = 1.0
-    free_v = np.ones(n, dtype=bool)
-    free_v[np.concatenate(annulus.rims)] = False
-    uv[free_v, 1] = _inner(laplacian, free_v, -(laplacian @ uv[:, 1])[free_v])
+    free[np.concatenate(annulus.rims)] = False
+    uv[free, 1] = _inner(laplacian, free, -(laplacian @ uv[:, 1]))
     return uv
 
 
-def _inner(laplacian: sparse.csc_array, free: Bools, right: Any) -> Floats:
+def _inner(laplacian: sparse.csc_array, free: Bools, right: Floats) -> Floats:
     where = np.flatnonzero(free)
     if not len(where):
         return np.zeros(0)
     block = laplacian[where][:, where].tocsc()
     factor = splu(block, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    return np.asarray(factor.solve(right))
+    return np.asarray(factor.solve(right[where]))
+
+
+def _evened(
+    annulus: Annulus, net: _Net, weights: Floats, uv: Floats, corner: Floats, jump: Floats
+) -> tuple[Floats, Floats]:
+    """Divide the weights by the stretch at their ends until the mean stretch no longer falls."""
+    space = igl.doublearea(annulus.vertices, annulus.faces) / 2
+    faces, n = annulus.faces.ravel(), len(annulus.vertices)
+    around = np.bincount(faces, np.repeat(space, 3), n)
+    stretch = _stretch(annulus, _area(even_speed(annulus, uv, corner)[1]))
+    for _ in range(ROUNDS):
+        mean = float(np.average(stretch, weights=space))
+        if mean < EVEN:
+            break
+        at = (np.bincount(faces, np.repeat(stretch * space, 3), n) / around) ** EXPONENT
+        weights = np.maximum(weights, net.positive) if (weights <= 0).any() else weights
+        weights = weights / np.sqrt(at[net.ends[:, 0]] * at[net.ends[:, 1]])
+        trial = _harmonic(annulus, net, weights)
+        trial_corner = _corners(annulus, trial, jump)
+        if (_area(trial_corner) <= 0).any():
+            break
+        trial_stretch = _stretch(annulus, _area(even_speed(annulus, trial, trial_corner)[1]))
+        if np.average(trial_stretch, weights=space) > GAIN * mean:
+            break
+        uv, corner, stretch = trial, trial_corner, trial_stretch
+    return uv, corner
 
 
 def _corners(annulus: Annulus, uv: Floats, jump: Floats) -> Floats:
@@ -111,3 +145,9 @@ def _corners(annulus: Annulus, uv: Floats, jump: Floats) -> Floats:
 def _area(corner: Floats) -> Floats:
     a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
     return np.asarray((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2)
+
+
+def _stretch(annulus: Annulus, area: Floats) -> Floats:
+    """Area scale of each triangle from the plane to the part, over its mean."""
+    space = igl.doublearea(annulus.vertices, annulus.faces) / 2
+    return np.asarray(space / area * (area.sum() / space.sum()))

@@ -23,6 +23,16 @@ class End:
     loop: Ints | None = None
     lip: Lip | None = None
 
+    @property
+    def is_pole(self) -> bool:
+        """Whether an opening has to be cut here."""
+        return self.loop is None and self.lip is None
+
+    @property
+    def place(self) -> str:
+        """Coordinates of the centre, as text."""
+        return "(" + ", ".join(f"{x:.4g}" for x in self.centre + 0.0) + ")"
+
 
 @dataclass(frozen=True)
 class Wish:

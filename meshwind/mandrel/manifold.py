@@ -3,9 +3,10 @@
 import igl
 import numpy as np
 
-from meshwind.cast import Floats, Ints
+from meshwind.cast import Bools, Floats, Ints
 from meshwind.errors import BadInputError
 from meshwind.mandrel.measure import areas, volume
+from meshwind.mandrel.subdivide import subdivide
 from meshwind.mandrel.topology import Edges, components, edges, pairs, patches
 
 
@@ -41,16 +42,20 @@ def _smallest_at_edges(found: Edges, label: Ints, size: Floats) -> Ints:
 def without_odd_faces(vertices: Floats, faces: Ints) -> Ints:
     """Drop the smallest face at each edge where one patch meets itself with an odd number of faces over two."""
     while True:
-        found = edges(faces)
-        odd = (found.count > 2) & (found.count % 2 == 1)
+        count = edges(faces).count
+        odd = (count > 2) & (count % 2 == 1)
         if not odd.any():
             return faces
-        at = found.of_face.ravel()
-        face = np.repeat(np.arange(len(faces)), 3)
-        chosen = np.flatnonzero(odd[at])
-        order = chosen[np.lexsort((face[chosen], areas(vertices, faces)[face[chosen]], at[chosen]))]
-        first = np.unique(at[order], return_index=True)[1]
-        faces = np.delete(faces, face[order[first]], axis=0)
+        faces = _without_smallest(vertices, faces, odd)
+
+
+def _without_smallest(vertices: Floats, faces: Ints, chosen: Bools) -> Ints:
+    """Drop the smallest face at each of the chosen edges (e,)."""
+    at, size = edges(faces).of_face.ravel(), areas(vertices, faces)
+    half = np.flatnonzero(chosen[at])
+    half = half[np.lexsort((half, size[half // 3], at[half]))]
+    first = np.unique(at[half], return_index=True)[1]
+    return np.delete(faces, half[first] // 3, axis=0)
 
 
 def oriented(faces: Ints) -> Ints:
@@ -70,7 +75,22 @@ def separated(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
     """Split edges where four and more oriented faces meet, and vertices where separate fans meet.
 
     At an edge the faces are paired about the solid wedges between them, so that bodies that touch come apart.
+    Where the wedges hang together at both ends of the edge, it is halved, so that its middle can be split.
     """
+    points, split = _separated(vertices, faces)
+    found = edges(split)
+    double = found.ends[found.count > 2]
+    if len(double) == 0:
+        return points, split
+    points = np.concatenate([points, points[double].mean(axis=1)])
+    points, split = _separated(points, subdivide(points, split, double, len(points) - len(double)))
+    while edges(split).count.max() > 2:  # faces that bound no wedge, whichever way they are paired
+        points, split = _separated(points, _without_smallest(points, split, edges(split).count > 2))
+    return points, split
+
+
+def _separated(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
+    """One vertex for each fan of faces that are paired across edges."""
     found = edges(faces)
     plain = pairs(found.of_face, np.flatnonzero(found.count == 2))
     crowded = _wedges(vertices, faces, found)
@@ -106,10 +126,15 @@ def _wedges(vertices: Floats, faces: Ints, found: Edges) -> tuple[Ints, Ints]:
     angle = np.arctan2(np.einsum("ij,ij->i", apex, up), np.einsum("ij,ij->i", apex, side))
     order = np.lexsort((angle, edge))
     half, edge, along = half[order], edge[order], along[order]
-    # An outward face along the edge has the solid before it, one against the edge behind it: start on the latter.
     starts = np.flatnonzero(np.r_[True, edge[1:] != edge[:-1]]) if len(edge) else np.empty(0, dtype=np.int64)
     size = np.diff(np.r_[starts, len(edge)])
-    place = np.arange(len(edge)) - np.repeat(starts, size)
-    shifted = np.repeat(starts, size) + (place + np.repeat(along[starts], size)) % np.repeat(size, size)
-    ring = half[shifted]
+    first, many = np.repeat(starts, size), np.repeat(size, size)
+    place = np.arange(len(edge)) - first
+    following = first + (place + 1) % many
+    # Faces that bound a wedge run against each other; where that leaves the choice, an outward face along the
+    # edge has the solid before it, one against the edge behind it.
+    alike = np.where(place % 2 == 0, 1, -1) * (along == along[following])
+    balance = np.add.reduceat(alike, starts) if len(starts) else np.empty(0, dtype=np.int64)
+    shift = np.where(balance == 0, along[starts], balance > 0).astype(np.int64)
+    ring = half[first + (place + np.repeat(shift, size)) % many]
     return ring[::2], ring[1::2]

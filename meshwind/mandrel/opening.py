@@ -8,24 +8,25 @@ import numpy as np
 
 from meshwind.cast import Floats, Ints
 from meshwind.mandrel.measure import areas, edge_lengths
-from meshwind.mandrel.poles import Lip
+from meshwind.mandrel.poles import Lip, nearest
 from meshwind.mandrel.skin import Skin, edge_points, with_vertices
 from meshwind.mandrel.subdivide import crossing
-from meshwind.mandrel.topology import boundary, compact, edges, euler, patches
+from meshwind.mandrel.topology import boundary, compact, edges, euler, loops, patches
 
 _Field: TypeAlias = Callable[[Floats], Floats]  # signed distance of points to the rim's sphere or plane
 
 SNAP = 0.05
 """A vertex closer to the rim than this part of an edge slides along it onto the rim, which spares slivers."""
 _FINEST = 0.5  # longest edge near the rim over its radius
+_CLEAR = 1e-6  # distance to the other pole over the radius
 _ROUNDS = 40
 
 
-def opened(surface: Skin, pole: Floats, radius: float, most: float) -> Skin | None:
+def opened(surface: Skin, pole: Floats, other: Floats, radius: float, most: float) -> Skin | None:
     """Cut the opening whose rim lies at Euclidean distance `radius` from the pole, to round-off.
 
-    None where the sphere holds no disc of the surface about the pole, where the disc reaches a boundary, or
-    where its area is over `most`.
+    None where the sphere holds no disc of the surface about the pole, where the disc reaches a boundary or
+    holds the `other` pole, or where its area is over `most`.
     """
     fine = _refined(surface, pole, radius)
     rim = np.unique(boundary(fine.faces))
@@ -36,16 +37,30 @@ def opened(surface: Skin, pole: Floats, radius: float, most: float) -> Skin | No
     disc = split.faces[removed]
     if np.isin(rim, disc).any() or euler(disc) != 1 or areas(split.vertices, disc).sum() > most:
         return None
-    return _kept(replace(split, faces=split.faces[~removed]))
+    reach = float(np.linalg.norm(nearest(split.vertices, disc, other) - other))
+    kept = _kept(replace(split, faces=split.faces[~removed]))
+    return None if reach < _CLEAR * radius or pinched(kept.faces) else kept
 
 
-def without_lining(surface: Skin, lip: Lip) -> Skin:
-    """Cut the surface at the lip and keep the largest piece below it: the outside of the cup."""
+def pinched(faces: Ints) -> bool:
+    """Whether two rims, or one with itself, meet in a vertex."""
+    tails = boundary(faces)[:, 0]
+    return len(np.unique(tails)) < len(tails)
+
+
+def without_lining(surface: Skin, lip: Lip) -> Skin | None:
+    """Cut the surface at the lip and keep the largest piece below it, the outside of the cup.
+
+    None where its new rim is not one loop: a ragged lip.
+    """
     split, side = _split(surface, lambda points: points @ lip.direction - lip.height)
     below = split.faces[(side[split.faces] <= 0).all(axis=1)]
     label = patches(below)
     largest = np.argmax(np.bincount(label, areas(split.vertices, below)))
-    return _kept(replace(split, faces=below[label == largest]))
+    kept = _kept(replace(split, faces=below[label == largest]))
+    if pinched(kept.faces):
+        return None
+    return kept if len(loops(kept.faces)) == 1 + len(loops(surface.faces)) else None
 
 
 def _refined(surface: Skin, pole: Floats, radius: float) -> Skin:

@@ -41,7 +41,8 @@ def _normals(vertices: Floats, faces: Ints) -> Floats:
     On a ball of 5120 faces trimming's new vertices are 28 times as close to it as with angle weights (9e-7, 2.5e-5).
     """
     squares = edge_lengths(vertices, faces) ** 2
-    weights = 1.0 / (squares * np.roll(squares, 1, axis=1))
+    squares = squares * np.roll(squares, 1, axis=1)
+    weights = np.divide(1.0, squares, out=np.zeros_like(squares), where=squares > 0)
     share = weights[:, :, None] * area_vectors(vertices, faces)[:, None]
     total = np.column_stack([np.bincount(faces.ravel(), share[:, :, k].ravel(), len(vertices)) for k in range(3)])
     return _unit(total.astype(np.float64))

@@ -7,16 +7,14 @@ from meshwind.errors import BadInputError
 from meshwind.mandrel.annulus import Annulus
 from meshwind.mandrel.ends import End, choose, parse
 from meshwind.mandrel.holes import filled, is_defect
-from meshwind.mandrel.measure import areas, edge_lengths, volume
+from meshwind.mandrel.measure import areas, volume
 from meshwind.mandrel.mesh import Mesh
-from meshwind.mandrel.opening import opened, without_lining
+from meshwind.mandrel.opening import pinched
+from meshwind.mandrel.radius import with_openings
 from meshwind.mandrel.skin import Skin, skin
 from meshwind.mandrel.topology import euler, loops, patches
 
 _FLAT = 1e-6  # volume over area^(3/2): 0.094 for a ball, 6e-3 for a rod a thousand times as long as thick
-_SHARE = 1.0 / 3.0  # of the area, the most that an opening may take
-_DEFAULT, _LEAST, _WIDEST_BY_EDGES = 0.4, 0.02, 0.5  # radius of an opening over the mean radius of the part
-_EDGES = 3.0  # that a default opening spans at least, by the faces' shortest ones: long ones tell nothing
 
 
 def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Annulus:
@@ -48,7 +46,7 @@ def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Ann
         vertices, faces = filled(vertices, faces, loop)
     trusted = np.arange(len(vertices)) < len(mesh.vertices)
     surface = skin(vertices, faces, trusted)
-    surface, radii = _with_openings(surface, pair, opening, mesh.name)
+    surface, radii = with_openings(surface, pair, opening, mesh.name)
     return _assembled(mesh, surface, pair, [_told(words, pair, radii, opening), *notes])
 
 
@@ -86,61 +84,9 @@ def _without_defects(mesh: Mesh, rims: list[Ints]) -> tuple[Floats, Ints, list[I
     return vertices, faces, [loop for loop, defect in zip(rims, defects, strict=True) if not defect], notes
 
 
-def _with_openings(surface: Skin, pair: list[End], wanted: float | None, name: str) -> tuple[Skin, list[float]]:
-    """Cut at each lip and open each pole; also gives the radii."""
-    for end in pair:
-        if end.lip is not None:
-            surface = without_lining(surface, end.lip)
-    area = float(areas(surface.vertices, surface.faces).sum())
-    direction = pair[1].centre - pair[0].centre
-    gap = float(np.linalg.norm(direction))
-    if gap < 1e-6 * float(np.linalg.norm(np.ptp(surface.vertices, axis=0))):
-        raise BadInputError(f"{name}: both ends fall on one place, {_point(pair[0].centre)}; give ends further apart")
-    mean_radius = area / (2.0 * np.pi * float(np.ptp(surface.vertices @ (direction / gap))))
-    edge = float(np.median(edge_lengths(surface.vertices, surface.faces).min(axis=1)))
-    radii = []
-    for end in pair:
-        if end.loop is None and end.lip is None:
-            usual = max(_DEFAULT * mean_radius, min(_EDGES * edge, _WIDEST_BY_EDGES * mean_radius))
-            radius, least = wanted or usual, _LEAST * mean_radius
-            surface, radius = _open(surface, end.centre, radius, least, _SHARE * area, wanted is None, name)
-            radii.append(radius)
-    return surface, radii
-
-
-def _open(
-    surface: Skin, pole: Floats, radius: float, least: float, most: float, may_shrink: bool, name: str
-) -> tuple[Skin, float]:
-    """Cut one opening; a radius that the user did not give shrinks until it fits."""
-    result = opened(surface, pole, radius, most) if radius >= least else None
-    while result is None and may_shrink and radius * 0.8 >= least:
-        radius *= 0.8
-        result = opened(surface, pole, radius, most)
-    if result is not None:
-        return result, radius
-    largest = _largest(surface, pole, least, radius, most)
-    if largest is None:
-        raise BadInputError(f"{name}: no opening fits at {_point(pole)}; choose other ends: x, y, z or two points")
-    size = "small" if radius < least else "large"
-    allowed = f"give a radius between {least:.3g} and {largest:.3g}"
-    raise BadInputError(f"{name}: opening {radius:g} is too {size} at {_point(pole)}; {allowed}")
-
-
-def _largest(surface: Skin, pole: Floats, least: float, bad: float, most: float) -> float | None:
-    """Largest opening that fits, to 2 percent below, or None where the least one does not."""
-    size = float(np.linalg.norm(np.ptp(surface.vertices, axis=0)))
-    good, bad = least, max(min(bad, size), 2.0 * least) if bad > least else size
-    if opened(surface, pole, good, most) is None:
-        return None
-    while bad > 1.02 * good:
-        middle = float(np.sqrt(good * bad))
-        good, bad = (good, middle) if opened(surface, pole, middle, most) is None else (middle, bad)
-    return good
-
-
 def _assembled(mesh: Mesh, surface: Skin, pair: list[End], words: list[str]) -> Annulus:
     """The annulus, once it is proved to be one."""
-    rims = loops(surface.faces)
+    rims = [] if pinched(surface.faces) else loops(surface.faces)
     if len(rims) != 2 or euler(surface.faces) != 0 or patches(surface.faces).any():
         raise BadInputError(
             f"{mesh.name}: trimming left {len(rims)} rims where a tube has 2; choose other ends or a smaller opening"
@@ -161,7 +107,7 @@ def _offset(rim: Floats, pair: list[End]) -> float:
 
 def _told(words: str, pair: list[End], radii: list[float], opening: float | None) -> str:
     """How the ends were chosen, in a sentence."""
-    places = " and ".join(_point(end.centre) for end in pair)
+    places = " and ".join(end.place for end in pair)
     if any(end.lip is not None for end in pair):
         words += ", the lip where one is hollow"
     if not radii:
@@ -169,7 +115,3 @@ def _told(words: str, pair: list[End], radii: list[float], opening: float | None
         return f"{words}, at {places}{unused}"
     sizes = " and ".join(dict.fromkeys(f"{radius:.4g}" for radius in radii))
     return f"{words}, at {places}, opened to radius {sizes}"
-
-
-def _point(point: Floats) -> str:
-    return "(" + ", ".join(f"{x:.4g}" for x in point + 0.0) + ")"

@@ -18,8 +18,8 @@ ROUNDS = 4
 """Refits after moving every vertex's parameters to its foot; the error settles in 3 or 4."""
 SMOOTHING = 1e-4
 """Bending energy against data at the net's own wave length: small beside the spline's error, of the same order."""
-GAIN = 0.7
-"""A finer net must bring the error below this share of the coarser one's, or the mesh supports no finer."""
+GAIN = 0.95
+"""A finer net must bring the expected error below this share of the best so far, or the mesh supports no finer."""
 PATIENCE = 2
 """So many finer nets in a row without that gain end the search: one alone may be bad luck."""
 COARSEST = 8
@@ -50,11 +50,15 @@ class _Samples:
 
 @dataclass(frozen=True)
 class _Fitted:
-    """One net's fit: the surface, the samples at their feet, and the trusted vertices' distances."""
+    """One net's fit: the surface, the samples at their feet, and the trusted vertices' distances.
+
+    expected is the rms distance to be expected of vertices that were not fitted (generalised cross-validation,
+    Craven and Wahba 1979): it grows where a net follows noise.
+    """
 
     surface: Surface
     samples: _Samples
-    rms: float
+    expected: float
     largest: float
 
 
@@ -88,8 +92,8 @@ def fit(chart: Chart, tolerance: float = 1e-5) -> Surface:
             if fitted.largest <= tolerance * diagonal or idle == PATIENCE:
                 break
             trial = _fit(fitted.samples, spans, lengths)
-            idle = 0 if trial.rms < GAIN * fitted.rms else idle + 1
-            if trial.rms < fitted.rms:
+            idle = 0 if trial.expected < GAIN * fitted.expected else idle + 1
+            if trial.expected < fitted.expected:
                 fitted = trial
     certificate = _certify(fitted.surface, fitted.samples, chart, middle)
     return Surface(fitted.surface.control_points + middle, True, certificate)
@@ -140,7 +144,9 @@ def _fit(samples: _Samples, spans: tuple[int, int], lengths: tuple[float, float]
     assert surface is not None  # ROUNDS >= 1
     uv, distance = _correct(surface, samples, uv)
     distance = distance[samples.trusted]
-    return _Fitted(surface, replace(samples, uv=uv), float(np.sqrt(np.mean(distance**2))), float(distance.max()))
+    spared = 1.0 - nu * nv / len(distance)
+    expected = float(np.sqrt(np.mean(distance**2))) / max(spared, 1e-3)
+    return _Fitted(surface, replace(samples, uv=uv), expected, float(distance.max()))
 
 
 def _correct(surface: Surface, samples: _Samples, uv: Floats) -> tuple[Floats, Floats]:
