@@ -85,7 +85,8 @@ def separated(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
     points = np.concatenate([points, points[double].mean(axis=1)])
     points, split = _separated(points, subdivide(points, split, double, len(points) - len(double)))
     while edges(split).count.max() > 2:  # faces that bound no wedge, whichever way they are paired
-        points, split = _separated(points, _without_smallest(points, split, edges(split).count > 2))
+        split = without_odd_faces(points, _without_smallest(points, split, edges(split).count > 2))
+        points, split = _separated(points, split)
     return points, split
 
 
