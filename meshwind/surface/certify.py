@@ -1,0 +1,53 @@
+"""The fit's certificate: distances both ways between the surface and the mesh."""
+
+import igl
+import numpy as np
+
+from meshwind.cast import Floats
+from meshwind.surface.samples import Samples
+from meshwind.surface.surface import FitError, Surface
+
+DENSITY, MOST = 4, 256
+"""Samples a span, and at most, in each direction."""
+WORST, FINER = 40, 9
+"""So many of the worst samples are looked at again on a grid of FINER x FINER within their own cell."""
+
+
+def certify(surface: Surface, samples: Samples) -> FitError:
+    """Distances of the trusted vertices to the surface, and of a dense sample of the surface to the facets.
+
+    The surface is about the samples' middle.  The sampled maximum is sharpened around the worst places, so that
+    it is the true one to a few per cent.
+    """
+    _, distance = samples.corrected(surface)
+    distance = distance[samples.trusted]
+    there, largest = to_mesh(surface, samples)
+    return FitError(
+        to_surface_rms=float(np.sqrt(np.mean(distance**2))),
+        to_surface_max=float(distance.max()),
+        to_mesh_rms=float(np.sqrt(np.mean(there**2))),
+        to_mesh_max=largest,
+        diagonal=samples.chart.annulus.mesh.diagonal,
+    )
+
+
+def to_mesh(surface: Surface, samples: Samples) -> tuple[Floats, float]:
+    """Distances of an even sample of the surface to the facets, and the largest, found more closely."""
+    counts = np.minimum(DENSITY * np.array(surface.spans), MOST)
+    u, v = np.meshgrid(np.arange(counts[0]) / counts[0], np.linspace(0, 1, counts[1] + 1), indexing="ij")
+    uv = np.stack([u.ravel(), v.ravel()], axis=1)
+    distance = _distances(surface, samples, uv)
+    worst = uv[np.argsort(-distance, kind="stable")[:WORST]]
+    step = np.linspace(-0.5, 0.5, FINER)
+    offset = np.stack(np.meshgrid(step, step), axis=-1).reshape(-1, 2) / counts
+    closer = (worst[:, None] + offset).reshape(-1, 2)
+    closer[:, 1] = np.clip(closer[:, 1], 0.0, 1.0)
+    return distance, max(float(distance.max()), float(_distances(surface, samples, closer).max()))
+
+
+def _distances(surface: Surface, samples: Samples, uv: Floats) -> Floats:
+    annulus = samples.chart.annulus
+    squared, _, _ = igl.point_mesh_squared_distance(
+        surface.points(uv), annulus.vertices - samples.middle, annulus.faces
+    )
+    return np.asarray(np.sqrt(squared))
