@@ -184,6 +184,26 @@ def test_disc_shaped_part_is_wound_about_its_short_axis() -> None:
     assert abs(axis @ turn[:, 2]) / np.linalg.norm(axis) > 1 - 1e-6
 
 
+def test_an_opening_keeps_clear_of_the_other_end() -> None:
+    thin = moved(ball(), np.diag([3.0, 3.0, 0.05]), np.zeros(3), 1.0)
+    found = trim(thin)
+    assert [rim[:, 2].mean() > 0 for rim in rim_points(found)] == [False, True]
+    with pytest.raises(BadInputError, match=r"opening 0\.9 is too large"):
+        trim(pear(), "0,-1,0 0.5,-1,0", 0.9)
+
+
+def test_ragged_cup_is_cut_below_its_lip() -> None:
+    vertices, faces = cup()
+    found = trim((vertices + np.random.default_rng(1).normal(size=vertices.shape) * [0.01, 0.01, 0.02], faces))
+    lip = next(rim for rim in rim_points(found) if rim[:, 2].min() > 1)
+    assert lip[:, 2].min() > 0.9 * 3.0 and np.ptp(lip @ lip_normal(lip)) < 1e-9
+
+
+def lip_normal(rim: Floats) -> Floats:
+    """Unit normal of the plane through a rim."""
+    return np.asarray(np.linalg.svd(rim - rim.mean(axis=0))[2][2])
+
+
 def test_cup_ends_at_its_lip_without_its_lining() -> None:
     found = trim(cup())
     assert np.linalg.norm(found.vertices[:, :2], axis=1).max() == pytest.approx(1.0, abs=1e-12)

@@ -140,6 +140,15 @@ def test_part_that_touches_itself_is_split_along_the_edge() -> None:
     assert volume(mesh.vertices, mesh.faces) == pytest.approx(len(cells), rel=1e-12)
 
 
+def test_edge_whose_wedges_hang_together_at_both_ends_is_halved() -> None:
+    # two rows on the diagonal, bridged at both ends: they touch along the middle edge of three
+    cells = [(x, y, y) for x in range(3) for y in range(2)] + [(0, 1, 0), (2, 1, 0)]
+    mesh = mesh_from(*voxels(cells))
+    assert_sound(mesh)
+    assert euler(mesh.faces) == 0 and loops(mesh.faces) == []  # a handle without width
+    assert volume(mesh.vertices, mesh.faces) == pytest.approx(len(cells), rel=1e-12)
+
+
 def test_pieces_that_touch_in_a_vertex_come_apart() -> None:
     vertices, faces = pear()
     small = moved(ball(1), np.eye(3), np.zeros(3), 0.1)

@@ -6,7 +6,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from meshwind.cast import Floats, Ints
+from meshwind.cast import Bools, Floats, Ints
 from meshwind.mandrel.measure import areas, edge_lengths
 from meshwind.mandrel.poles import Lip, nearest
 from meshwind.mandrel.skin import Skin, edge_points, with_vertices
@@ -28,24 +28,42 @@ def opened(surface: Skin, pole: Floats, other: Floats, radius: float, most: floa
     None where the sphere holds no disc of the surface about the pole, where the disc reaches a boundary or
     holds the `other` pole, or where its area is over `most`.
     """
-    fine = _refined(surface, pole, radius)
-    rim = np.unique(boundary(fine.faces))
+    near = _around(surface, pole, radius)
+    fine = _refined(replace(surface, faces=surface.faces[near]), pole, radius)
+    rim = np.unique(boundary(fine.faces))  # where the neighbourhood ends is out of the disc's reach
     split, side = _split(fine, lambda points: np.linalg.norm(points - pole, axis=1) - radius)
     removed = _disc(split, side, pole)
     if removed is None:
         return None
-    disc = split.faces[removed]
+    disc, kept = split.faces[removed], split.faces[~removed]
     if np.isin(rim, disc).any() or euler(disc) != 1 or areas(split.vertices, disc).sum() > most:
         return None
     reach = float(np.linalg.norm(nearest(split.vertices, disc, other) - other))
-    kept = _kept(replace(split, faces=split.faces[~removed]))
-    return None if reach < _CLEAR * radius or pinched(kept.faces) else kept
+    if reach < _CLEAR * radius or pinched(kept, disc):
+        return None
+    return _kept(replace(split, faces=np.concatenate([surface.faces[~near], kept])))
 
 
-def pinched(faces: Ints) -> bool:
-    """Whether two rims, or one with itself, meet in a vertex."""
+def pinched(faces: Ints, among: Ints | None = None) -> bool:
+    """Whether two rims, or one with itself, meet in a vertex, one of the given ones if any are."""
     tails = boundary(faces)[:, 0]
+    tails = tails if among is None else tails[np.isin(tails, among)]
     return len(np.unique(tails)) < len(tails)
+
+
+def _around(surface: Skin, pole: Floats, radius: float) -> Bools:
+    """Mask (m,) of the faces that the sphere may reach and of those about them: an opening changes no other."""
+    reached = np.zeros(len(surface.vertices), dtype=bool)
+    reached[surface.faces[_near(surface, pole, radius)]] = True
+    return np.asarray(reached[surface.faces].any(axis=1))
+
+
+def _near(surface: Skin, pole: Floats, radius: float) -> Bools:
+    """Mask (m,) of the faces whose bounding sphere the sphere reaches."""
+    corners = surface.vertices[surface.faces]
+    middle = corners.mean(axis=1)
+    reach = np.sqrt(((corners - middle[:, None]) ** 2).sum(axis=2).max(axis=1))
+    return np.asarray(np.linalg.norm(middle - pole, axis=1) - reach < radius)
 
 
 def without_lining(surface: Skin, lip: Lip) -> Skin | None:
@@ -66,10 +84,7 @@ def without_lining(surface: Skin, lip: Lip) -> Skin | None:
 def _refined(surface: Skin, pole: Floats, radius: float) -> Skin:
     """Halve long edges near the rim, so that it gets enough vertices even on the large faces of a flat end."""
     for _ in range(_ROUNDS):
-        corners = surface.vertices[surface.faces]
-        middle = corners.mean(axis=1)
-        reach = np.linalg.norm(corners - middle[:, None], axis=2).max(axis=1)
-        near = np.linalg.norm(middle - pole, axis=1) - reach < radius
+        near = _near(surface, pole, radius)
         long = edge_lengths(surface.vertices, surface.faces[near]) > _FINEST * radius
         if not long.any():
             break
@@ -115,7 +130,7 @@ def _snapped(surface: Skin, side: Ints, cut: Ints, t: Floats, points: Floats) ->
     return replace(surface, vertices=vertices, trusted=trusted), side
 
 
-def _disc(surface: Skin, side: Ints, pole: Floats) -> np.ndarray | None:
+def _disc(surface: Skin, side: Ints, pole: Floats) -> Bools | None:
     """Mask (m,) of the faces within the sphere that hang together with the vertex closest to the pole."""
     within = np.flatnonzero((side[surface.faces] <= 0).all(axis=1))
     if len(within) == 0:

@@ -31,7 +31,7 @@ def extreme(vertices: Floats, faces: Ints, direction: Floats) -> tuple[Floats, L
         level, points, cap = _cap(vertices, faces, direction, share)
         area = areas(points, cap)
         centre = (area[:, None] * points[cap].mean(axis=1)).sum(axis=0) / area.sum()
-        hit = _shoot(vertices, faces, centre, direction)
+        hit = _shoot(vertices, faces, centre, direction) if euler(cap) == 0 or share == _CAPS[-1] else None
         if hit is not None and euler(cap) == 0:
             out = points[cap].mean(axis=1) - centre
             width = np.sqrt((area * (out**2).sum(axis=1)).sum() / area.sum())

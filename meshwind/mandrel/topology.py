@@ -86,7 +86,9 @@ def euler(faces: Ints) -> int:
 
 def compact(used: Ints, size: int) -> tuple[Ints, Ints]:
     """Sorted indices in use, and the new index (size,) of each old one, -1 where it is not in use."""
-    keep = np.unique(used)
+    mark = np.zeros(size, dtype=bool)
+    mark[used] = True
+    keep = np.flatnonzero(mark)
     renumber = np.full(size, -1, dtype=np.int64)
     renumber[keep] = np.arange(len(keep))
     return keep, renumber
