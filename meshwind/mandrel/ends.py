@@ -30,8 +30,9 @@ class End:
 
     @property
     def place(self) -> str:
-        """Coordinates of the centre, as text."""
-        return "(" + ", ".join(f"{x:.4g}" for x in self.centre + 0.0) + ")"
+        """Coordinates of the centre, as text, without round-off where one is 0."""
+        kept = np.where(np.abs(self.centre) > 1e-9 * np.abs(self.centre).max(), self.centre, 0.0)
+        return "(" + ", ".join(f"{x:.4g}" for x in kept) + ")"
 
 
 @dataclass(frozen=True)
