@@ -6,7 +6,7 @@ from numba import njit
 from meshwind.path.contact import pull
 from meshwind.path.state import copy_particle, touch_down
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, S, unit_normal
-from meshwind.surface.foot import foot
+from meshwind.surface.tree import nearest_foot
 
 EVALUATIONS, FEET, SOLVES, ITERATIONS = range(4)
 """Places of a path's counters."""
@@ -89,7 +89,7 @@ def assemble(state, periodic, before, after, contacts, diagonal, upper, metric, 
 
 
 @njit(cache=True)
-def advance(net, periodic, size, step, move, contacts, count, state, trial, tally):
+def advance(net, periodic, boxes, levels, size, step, move, contacts, count, state, trial, tally):
     """Write into `trial` the state after a step that stays outside the body.
 
     Touching particles move on the surface by step * move (count, 2); lifted ones are carried along by their two
@@ -124,16 +124,16 @@ def advance(net, periodic, size, step, move, contacts, count, state, trial, tall
             trial[5][m] = clear[m] - np.sqrt(moved)
             # the gap shrinks by no more than the particle moved: mostly no foot point is needed
             if trial[5][m] <= 0.0:
-                land(net, periodic, size, trial, m, tally)
+                land(net, periodic, boxes, levels, size, trial, m, tally)
         i = j
 
 
 @njit(cache=True)
-def land(net, periodic, size, trial, m, tally):
+def land(net, periodic, boxes, levels, size, trial, m, tally):
     """Find the foot of lifted particle m; let it touch there if it has sunk (Algorithm 2), else note its gap."""
     Y, uv, frames, normal, touching, clear = trial
     tally[FEET] += 1
-    tally[EVALUATIONS] += foot(net, periodic, Y[m], uv[m], frames[m])
+    tally[EVALUATIONS] += nearest_foot(net, periodic, boxes, levels, Y[m], uv[m], frames[m])
     unit_normal(frames[m], normal[m])
     height = 0.0
     square = 0.0

@@ -15,7 +15,7 @@ from meshwind.path.contact import lift, lift_once, link
 from meshwind.path.newton import EVALUATIONS, FEET, ITERATIONS, SOLVES, advance, assemble, sag
 from meshwind.path.state import blank, copy, energy, place, space_evenly
 from meshwind.surface.evaluate import S, unit_normal
-from meshwind.surface.foot import foot
+from meshwind.surface.tree import nearest_foot
 
 CONVERGED, SLID_START, SLID_END, UNSTABLE, STALLED = range(5)
 
@@ -29,7 +29,7 @@ DESCENT = 1e-4
 
 
 @njit(cache=True)
-def relax(net, periodic, size, tolerance, limit, state, tally):
+def relax(net, periodic, boxes, levels, size, tolerance, limit, state, tally):
     """Bring the path that starts as the curve state[1] (n, 2) on the surface to rest, in place.
 
     Returns (residual, status): residual is the largest unbalanced force over the tension, an angle in radians.
@@ -87,7 +87,7 @@ def relax(net, periodic, size, tolerance, limit, state, tally):
         step = min(1.0, LONGEST_MOVE / max(reach, 1e-300))
         accepted = False
         while step > SMALLEST_STEP:
-            advance(net, periodic, size, step, move, contacts, count, state, trial, tally)
+            advance(net, periodic, boxes, levels, size, step, move, contacts, count, state, trial, tally)
             then, length_then = energy(trial[0])
             # below round-off the energy cannot judge a step, and Newton's is right
             blind = slope <= 1e-13 * now and then <= now * (1.0 + 1e-12)
@@ -126,6 +126,8 @@ def relax_all(
     last,
     net,
     periodic,
+    boxes,
+    levels,
     size,
     tolerance,
     limit,
@@ -144,12 +146,12 @@ def relax_all(
     frames = np.empty((n, 6, 3))
     for p in range(first, last):
         state = (X[p], uv[p], frames, normal[p], touching[p], gap[p])
-        residual[p], status[p] = relax(net, periodic, size, tolerance, limit, state, tallies[p])
-        certify(net, periodic, state, slip[p], tallies[p])
+        residual[p], status[p] = relax(net, periodic, boxes, levels, size, tolerance, limit, state, tallies[p])
+        certify(net, periodic, boxes, levels, state, slip[p], tallies[p])
 
 
 @njit(cache=True)
-def certify(net, periodic, state, slip, tally):
+def certify(net, periodic, boxes, levels, state, slip, tally):
     """True gaps of the lifted particles, and the slip |kg| / kn that each touching one needs."""
     X, uv, frames, normal, touching, gap = state
     n = len(X)
@@ -157,7 +159,7 @@ def certify(net, periodic, state, slip, tally):
         slip[i] = np.nan
         if not touching[i]:
             tally[FEET] += 1
-            tally[EVALUATIONS] += foot(net, periodic, X[i], uv[i], frames[i])
+            tally[EVALUATIONS] += nearest_foot(net, periodic, boxes, levels, X[i], uv[i], frames[i])
             unit_normal(frames[i], normal[i])
             square = 0.0
             for k in range(3):

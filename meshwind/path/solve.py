@@ -7,6 +7,7 @@ from meshwind.cast import Floats, floats, frozen, ints
 from meshwind.errors import BadInputError
 from meshwind.path.paths import Counters, Paths
 from meshwind.path.relax import relax_all
+from meshwind.surface import tree
 from meshwind.surface.surface import Surface
 from meshwind.threads import spread
 
@@ -57,12 +58,13 @@ def solve(
     sense = np.where(last[:, 0] >= first[:, 0], 1, -1) if family is None else ints(family, "family", count)
     middle = surface.control_points.reshape(-1, 3).mean(axis=0)
     net = np.ascontiguousarray(surface.net - middle)
+    boxes, levels = tree.build(net, surface.periodic, tree.DENSITY)
     shape = (count, particles)
     X, normal, uv = np.empty((*shape, 3)), np.empty((*shape, 3)), np.array(curves)
     touching, gap, slip = np.empty(shape, np.bool_), np.zeros(shape), np.empty(shape)
     residual, status, tallies = np.empty(count), np.empty(count, np.int64), np.zeros((count, 4), np.int64)
     results = X, uv, normal, touching, gap, slip, residual, status, tallies
-    spread(relax_all, count, 1, net, surface.periodic, surface.size, tolerance, iterations, *results)
+    spread(relax_all, count, 1, net, surface.periodic, boxes, levels, surface.size, tolerance, iterations, *results)
     total = tallies.sum(axis=0)
     return Paths(
         surface=surface,
