@@ -24,10 +24,11 @@ class Status(IntEnum):
 
 _ADVICE = {
     Status.CONVERGED: "taut equilibrium",
-    Status.SLID_OFF_START: "the fibre slides off the start rim (v=0): use fewer revolutions or a wider opening",
-    Status.SLID_OFF_END: "the fibre slides off the end rim (v=1): use fewer revolutions or a wider opening",
-    Status.UNSTABLE: "no stable taut path was found between these ends: use fewer revolutions",
-    Status.STALLED: "the solver stopped before equilibrium: try more particles or a smoother surface (--tolerance)",
+    Status.SLID_OFF_START: "the fibre slides off the start rim (v=0): use fewer revolutions, or a wider opening there",
+    Status.SLID_OFF_END: "the fibre slides off the end rim (v=1): use fewer revolutions, or a wider opening there",
+    Status.UNSTABLE: "the fibre is balanced on a ridge and would fall to either side: change the revolutions a little",
+    Status.STALLED: "the solver stopped before the fibre was at rest: use fewer revolutions, or a smoother surface "
+    "(--tolerance 1e-3)",
 }
 
 

@@ -13,7 +13,7 @@ from meshwind.threads import spread
 
 TOLERANCE = 1e-10
 """Largest unbalanced force at rest, over the tension (an angle in radians)."""
-ITERATIONS = 300
+ITERATIONS = 1000
 
 
 def straight(start: Floats, end: Floats, particles: int) -> Floats:
