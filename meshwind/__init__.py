@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from meshwind.mandrel import Mesh as Mesh
     from meshwind.mandrel import annulus as annulus
     from meshwind.mandrel import read as read
+    from meshwind.output.image_files import read_image as read_image
     from meshwind.path import Paths as Paths
     from meshwind.path import Status as Status
     from meshwind.path import solve as solve
@@ -32,13 +33,16 @@ if TYPE_CHECKING:
     from meshwind.surface import FitError as FitError
     from meshwind.surface import Surface as Surface
     from meshwind.surface import fit as fit
+    from meshwind.surface import from_image as from_image
     from meshwind.surface import shapes as shapes
+    from meshwind.surface import surface_image as surface_image
 
 _HOME = {
     "BadInputError": "errors",
     "Mesh": "mandrel", "Annulus": "mandrel", "read": "mandrel", "annulus": "mandrel",
     "Chart": "chart", "flatten": "chart",
     "Surface": "surface", "FitError": "surface", "fit": "surface", "shapes": "surface",
+    "surface_image": "surface", "from_image": "surface", "read_image": "output.image_files",
     "Paths": "path", "Status": "path", "solve": "path",
     "Families": "layup", "Layup": "layup", "families": "layup", "assess": "layup",
     "Result": "pipeline", "wind": "pipeline",

@@ -2,6 +2,7 @@
 
 from meshwind.surface import shapes
 from meshwind.surface.fit import fit
+from meshwind.surface.image import from_image, surface_image
 from meshwind.surface.surface import FitError, Surface
 
-__all__ = ["FitError", "Surface", "fit", "shapes"]
+__all__ = ["FitError", "Surface", "fit", "from_image", "shapes", "surface_image"]

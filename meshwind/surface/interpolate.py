@@ -15,15 +15,19 @@ Formula: TypeAlias = Callable[[Floats, Floats], Floats]
 
 def interpolate(formula: Formula, spans: tuple[int, int] = (128, 128), periodic: bool = True) -> Surface:
     """Interpolate `formula` by a uniform bicubic surface; the error falls with the fourth power of the spans."""
-    u = _sites(spans[0], periodic)
-    v = _sites(spans[1], False)
-    values = formula(*np.meshgrid(u, v, indexing="ij"))
-    net = _control(values, u, spans[0], periodic)
-    net = np.swapaxes(_control(np.swapaxes(net, 0, 1), v, spans[1], False), 0, 1)
+    u = sites(spans[0], periodic)
+    v = sites(spans[1], False)
+    return through(formula(*np.meshgrid(u, v, indexing="ij")), spans, periodic)
+
+
+def through(values: Floats, spans: tuple[int, int], periodic: bool = True) -> Surface:
+    """The one bicubic surface with so many spans that takes on `values` (p, q, 3) at the `sites` in u and in v."""
+    net = _control(values, sites(spans[0], periodic), spans[0], periodic)
+    net = np.swapaxes(_control(np.swapaxes(net, 0, 1), sites(spans[1], False), spans[1], False), 0, 1)
     return Surface(net, periodic)
 
 
-def _sites(spans: int, periodic: bool) -> Floats:
+def sites(spans: int, periodic: bool) -> Floats:
     """Where to interpolate: the knots, and at open ends the middle of the first and last span as well."""
     knots = np.arange(spans + (not periodic)) / spans
     return knots if periodic else np.sort(np.r_[knots, 0.5 / spans, 1 - 0.5 / spans])
