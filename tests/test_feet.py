@@ -1,0 +1,52 @@
+"""Foot points and gaps against closed forms and brute force, where a local search goes wrong."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from meshwind.path import Status, solve
+from meshwind.surface import Surface, shapes, tree
+
+RIBS = shapes.revolution(lambda z: 1 + 0.3 * np.cos(4 * np.pi * z), 0.0, 4.0, (96, 192))
+
+
+def nearest(surface: Surface, point: tuple[float, float, float], guess: tuple[float, float]) -> float:
+    """Distance by the tree and Newton from a guess that may be far off."""
+    boxes, levels = tree.build(surface.net, surface.periodic, tree.DENSITY)
+    at, uv = np.empty((6, 3)), np.array(guess)
+    tree.nearest_foot(surface.net, surface.periodic, boxes, levels, np.array(point), uv, at)
+    assert surface.points(uv[None])[0] == pytest.approx(at[0], abs=1e-12)
+    assert abs(uv[0] - guess[0]) <= 0.5 + 1e-9
+    return float(np.linalg.norm(at[0] - point))
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(st.floats(0, 1), st.floats(0.2, 2.5), st.floats(0.2, 3.8), st.floats(0, 1), st.floats(0, 1))
+def test_no_sample_is_nearer_than_the_foot(turn: float, radius: float, z: float, u: float, v: float) -> None:
+    """Among ribs, from any guess: not one of 200,000 samples of the surface is nearer."""
+    point = radius * np.cos(2 * np.pi * turn), radius * np.sin(2 * np.pi * turn), z
+    w = np.linspace(0, 1, 200_001)
+    r = 1 + 0.3 * np.cos(16 * np.pi * w)
+    brute = np.hypot(r - radius, 4 * w - z).min()  # the foot on a shape of revolution lies in the point's half-plane
+    assert nearest(RIBS, point, (u, v)) <= brute + 1e-5  # the spline itself is 4e-6 off the formula
+
+
+@pytest.mark.parametrize("start", [0.27, 0.54, 0.63, 0.72, 0.81])
+def test_no_path_passes_through_a_rib(start: float) -> None:
+    """A particle carried across a rib must not take the far flank for the near one."""
+    paths = solve(RIBS, [(start, 0)], [(start + 2, 1)])
+    X = paths.points[0]
+    depth = np.hypot(X[:, 0], X[:, 1]) - (1 + 0.3 * np.cos(4 * np.pi * X[:, 2]))
+    assert paths.status[0] == Status.CONVERGED
+    assert depth.min() > -1e-4
+
+
+def test_gap_above_a_waist_is_the_true_distance() -> None:
+    """On the axis plane of r = sqrt(1 + z^2) Newton can stop at a saddle; the true gap at z=0 is closed form."""
+    surface = shapes.hyperboloid(1.0, 1.0, 2.0)
+    paths = solve(surface, [(0, 0)], [(0, 1)])
+    middle = paths.points[0, 200]
+    reach = np.hypot(middle[0], middle[1])
+    z = np.linspace(-2, 2, 400_001)
+    assert paths.gap[0, 200] == pytest.approx(np.hypot(np.sqrt(1 + z * z) - reach, z - middle[2]).min(), abs=1e-7)
