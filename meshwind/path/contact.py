@@ -25,12 +25,13 @@ def link(touching, before, after):
 
 
 @njit(cache=True)
-def lift(X, normal, touching, slack, before, after):
+def lift(X, normal, touching, slack, deep, before, after):
     """Release every touching particle that its neighbours pull off the surface (Algorithm 1).
 
-    The force is the weighted one of (5.2): with uneven gaps the unweighted test of Algorithm 1 has the wrong
-    sign.  One pass with backtracking, as in a convex hull scan, reaches the fixed point that the source finds
-    by repeated sweeps.  A pull up to `slack` counts as none.  Returns how many were released.
+    The force is the weighted one of (5.2): with uneven gaps the unweighted test of Algorithm 1 has the wrong sign.
+    With `deep`, one pass with backtracking, as in a convex hull scan, reaches the fixed point that the source finds
+    by repeated sweeps; without, only particles that their present neighbours pull off are released.  A pull up to
+    `slack` counts as none.  Returns how many were released.
     """
     link(touching, before, after)
     released = 0
@@ -38,31 +39,15 @@ def lift(X, normal, touching, slack, before, after):
     i, n = after[0], len(touching)
     while i < n - 1:
         pull(X, i, before[i], after[i], force)
-        off = force[0] * normal[i, 0] + force[1] * normal[i, 1] + force[2] * normal[i, 2]
-        if off > slack:
+        p, q = before[i], after[i]
+        i_next = q
+        if force[0] * normal[i, 0] + force[1] * normal[i, 1] + force[2] * normal[i, 2] > slack:
             touching[i] = False
             released += 1
-            p, q = before[i], after[i]
-            after[p], before[q] = q, p
-            i = p if p > 0 else q
-        else:
-            i = after[i]
-    return released
-
-
-@njit(cache=True)
-def lift_once(X, normal, touching, slack, before, after):
-    """Release only particles that their present neighbours pull off: the cautious form of `lift`."""
-    link(touching, before, after)
-    released = 0
-    force = np.empty(3)
-    i, n = after[0], len(touching)
-    while i < n - 1:
-        pull(X, i, before[i], after[i], force)
-        off = force[0] * normal[i, 0] + force[1] * normal[i, 1] + force[2] * normal[i, 2]
-        if off > slack:
-            touching[i] = False
-            released += 1
-        i = after[i]
-    link(touching, before, after)
+            if deep:
+                after[p], before[q] = q, p
+                i_next = p if p > 0 else q
+        i = i_next
+    if not deep:
+        link(touching, before, after)
     return released

@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from meshwind.path.block_tridiagonal import solve
-from meshwind.path.contact import lift, lift_once, link
+from meshwind.path.contact import lift, link
 from meshwind.path.newton import EVALUATIONS, FEET, ITERATIONS, SOLVES, advance, assemble, sag
 from meshwind.path.state import blank, copy, energy, place, space_evenly
 from meshwind.surface.evaluate import S, unit_normal
@@ -56,16 +56,14 @@ def relax(net, periodic, boxes, levels, size, tolerance, limit, state, tally):
         for i in range(n):
             kept[i] = touching[i]
         released = 0
-        if caution == 0:
-            released = lift(X, normal, touching, PULL * spacing, before, after)
-        elif caution == 1:
-            released = lift_once(X, normal, touching, PULL * spacing, before, after)
+        if caution < 2:
+            released = lift(X, normal, touching, PULL * spacing, caution == 0, before, after)
         else:
             link(touching, before, after)
         count, force = assemble(state, periodic, before, after, contacts, diagonal, upper, metric, right)
         residual = max(force, sag(X, after)) / spacing
         if released == 0 and residual <= tolerance:
-            if caution == 2 and lift_once(X, normal, touching, PULL * spacing, before, after) > 0:
+            if caution == 2 and lift(X, normal, touching, PULL * spacing, False, before, after) > 0:
                 break  # at rest but for pulls that no step could follow
             tally[SOLVES] += 1
             if not solve(diagonal, upper, metric, 0.0, right, count, move, work):

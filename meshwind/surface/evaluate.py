@@ -25,50 +25,49 @@ def locate(t, spans, periodic):
     return k, x - k
 
 
+@njit(inline="always", cache=True)
+def basis(x):
+    """The four cubic weights at local coordinate x of a span."""
+    y = 1.0 - x
+    return (
+        y * y * y / 6.0,
+        (4.0 - 6.0 * x * x + 3.0 * x * x * x) / 6.0,
+        (4.0 - 6.0 * y * y + 3.0 * y * y * y) / 6.0,
+        x * x * x / 6.0,
+    )
+
+
+@njit(inline="always", cache=True)
+def slope(x, spans):
+    """First derivatives of the weights by the parameter."""
+    y = 1.0 - x
+    return (
+        -0.5 * y * y * spans,
+        (1.5 * x * x - 2.0 * x) * spans,
+        (-1.5 * y * y + 2.0 * y) * spans,
+        0.5 * x * x * spans,
+    )
+
+
+@njit(inline="always", cache=True)
+def bend(x, spans):
+    """Second derivatives of the weights by the parameter."""
+    square = float(spans) * spans
+    return (1.0 - x) * square, (3.0 * x - 2.0) * square, (1.0 - 3.0 * x) * square, x * square
+
+
 @njit(cache=True)
 def frame(net, periodic, u, v, out):
     """Write position and derivatives s, s_u, s_v, s_uu, s_uv, s_vv at (u, v) into out (6, 3)."""
     nu, nv = net.shape[0] - 3, net.shape[1] - 3
     i, x = locate(u, nu, periodic)
     j, y = locate(v, nv, False)
-    x1, y1 = 1.0 - x, 1.0 - y
-    b = (
-        x1 * x1 * x1 / 6.0,
-        (4.0 - 6.0 * x * x + 3.0 * x * x * x) / 6.0,
-        (4.0 - 6.0 * x1 * x1 + 3.0 * x1 * x1 * x1) / 6.0,
-        x * x * x / 6.0,
-    )
-    d = (
-        -0.5 * x1 * x1 * nu,
-        (1.5 * x * x - 2.0 * x) * nu,
-        (-1.5 * x1 * x1 + 2.0 * x1) * nu,
-        0.5 * x * x * nu,
-    )
-    nn = float(nu) * nu
-    e = (x1 * nn, (3.0 * x - 2.0) * nn, (3.0 * x1 - 2.0) * nn, x * nn)
-    c = (
-        y1 * y1 * y1 / 6.0,
-        (4.0 - 6.0 * y * y + 3.0 * y * y * y) / 6.0,
-        (4.0 - 6.0 * y1 * y1 + 3.0 * y1 * y1 * y1) / 6.0,
-        y * y * y / 6.0,
-    )
-    f = (
-        -0.5 * y1 * y1 * nv,
-        (1.5 * y * y - 2.0 * y) * nv,
-        (-1.5 * y1 * y1 + 2.0 * y1) * nv,
-        0.5 * y * y * nv,
-    )
-    mm = float(nv) * nv
-    g = (y1 * mm, (3.0 * y - 2.0) * mm, (3.0 * y1 - 2.0) * mm, y * mm)
+    b, d, e = basis(x), slope(x, nu), bend(x, nu)
+    c, f, g = basis(y), slope(y, nv), bend(y, nv)
     for k in range(3):
         s = su = sv = suu = suv = svv = 0.0
         for p in range(4):
-            n0, n1, n2, n3 = (
-                net[i + p, j, k],
-                net[i + p, j + 1, k],
-                net[i + p, j + 2, k],
-                net[i + p, j + 3, k],
-            )
+            n0, n1, n2, n3 = net[i + p, j, k], net[i + p, j + 1, k], net[i + p, j + 2, k], net[i + p, j + 3, k]
             q = c[0] * n0 + c[1] * n1 + c[2] * n2 + c[3] * n3
             qv = f[0] * n0 + f[1] * n1 + f[2] * n2 + f[3] * n3
             qvv = g[0] * n0 + g[1] * n1 + g[2] * n2 + g[3] * n3
@@ -78,12 +77,8 @@ def frame(net, periodic, u, v, out):
             sv += b[p] * qv
             suv += d[p] * qv
             svv += b[p] * qvv
-        out[0, k] = s
-        out[1, k] = su
-        out[2, k] = sv
-        out[3, k] = suu
-        out[4, k] = suv
-        out[5, k] = svv
+        out[S, k], out[SU, k], out[SV, k] = s, su, sv
+        out[SUU, k], out[SUV, k], out[SVV, k] = suu, suv, svv
 
 
 @njit(cache=True)
@@ -92,28 +87,12 @@ def position(net, periodic, u, v, out):
     nu, nv = net.shape[0] - 3, net.shape[1] - 3
     i, x = locate(u, nu, periodic)
     j, y = locate(v, nv, False)
-    x1, y1 = 1.0 - x, 1.0 - y
-    b = (
-        x1 * x1 * x1 / 6.0,
-        (4.0 - 6.0 * x * x + 3.0 * x * x * x) / 6.0,
-        (4.0 - 6.0 * x1 * x1 + 3.0 * x1 * x1 * x1) / 6.0,
-        x * x * x / 6.0,
-    )
-    c = (
-        y1 * y1 * y1 / 6.0,
-        (4.0 - 6.0 * y * y + 3.0 * y * y * y) / 6.0,
-        (4.0 - 6.0 * y1 * y1 + 3.0 * y1 * y1 * y1) / 6.0,
-        y * y * y / 6.0,
-    )
+    b, c = basis(x), basis(y)
     for k in range(3):
         s = 0.0
         for p in range(4):
-            s += b[p] * (
-                c[0] * net[i + p, j, k]
-                + c[1] * net[i + p, j + 1, k]
-                + c[2] * net[i + p, j + 2, k]
-                + c[3] * net[i + p, j + 3, k]
-            )
+            n0, n1, n2, n3 = net[i + p, j, k], net[i + p, j + 1, k], net[i + p, j + 2, k], net[i + p, j + 3, k]
+            s += b[p] * (c[0] * n0 + c[1] * n1 + c[2] * n2 + c[3] * n3)
         out[k] = s
 
 

@@ -7,30 +7,20 @@ from numba import njit
 from scipy.linalg import solveh_banded
 
 from meshwind.cast import Floats, Ints
+from meshwind.surface.evaluate import basis
 
 REACH = 3
 """Two control points interact when they are at most this many rows and columns apart."""
 
 
 @njit(cache=True)
-def _weights(x, out):
-    y = 1.0 - x
-    out[0] = y * y * y / 6.0
-    out[1] = (4.0 - 6.0 * x * x + 3.0 * x * x * x) / 6.0
-    out[2] = (4.0 - 6.0 * y * y + 3.0 * y * y * y) / 6.0
-    out[3] = x * x * x / 6.0
-
-
-@njit(cache=True)
 def accumulate(uv, points, weight, spans_u, spans_v, stencil, right):
     """Add every weighted sample to the normal matrix's stencil (nu, nv, 7, 7) and right side (nu, nv, 3)."""
-    b, c = np.empty(4), np.empty(4)
     for n in range(len(uv)):
         x = (uv[n, 0] - floor(uv[n, 0])) * spans_u
         y = uv[n, 1] * spans_v
         i, j = min(int(x), spans_u - 1), min(max(int(floor(y)), 0), spans_v - 1)
-        _weights(x - i, b)
-        _weights(y - j, c)
+        b, c = basis(x - i), basis(y - j)
         for p in range(4):
             row = (i + p) % spans_u
             for q in range(4):
