@@ -218,7 +218,7 @@ def test_holes_that_are_no_ends_are_filled_and_told() -> None:
     whole = trim(cone())
     pinholes = trim(punctured(cone(), 200, 150, 438))
     assert "filled 1 hole of missing faces" in pinholes.ends and "filled 1 other open rim" in pinholes.ends
-    assert (~pinholes.trusted).sum() == 2
+    assert (~pinholes.trusted).sum() == 1  # a missing face comes back as it was
     big = trim(without_patch(cone(around=48, along=36), [0.8, 0, 1.5], 0.3))
     assert "filled 1 other open rim" in big.ends and len(loops(big.mesh.faces)) == 3
     for found in (pinholes, big):

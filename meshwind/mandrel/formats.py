@@ -10,6 +10,7 @@ import numpy as np
 from meshwind.cast import Floats, Ints
 from meshwind.errors import BadInputError
 from meshwind.mandrel.cells import CellBlock, triangles
+from meshwind.mandrel.damage import check_obj, check_stl
 from meshwind.mandrel.legacy import check_legacy
 
 _VTK_KINDS = {
@@ -32,10 +33,19 @@ def by_trimesh(path: Path) -> tuple[Floats, Ints]:
     """Read STL, PLY, OBJ, OFF, GLB or GLTF; the parts of a scene are joined where it places them."""
     import trimesh
 
+    kind = path.suffix.lower()
+    if kind == ".stl":
+        check_stl(path)
+    elif kind == ".obj":
+        check_obj(path)
     log = logging.getLogger("trimesh")
     before, log.disabled = log.disabled, True
     try:
         loaded = trimesh.load(path, force="mesh", process=False)
+    except (LookupError, ValueError):
+        if kind == ".obj":
+            check_obj(path, failed=True)
+        raise
     finally:
         log.disabled = before
     faces = np.asarray(getattr(loaded, "faces", np.empty((0, 3))), dtype=np.int64)

@@ -23,7 +23,9 @@ def loop_size(vertices: Floats, loop: Ints) -> float:
 
 
 def filled(vertices: Floats, faces: Ints, loop: Ints) -> tuple[Floats, Ints]:
-    """Close a loop, given in the sense of its faces, by the fan to its centroid, which becomes the last vertex."""
+    """Close a loop, given in the sense of its faces, by one face or by the fan to its centroid, the last vertex."""
+    if len(loop) == 3:
+        return vertices, np.concatenate([faces, loop[None, ::-1]])
     centre = np.full(len(loop), len(vertices))
     fan = np.column_stack([np.roll(loop, -1), loop, centre])
     return np.concatenate([vertices, loop_centroid(vertices, loop)[None]]), np.concatenate([faces, fan])

@@ -5,12 +5,14 @@ from numpy.typing import ArrayLike
 
 from meshwind.cast import Floats, Ints, floats, frozen
 from meshwind.errors import BadInputError
-from meshwind.mandrel import manifold
+from meshwind.mandrel import cracks, manifold
 from meshwind.mandrel.measure import areas, volume
 from meshwind.mandrel.mesh import Mesh
 from meshwind.mandrel.slivers import without_slivers
 from meshwind.mandrel.topology import compact, patches
 from meshwind.mandrel.weld import weld, without_collapsed, without_duplicates
+
+_FARTHEST = 1e-8  # extent over distance from the origin: what is less has lost half its digits
 
 
 def mesh_from(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> Mesh:
@@ -29,6 +31,7 @@ def mesh_from(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> Mesh
     points, triangles = weld(points, triangles)
     _note(notes, size - len(points), "welded {} that lay on another", "vertex", "vertices")
     triangles = _drop_useless(triangles, notes, name)
+    points, triangles = _close_cracks(points, triangles, notes)
     points, triangles = _make_manifold(points, triangles, notes)
     triangles = _largest(points, triangles, notes)
     manifold.check_orientable(triangles, name)
@@ -62,6 +65,11 @@ def _check_size(points: Floats, name: str) -> None:
     size = float(np.abs(points).max())
     if not 1e-50 < size < 1e50:
         raise BadInputError(f"{name}: coordinates up to {size:g} are out of range; scale the mesh to ordinary units")
+    extent = float(np.ptp(points, axis=0).max())
+    if 0 < extent < _FARTHEST * size:
+        raise BadInputError(
+            f"{name}: lies {size:.2g} from the origin, too far for its size of {extent:.2g}; move it there"
+        )
 
 
 def _referenced(points: Floats, faces: Ints) -> tuple[Floats, Ints]:
@@ -85,6 +93,13 @@ def _drop_useless(faces: Ints, notes: list[str], name: str) -> Ints:
     if len(single) == 0:
         raise BadInputError(f"{name}: no face is left, all are collapsed; check the mesh's units and export it again")
     return single
+
+
+def _close_cracks(vertices: Floats, faces: Ints, notes: list[str]) -> tuple[Floats, Ints]:
+    """Join boundaries that face each other across a crack, and halve edges at which a neighbour's vertex hangs."""
+    points, whole, count, widest = cracks.closed(vertices, faces)
+    _note(notes, count, f"closed cracks up to {widest:.2g} wide at {{}}", "vertex", "vertices")
+    return points, whole
 
 
 def _make_manifold(vertices: Floats, faces: Ints, notes: list[str]) -> tuple[Floats, Ints]:

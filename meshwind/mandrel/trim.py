@@ -5,6 +5,7 @@ import numpy as np
 from meshwind.cast import Floats, Ints, frozen
 from meshwind.errors import BadInputError
 from meshwind.mandrel.annulus import Annulus
+from meshwind.mandrel.chords import without_chords
 from meshwind.mandrel.ends import End, choose, parse
 from meshwind.mandrel.holes import filled, is_defect
 from meshwind.mandrel.measure import areas, volume
@@ -47,7 +48,7 @@ def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Ann
     trusted = np.arange(len(vertices)) < len(mesh.vertices)
     surface = skin(vertices, faces, trusted)
     surface, radii = with_openings(surface, pair, opening, mesh.name)
-    return _assembled(mesh, surface, pair, [_told(words, pair, radii, opening), *notes])
+    return _assembled(mesh, without_chords(surface), pair, [_told(words, pair, radii, opening), *notes])
 
 
 def _check_opening(opening: float | None) -> None:
