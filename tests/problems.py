@@ -5,6 +5,7 @@ Lengths are closed forms or quadratures to 1e-12, worked out beside each entry.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from scipy.integrate import quad
@@ -71,30 +72,37 @@ def vase_radius(z: np.ndarray) -> np.ndarray:
     return np.asarray(1 + 0.35 * np.cos(0.75 * np.pi * z + 0.3) + 0.1 * np.sin(2.25 * z))
 
 
+@cache
 def cone() -> Surface:
     return shapes.cone(1.0, 0.5, 3.0, (256, 8))
 
 
+@cache
 def barrel() -> Surface:
     return shapes.revolution(lambda z: 1.0 - 0.3 * (z - 1.0) ** 2, 0.0, 2.0, (256, 64))
 
 
+@cache
 def ellipsoid() -> Surface:
     return shapes.ellipsoid(1.0, 0.8, 1.5, 0.25 * np.pi, 0.75 * np.pi, (256, 128))
 
 
+@cache
 def sphere() -> Surface:
     return shapes.sphere_band(2.0, 0.25 * np.pi, 0.75 * np.pi, (256, 128))
 
 
+@cache
 def hyperboloid() -> Surface:
     return shapes.hyperboloid(1.0, 1.0, 1.5, (256, 128))
 
 
+@cache
 def vase() -> Surface:
     return shapes.revolution(vase_radius, 0.0, 4.0, (64, 256))
 
 
+@cache
 def elbow() -> Surface:
     return shapes.elbow(3.0, 1.0, np.pi / 2, (128, 128))
 

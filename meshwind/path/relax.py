@@ -17,7 +17,8 @@ from meshwind.path.state import blank, copy, energy, place, space_evenly
 from meshwind.surface.evaluate import S, unit_normal
 from meshwind.surface.tree import nearest_foot
 
-CONVERGED, SLID_START, SLID_END, UNSTABLE, STALLED = range(5)
+CONVERGED, SLID_START, SLID_END, UNSTABLE, STALLED, LIFTED = range(6)
+"""As `paths.Status`; LIFTED: the fibre leaves the surface and no search tree was given, so start again with one."""
 
 PULL = 1e-9
 """A pull off the surface below this angle (radians) is round-off, not lift."""
@@ -60,6 +61,8 @@ def relax(net, periodic, boxes, levels, size, tolerance, limit, state, tally):
             released = lift(X, normal, touching, PULL * spacing, caution == 0, before, after)
         else:
             link(touching, before, after)
+        if released > 0 and len(levels) == 0:
+            return residual, LIFTED
         count, force = assemble(state, periodic, before, after, contacts, diagonal, upper, metric, right)
         residual = max(force, sag(X, after)) / spacing
         if released == 0 and residual <= tolerance:
@@ -145,7 +148,8 @@ def relax_all(
     for p in range(first, last):
         state = (X[p], uv[p], frames, normal[p], touching[p], gap[p])
         residual[p], status[p] = relax(net, periodic, boxes, levels, size, tolerance, limit, state, tallies[p])
-        certify(net, periodic, boxes, levels, state, slip[p], tallies[p])
+        if status[p] != LIFTED:
+            certify(net, periodic, boxes, levels, state, slip[p], tallies[p])
 
 
 @njit(cache=True)

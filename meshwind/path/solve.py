@@ -6,8 +6,7 @@ from numpy.typing import ArrayLike
 from meshwind.cast import Floats, floats, frozen, ints
 from meshwind.errors import BadInputError
 from meshwind.path.paths import Counters, Paths
-from meshwind.path.relax import relax_all
-from meshwind.surface import tree
+from meshwind.path.relax import LIFTED, relax_all
 from meshwind.surface.surface import Surface
 from meshwind.threads import spread
 
@@ -58,13 +57,23 @@ def solve(
     sense = np.where(last[:, 0] >= first[:, 0], 1, -1) if family is None else ints(family, "family", count)
     middle = surface.control_points.reshape(-1, 3).mean(axis=0)
     net = np.ascontiguousarray(surface.net - middle)
-    boxes, levels = tree.build(net, surface.periodic, tree.DENSITY)
     shape = (count, particles)
     X, normal, uv = np.empty((*shape, 3)), np.empty((*shape, 3)), np.array(curves)
     touching, gap, slip = np.empty(shape, np.bool_), np.zeros(shape), np.empty(shape)
     residual, status, tallies = np.empty(count), np.empty(count, np.int64), np.zeros((count, 4), np.int64)
     results = X, uv, normal, touching, gap, slip, residual, status, tallies
-    spread(relax_all, count, 1, net, surface.periodic, boxes, levels, surface.size, tolerance, iterations, *results)
+    setting = net, surface.periodic
+    limits = surface.size, tolerance, iterations
+    # a part that presses everywhere never pays for the search tree
+    spread(relax_all, count, 1, *setting, np.empty((0, 6)), np.empty((0, 3), np.int64), *limits, *results)
+    lifted = np.flatnonzero(status == LIFTED)
+    if len(lifted):
+        boxes, levels = surface.tree
+        again = tuple(np.ascontiguousarray(array[lifted]) for array in results)
+        again[1][:] = curves[lifted]
+        spread(relax_all, len(lifted), 1, *setting, boxes - np.tile(middle, 2), np.array(levels), *limits, *again)
+        for array, redone in zip(results, again, strict=True):
+            array[lifted] = redone
     total = tallies.sum(axis=0)
     return Paths(
         surface=surface,

@@ -1,6 +1,5 @@
 """The fit's certificate: distances both ways between the surface and the mesh."""
 
-import igl
 import numpy as np
 
 from meshwind.cast import Floats
@@ -36,18 +35,10 @@ def to_mesh(surface: Surface, samples: Samples) -> tuple[Floats, float]:
     counts = np.minimum(DENSITY * np.array(surface.spans), MOST)
     u, v = np.meshgrid(np.arange(counts[0]) / counts[0], np.linspace(0, 1, counts[1] + 1), indexing="ij")
     uv = np.stack([u.ravel(), v.ravel()], axis=1)
-    distance = _distances(surface, samples, uv)
+    distance = samples.facets.distances(surface.points(uv))
     worst = uv[np.argsort(-distance, kind="stable")[:WORST]]
     step = np.linspace(-0.5, 0.5, FINER)
     offset = np.stack(np.meshgrid(step, step), axis=-1).reshape(-1, 2) / counts
     closer = (worst[:, None] + offset).reshape(-1, 2)
     closer[:, 1] = np.clip(closer[:, 1], 0.0, 1.0)
-    return distance, max(float(distance.max()), float(_distances(surface, samples, closer).max()))
-
-
-def _distances(surface: Surface, samples: Samples, uv: Floats) -> Floats:
-    annulus = samples.chart.annulus
-    squared, _, _ = igl.point_mesh_squared_distance(
-        surface.points(uv), annulus.vertices - samples.middle, annulus.faces
-    )
-    return np.asarray(np.sqrt(squared))
+    return distance, max(float(distance.max()), float(samples.facets.distances(surface.points(closer)).max()))

@@ -5,11 +5,17 @@ The points lie on curved point-normal triangles (Vlachos et al. 2001), which fol
 closer than the facets do, and on the flat facets next to creases.
 """
 
+from typing import TypeAlias
+
 import igl
 import numpy as np
+from numba import njit
+from numpy.typing import NDArray
 
 from meshwind.cast import Bools, Floats, Ints
 from meshwind.mandrel.annulus import Annulus
+
+Int8s: TypeAlias = NDArray[np.int8]
 
 ANGLE = igl.PER_VERTEX_NORMALS_WEIGHTING_TYPE_ANGLE
 CREASE = np.cos(np.radians(30))
@@ -18,29 +24,50 @@ FINEST = 24
 """Most points along an edge."""
 
 
-def infill(annulus: Annulus, corner_uv: Floats, spans: tuple[int, int]) -> tuple[Floats, Floats]:
+def infill(annulus: Annulus, faces: Ints, corner_uv: Floats, pieces: Ints) -> tuple[Floats, Floats]:
     """Points (k, 2) in the plane and (k, 3) in space that leave no span of the net without data.
 
-    A triangle that is p spans across gets a lattice of p pieces an edge, without the corners.
+    Each of the triangles `faces` (c,) of the annulus, with corners corner_uv (c, 3, 2) in the plane, gets a lattice
+    of so many `pieces` (c,) an edge, without the corners.
     """
-    extent = np.ptp(corner_uv, axis=1) * spans
-    pieces = np.minimum(np.ceil(extent.max(axis=1)).astype(np.int64), FINEST)
-    coarse = np.flatnonzero(pieces > 1)
-    normals = np.asarray(igl.per_vertex_normals(annulus.vertices, annulus.faces, ANGLE))
-    found = [_lattice(annulus, corner_uv, normals, coarse[pieces[coarse] == n], n) for n in np.unique(pieces[coarse])]
-    if not found:
+    if not len(faces):
         return np.zeros((0, 2)), np.zeros((0, 3))
+    normals = np.asarray(igl.per_vertex_normals(annulus.vertices, annulus.faces, ANGLE))
+    found = []
+    for count in np.unique(pieces):
+        chosen = pieces == count
+        found.append(_lattice(annulus, faces[chosen], corner_uv[chosen], normals, count))
     return np.concatenate([f[0] for f in found]), np.concatenate([f[1] for f in found])
 
 
-def _lattice(annulus: Annulus, corner_uv: Floats, normals: Floats, chosen: Ints, pieces: int) -> tuple[Floats, Floats]:
+@njit(nogil=True, cache=True)
+def spans_across(
+    first: int, last: int, faces: Ints, uv: Floats, turns: Int8s, spans: tuple[int, int], out: Int8s
+) -> None:
+    """Write into `out` how many spans each of the triangles first to last is across, at most FINEST.
+
+    uv (n, 2) are the vertices' places, turns (m, 3) the turns of u by which a triangle's corners lie off them.  One
+    pass over the faces: whole arrays cost ten times as much, and there are few coarse triangles or none.
+    """
+    for m in range(first, last):
+        i, j, k = faces[m, 0], faces[m, 1], faces[m, 2]
+        widest = 0.0
+        for axis in range(2):
+            a, b, c = uv[i, axis], uv[j, axis], uv[k, axis]
+            if axis == 0:
+                a, b, c = a + turns[m, 0], b + turns[m, 1], c + turns[m, 2]
+            widest = max(widest, (max(a, b, c) - min(a, b, c)) * spans[axis])
+        out[m] = min(int(np.ceil(widest)), FINEST)
+
+
+def _lattice(annulus: Annulus, chosen: Ints, corner_uv: Floats, normals: Floats, pieces: int) -> tuple[Floats, Floats]:
     i, j = np.meshgrid(np.arange(pieces + 1), np.arange(pieces + 1), indexing="ij")
     inside = (i + j <= pieces) & (np.maximum(np.maximum(i, j), pieces - i - j) < pieces)
     weight = np.stack([i[inside], j[inside], (pieces - i - j)[inside]], axis=1) / pieces
     faces = annulus.faces[chosen]
     corners = annulus.vertices[faces]
     points = _curved(corners, _tangent_normals(corners, normals[faces]), weight)
-    uv = np.einsum("sk,mkd->msd", weight, corner_uv[chosen])
+    uv = np.einsum("sk,mkd->msd", weight, corner_uv)
     return uv.reshape(-1, 2), points.reshape(-1, 3)
 
 

@@ -1,13 +1,17 @@
 """The mesh's vertices as data for a fit: where they lie in space and, corrected round by round, in the plane."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
+import igl
 import numpy as np
+from numba import njit
 
-from meshwind.cast import Bools, Floats
+from meshwind.cast import Bools, Floats, Ints
 from meshwind.chart.chart import Chart
-from meshwind.surface.foot import feet
-from meshwind.surface.infill import infill
+from meshwind.surface.foot import foot
+from meshwind.surface.infill import Int8s, infill, spans_across
 from meshwind.surface.surface import Surface
 from meshwind.threads import spread
 
@@ -16,8 +20,31 @@ LOOSE = 0.1
 
 
 @dataclass(frozen=True)
+class Facets:
+    """The triangles (m, 3) between points (n, 3), with a search tree made on first use: a second at 1M triangles."""
+
+    points: Floats
+    faces: Ints
+
+    def distances(self, points: Floats) -> Floats:
+        """Distances (k,) of points (k, 3) to the nearest triangle."""
+        squared, _, _ = self._tree.squared_distance(self.points, self.faces, points)
+        return np.asarray(np.sqrt(squared))
+
+    @cached_property
+    def _tree(self) -> Any:
+        tree = igl.AABB()
+        tree.init(self.points, self.faces)
+        return tree
+
+
+@dataclass(frozen=True)
 class Samples:
-    """Vertices about the part's middle (n, 3), their place in the plane (n, 2), and how far they count (n,)."""
+    """Vertices about the part's middle (n, 3), their place in the plane (n, 2), and how far they count (n,).
+
+    turns (m, 3) are the turns of u by which the corners of a triangle lie off their vertices' places; facets finds
+    the nearest facet.
+    """
 
     points: Floats
     uv: Floats
@@ -26,6 +53,8 @@ class Samples:
     trusted: Bools
     middle: Floats
     chart: Chart
+    turns: Int8s
+    facets: "Facets"
 
     @staticmethod
     def of(chart: Chart) -> "Samples":
@@ -35,26 +64,42 @@ class Samples:
         rim = np.zeros(len(annulus.vertices), dtype=bool)
         rim[np.concatenate(annulus.rims)] = True
         weight = np.where(annulus.trusted, 1.0, LOOSE)
-        return Samples(annulus.vertices - middle, np.array(chart.uv), weight, rim, annulus.trusted, middle, chart)
+        points = annulus.vertices - middle
+        turns = np.round(chart.corner_uv[..., 0] - chart.uv[annulus.faces, 0]).astype(np.int8)
+        facets = Facets(points, annulus.faces)
+        return Samples(points, np.array(chart.uv), weight, rim, annulus.trusted, middle, chart, turns, facets)
 
     def between(self, spans: tuple[int, int]) -> tuple[Floats, Floats]:
         """Points between vertices for a net of so many spans: (k, 2) in the plane, (k, 3) about the middle."""
-        faces = self.chart.annulus.faces
-        turns = np.round(self.chart.corner_uv[..., 0] - self.chart.uv[faces][..., 0])
-        corners = self.uv[faces]
-        corners[..., 0] += turns
-        uv, points = infill(self.chart.annulus, corners, spans)
+        annulus = self.chart.annulus
+        across = np.empty(len(annulus.faces), dtype=np.int8)
+        spread(spans_across, len(across), 20_000, annulus.faces, self.uv, self.turns, spans, across)
+        coarse = np.flatnonzero(across > 1)
+        corners = self.uv[annulus.faces[coarse]]
+        corners[..., 0] += self.turns[coarse]
+        uv, points = infill(annulus, coarse, corners, across[coarse].astype(np.int64))
         return uv, points - self.middle
 
     def corrected(self, surface: Surface) -> tuple["Samples", Floats]:
         """Every vertex moved to its foot in the plane, on a rim along the rim; and the distances (n,)."""
-        moved = self.uv.copy()
-        frames = np.empty((len(moved), 6, 3))
-        spread(feet, len(moved), 500, surface.net, surface.periodic, self.points, moved, frames)
-        rim = self.rim
+        moved, distance = self.uv.copy(), np.empty(len(self.uv))
+        spread(_foot_distances, len(moved), 500, surface.net, surface.periodic, self.points, moved, distance)
+        rim = np.flatnonzero(self.rim)
         moved[rim, 1] = self.uv[rim, 1]
         at = surface.frames(self.uv[rim])
         miss = self.points[rim] - at[:, 0]
         moved[rim, 0] = self.uv[rim, 0] + (miss * at[:, 1]).sum(axis=1) / (at[:, 1] ** 2).sum(axis=1)
-        frames[rim] = surface.frames(moved[rim])
-        return replace(self, uv=moved), np.asarray(np.linalg.norm(self.points - frames[:, 0], axis=1))
+        distance[rim] = np.linalg.norm(self.points[rim] - surface.points(moved[rim]), axis=1)
+        return replace(self, uv=moved), distance
+
+
+@njit(nogil=True, cache=True)
+def _foot_distances(
+    first: int, last: int, net: Floats, periodic: bool, points: Floats, guesses: Floats, distance: Floats
+) -> None:
+    """Move guesses (n, 2) first to last to the feet of their points (n, 3); write the distances (n,)."""
+    frame = np.empty((6, 3))
+    for i in range(first, last):
+        foot(net, periodic, points[i], guesses[i], frame)
+        off = points[i] - frame[0]
+        distance[i] = np.sqrt(off[0] * off[0] + off[1] * off[1] + off[2] * off[2])

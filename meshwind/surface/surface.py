@@ -6,9 +6,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshwind.cast import Floats, floats, frozen
+from meshwind.cast import Floats, Ints, floats, frozen
 from meshwind.errors import BadInputError
-from meshwind.surface import evaluate
+from meshwind.surface import evaluate, tree
 from meshwind.threads import spread
 
 DEGREE = 3
@@ -81,6 +81,12 @@ class Surface:
         In u the net is `net`, that is the control points with the first three repeated where periodic.
         """
         return tuple(frozen(np.arange(-DEGREE, n + DEGREE + 1) / n) for n in self.spans)  # type: ignore[return-value]
+
+    @cached_property
+    def tree(self) -> tuple[Floats, Ints]:
+        """The coarse search tree for foot points, see `meshwind.surface.tree`; built on first use."""
+        boxes, levels = tree.build(self.net, self.periodic, tree.DENSITY)
+        return frozen(boxes), frozen(levels)
 
     @cached_property
     def size(self) -> float:
