@@ -56,7 +56,7 @@ def solve(
     count = len(curves)
     sense = np.where(last[:, 0] >= first[:, 0], 1, -1) if family is None else ints(family, "family", count)
     middle = surface.control_points.reshape(-1, 3).mean(axis=0)
-    net = np.ascontiguousarray(surface.net - middle)
+    net = frozen(surface.net - middle)  # read-only as everywhere: kernels compile once
     shape = (count, particles)
     X, normal, uv = np.empty((*shape, 3)), np.empty((*shape, 3)), np.array(curves)
     touching, gap, slip = np.empty(shape, np.bool_), np.zeros(shape), np.empty(shape)
@@ -65,13 +65,15 @@ def solve(
     setting = net, surface.periodic
     limits = surface.size, tolerance, iterations
     # a part that presses everywhere never pays for the search tree
-    spread(relax_all, count, 1, *setting, np.empty((0, 6)), np.empty((0, 3), np.int64), *limits, *results)
+    spread(
+        relax_all, count, 1, *setting, frozen(np.empty((0, 6))), frozen(np.empty((0, 3), np.int64)), *limits, *results
+    )
     lifted = np.flatnonzero(status == LIFTED)
     if len(lifted):
         boxes, levels = surface.tree
         again = tuple(np.ascontiguousarray(array[lifted]) for array in results)
         again[1][:] = curves[lifted]
-        spread(relax_all, len(lifted), 1, *setting, boxes - np.tile(middle, 2), np.array(levels), *limits, *again)
+        spread(relax_all, len(lifted), 1, *setting, frozen(boxes - np.tile(middle, 2)), levels, *limits, *again)
         for array, redone in zip(results, again, strict=True):
             array[lifted] = redone
     total = tallies.sum(axis=0)
