@@ -1,6 +1,7 @@
 """Choose the two ends of a part: open rims, or poles to be opened."""
 
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,17 +12,22 @@ from meshwind.mandrel.holes import loop_size
 from meshwind.mandrel.measure import loop_area_vector, loop_centroid, perimeter
 from meshwind.mandrel.poles import Lip, extreme, nearest
 
+_ALIKE = 1e9  # lengths are equal that agree to this many parts
 _AXES = {"x": 0, "y": 1, "z": 2}
 _NEAR_EXTREME = 0.05  # rims within this part of the extent are equally far out
 
 
 @dataclass(frozen=True)
 class End:
-    """One end: its centre (3,), and the loop of its rim or its lip; with neither the centre is a pole."""
+    """One end: its centre (3,), and the loop of its rim or its lip; with neither the centre is a pole.
+
+    diagonal: of the part, which says how many digits of a place mean something.
+    """
 
     centre: Floats
     loop: Ints | None = None
     lip: Lip | None = None
+    diagonal: float = 1.0
 
     @property
     def is_pole(self) -> bool:
@@ -30,39 +36,72 @@ class End:
 
     @property
     def place(self) -> str:
-        """Coordinates of the centre, as text, without round-off where one is 0."""
-        kept = np.where(np.abs(self.centre) > 1e-9 * np.abs(self.centre).max(), self.centre, 0.0)
-        return "(" + ", ".join(f"{x:.4g}" for x in kept) + ")"
+        """Coordinates of the centre, as text."""
+        return place(self.centre, self.diagonal)
+
+
+def place(point: Floats, diagonal: float) -> str:
+    """Coordinates of a point as text, to a 10,000th of the part's diagonal or finer: no round-off, no 1e+08 twice."""
+    digits = 5 - int(np.ceil(np.log10(diagonal)))
+    return "(" + ", ".join(f"{round(float(x), digits) + 0.0:.12g}" for x in point) + ")"
 
 
 @dataclass(frozen=True)
 class Wish:
-    """Where the ends are wanted: along a model axis (3,), at two points (2, 3), or anywhere."""
+    """Where the ends are wanted: along a model axis (3,), at two points (2, 3), at two numbered rims, or anywhere."""
 
     axis: Floats | None = None
     points: Floats | None = None
+    loops: tuple[int, int] | None = None
     text: str = "auto"
 
 
 def parse(text: str) -> Wish:
-    """Understand 'auto', 'x', 'y', 'z' or 'x,y,z x,y,z'; anything else raises BadInputError."""
-    word = text.strip().lower()
+    """Understand 'auto', 'x', 'y', 'z', 'x,y,z x,y,z' or 'loops i j'; anything else raises BadInputError."""
+    word = text.strip().lower() if isinstance(text, str) else ""
     if word == "auto":
         return Wish()
     if word in _AXES:
         return Wish(axis=np.eye(3)[_AXES[word]], text=word)
+    numbers = re.fullmatch(r"loops\s+(\d{1,9})[\s,]+(\d{1,9})", word)
+    if numbers is not None:
+        if int(numbers[1]) == int(numbers[2]):
+            raise BadInputError(f"ends {text!r}: both are the same rim; give two numbers that `meshwind check` lists")
+        return Wish(loops=(int(numbers[1]), int(numbers[2])), text=word)
     try:
         points = floats([[float(x) for x in part.split(",")] for part in word.split()], "ends", 2, 3)
     except ValueError as error:
-        raise BadInputError(f"ends {text!r}: give auto, x, y, z or two points as in '0,0,0 0,0,100'") from error
+        raise BadInputError(
+            f"ends {text!r}: give auto, x, y, z or two points as in '0,0,0 0,0,100', or two open rims as in 'loops 0 1'"
+        ) from error
     if (points[0] == points[1]).all():
         raise BadInputError(f"ends {text!r}: the two points are the same; give one at each end of the part")
     return Wish(points=points, text=word)
 
 
+def numbered(vertices: Floats, rims: list[Ints]) -> list[Ints]:
+    """Boundary loops in the order of their numbers: from the longest to the shortest, alike ones as in the file."""
+    length = np.array([perimeter(vertices, loop) for loop in rims])
+    order = (
+        np.argsort(-np.round(_ALIKE * length / length.max()), kind="stable") if rims else np.empty(0, dtype=np.int64)
+    )
+    return [rims[k] for k in order]
+
+
 def choose(vertices: Floats, faces: Ints, rims: list[Ints], wish: Wish) -> tuple[list[End], str]:
-    """The start and the end of a part with the given boundary loops, and in words how they were chosen."""
+    """The start and the end of a part with the given boundary loops, and in words how they were chosen.
+
+    Where the wish names loops by number, `rims` holds just those two.
+    """
+    pair, words = _choose(vertices, faces, rims, wish)
+    diagonal = float(np.linalg.norm(np.ptp(vertices, axis=0)))
+    return [replace(end, diagonal=diagonal) for end in pair], words
+
+
+def _choose(vertices: Floats, faces: Ints, rims: list[Ints], wish: Wish) -> tuple[list[End], str]:
     ends = [End(loop_centroid(vertices, loop), loop) for loop in rims]
+    if wish.loops is not None:
+        return ends, f"the open rims number {wish.loops[0]} and {wish.loops[1]}"
     if len(ends) >= 2:
         return _two_rims(vertices, faces, ends, wish)
     return _one_rim(vertices, faces, rims[0], wish) if rims else _two_poles(vertices, faces, wish)

@@ -43,12 +43,20 @@ _GARBAGE = (
 )  # fmt: skip
 
 
-def read(path: str | PathLike[str]) -> Mesh:
+def read(path: str | PathLike[str], component: int = 0) -> Mesh:
     """Read the mesh in the file at `path` and repair it.
 
     STL, PLY, OBJ, OFF, GLB, GLTF, 3MF, VTK, VTU, VTP, MSH and INP; polygons are cut into triangles, and a
-    volume mesh is taken by its skin.  Raises BadInputError where the file cannot be used.
+    volume mesh is taken by its skin.  component: which piece to keep, by its rank of area, 0 the largest.
+    Raises BadInputError where the file cannot be used.
     """
+    return mesh_from(*load(path), Path(path).name, component)
+
+
+def load(path: str | PathLike[str]) -> tuple[Floats, Ints]:
+    """Vertices (n, 3) and triangles (m, 3) of a file as they are; m is never 0.  Raises BadInputError."""
+    if not isinstance(path, str | PathLike):
+        raise BadInputError(f"mesh is {_type(path)}: give the path of a triangle mesh (STL, OBJ, PLY, ...)")
     file = Path(path)
     reader = _reader(file)
     try:
@@ -64,7 +72,12 @@ def read(path: str | PathLike[str]) -> Mesh:
         ) from error
     if len(faces) == 0:
         raise BadInputError(f"{file.name}: holds no triangles; export the part's surface as a triangle mesh")
-    return mesh_from(vertices, faces, file.name)
+    return vertices, faces
+
+
+def _type(value: object) -> str:
+    """A value's type in words."""
+    return f"of type {type(value).__name__}"
 
 
 def _reader(file: Path) -> Callable[[Path], tuple[Floats, Ints]]:

@@ -6,8 +6,10 @@ from numpy.typing import ArrayLike
 from meshwind.cast import Floats, Ints, floats, frozen
 from meshwind.errors import BadInputError
 from meshwind.mandrel import cracks, manifold
-from meshwind.mandrel.measure import areas, volume
+from meshwind.mandrel.measure import volume
 from meshwind.mandrel.mesh import Mesh
+from meshwind.mandrel.overlaps import overlaps
+from meshwind.mandrel.pieces import Pieces
 from meshwind.mandrel.slivers import without_slivers
 from meshwind.mandrel.topology import compact, patches
 from meshwind.mandrel.weld import weld, without_collapsed, without_duplicates
@@ -15,17 +17,24 @@ from meshwind.mandrel.weld import weld, without_collapsed, without_duplicates
 _FARTHEST = 1e-8  # extent over distance from the origin: what is less has lost half its digits
 
 
-def mesh_from(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> Mesh:
+def mesh_from(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh", component: int = 0) -> Mesh:
     """Make a repaired mesh from vertices (n, 3), in any unit, and triangles (m, 3) of indices from 0.
 
-    Vertices are welded, useless faces and all but the largest piece dropped, the rest made manifold and
-    oriented outward; `repairs` of the result says so.  Raises BadInputError where no surface is left.
+    Vertices are welded, useless faces dropped, cracks closed, the rest made manifold and oriented outward, and
+    of several pieces one is kept: `component` is its rank by area, 0 the largest.  `repairs` of the result says
+    so, and what was noticed but left.  Raises BadInputError where no surface is left.
     """
+    pieces, notes = made_manifold(vertices, faces, name)
+    return kept(pieces, notes, component, name, (len(np.asarray(vertices)), len(np.asarray(faces))))
+
+
+def made_manifold(vertices: ArrayLike, faces: ArrayLike, name: str) -> tuple[Pieces, list[str]]:
+    """The first half of the repair, all pieces still there; also says what was done."""
     points, triangles = _checked(vertices, faces, name)
     notes: list[str] = []
-    read_vertices, read_faces = len(points), len(triangles)
+    size = len(points)
     points, triangles = _referenced(points, triangles)
-    _note(notes, read_vertices - len(points), "dropped {} that no face uses", "vertex", "vertices")
+    _note(notes, size - len(points), "dropped {} that no face uses", "vertex", "vertices")
     _check_size(points, name)
     size = len(points)
     points, triangles = weld(points, triangles)
@@ -33,14 +42,21 @@ def mesh_from(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> Mesh
     triangles = _drop_useless(triangles, notes, name)
     points, triangles = _close_cracks(points, triangles, notes)
     points, triangles = _make_manifold(points, triangles, notes)
-    triangles = _largest(points, triangles, notes)
+    return Pieces.of(points, triangles), notes
+
+
+def kept(pieces: Pieces, notes: list[str], component: int, name: str, read: tuple[int, int]) -> Mesh:
+    """The second half: the mesh of one piece; `read` counts the vertices and faces of the file."""
+    triangles, words = pieces.chosen(component, name)
+    notes = notes + words
     manifold.check_orientable(triangles, name)
-    triangles = _mend_slivers(points, triangles, notes, name)
-    points, triangles = _referenced(points, triangles)
+    triangles = _mend_slivers(pieces.vertices, triangles, notes, name)
+    points, triangles = _referenced(pieces.vertices, triangles)
     if volume(points, triangles) < 0:
         triangles = triangles[:, ::-1]
         notes.append("turned all faces outward")
-    return Mesh(frozen(points), frozen(triangles), name, tuple(notes), read_vertices, read_faces)
+    notes += overlaps(points, triangles)
+    return Mesh(frozen(points), frozen(triangles), name, tuple(notes), *read)
 
 
 def _checked(vertices: ArrayLike, faces: ArrayLike, name: str) -> tuple[Floats, Ints]:
@@ -122,16 +138,6 @@ def _minority(before: Ints, after: Ints) -> int:
     label = patches(after)
     size, flipped = np.bincount(label), np.bincount(label, turned)
     return int(np.minimum(flipped, size - flipped).sum())
-
-
-def _largest(vertices: Floats, faces: Ints, notes: list[str]) -> Ints:
-    """Keep the piece with the largest area."""
-    label = patches(faces)
-    size = np.bincount(label, areas(vertices, faces))
-    kept = faces[label == np.argmax(size)]
-    dropped = len(faces) - len(kept)
-    _note(notes, len(size) - 1, f"dropped {{}} beside the largest ({dropped} faces)", "piece", "pieces")
-    return np.asarray(kept)
 
 
 def _mend_slivers(vertices: Floats, faces: Ints, notes: list[str], name: str) -> Ints:

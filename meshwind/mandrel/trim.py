@@ -6,7 +6,7 @@ from meshwind.cast import Floats, Ints, frozen
 from meshwind.errors import BadInputError
 from meshwind.mandrel.annulus import Annulus
 from meshwind.mandrel.chords import without_chords
-from meshwind.mandrel.ends import End, choose, parse
+from meshwind.mandrel.ends import End, Wish, choose, numbered, parse
 from meshwind.mandrel.holes import filled, is_defect
 from meshwind.mandrel.measure import areas, volume
 from meshwind.mandrel.mesh import Mesh
@@ -21,9 +21,9 @@ _FLAT = 1e-6  # volume over area^(3/2): 0.094 for a ball, 6e-3 for a rod a thous
 def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Annulus:
     """Choose the two ends of a repaired mesh and trim it to them.
 
-    ends: 'auto', a model axis 'x', 'y' or 'z', or two points 'x,y,z x,y,z' in the mesh's units.  opening: the
-    radius of the hole cut about each pole, in the mesh's units; by default 0.4 of the part's mean
-    radius.  Open rims are ends as they are.
+    ends: 'auto', a model axis 'x', 'y' or 'z', two points 'x,y,z x,y,z' in the mesh's units, or two open rims
+    'loops i j' by their numbers, 0 the longest.  opening: the radius of the hole cut about each pole, in the
+    mesh's units; by default 0.4 of the part's mean radius.  Open rims are ends as they are.
 
     With 'auto' the ends are the two largest open rims, the longer one first; where there is but one, it comes
     first and the pole across it second; a closed part gets poles on its axis, the fuller end of the part
@@ -33,12 +33,15 @@ def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Ann
     Raises BadInputError where the part is no tube and no blob, where an end cannot be opened, or where `ends`
     or `opening` cannot be used.
     """
+    if not isinstance(mesh, Mesh):
+        raise BadInputError(f"mesh is of type {type(mesh).__name__}: give a Mesh, as read('part.stl') returns it")
     wish = parse(ends)
     _check_opening(opening)
-    rims = loops(mesh.faces)
+    rims = numbered(mesh.vertices, loops(mesh.faces))
     _check_part(mesh, rims)
-    vertices, faces, kept, notes = _without_defects(mesh, rims)
-    pair, words = choose(vertices, faces, kept, wish)
+    wanted = _wanted(rims, wish, mesh.name)
+    vertices, faces, kept, notes = _without_defects(mesh, rims, wanted)
+    pair, words = choose(vertices, faces, wanted or kept, wish)
     chosen = {int(end.loop[0]) for end in pair if end.loop is not None}
     spare = [loop for loop in kept if int(loop[0]) not in chosen]
     if spare:
@@ -52,7 +55,8 @@ def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Ann
 
 
 def _check_opening(opening: float | None) -> None:
-    if opening is not None and not (np.isfinite(opening) and opening > 0):
+    good = isinstance(opening, int | float | np.number) and not isinstance(opening, bool)
+    if opening is not None and not (good and np.isfinite(opening) and opening > 0):
         raise BadInputError(f"opening {opening}: give the radius of the hole at a pole, a number above 0")
 
 
@@ -73,13 +77,23 @@ def _check_part(mesh: Mesh, rims: list[Ints]) -> None:
         )
 
 
-def _without_defects(mesh: Mesh, rims: list[Ints]) -> tuple[Floats, Ints, list[Ints], list[str]]:
+def _wanted(rims: list[Ints], wish: Wish, name: str) -> list[Ints]:
+    """The two loops that the wish names by number, none where it names none."""
+    if wish.loops is None:
+        return []
+    if max(wish.loops) >= len(rims):
+        there = {0: "no open rims", 1: "1 open rim"}.get(len(rims), f"{len(rims)} open rims, 0 to {len(rims) - 1}")
+        raise BadInputError(f"{name}: ends {wish.text!r}: the part has {there}; `meshwind check` lists them")
+    return [rims[k] for k in wish.loops]
+
+
+def _without_defects(mesh: Mesh, rims: list[Ints], wanted: list[Ints]) -> tuple[Floats, Ints, list[Ints], list[str]]:
     """Fill loops that are faults of the mesh; gives vertices, faces, the other loops and notes."""
     vertices, faces = mesh.vertices, mesh.faces
-    defects = [is_defect(mesh.vertices, mesh.faces, loop) for loop in rims]
-    for loop, defect in zip(rims, defects, strict=True):
-        if defect:
-            vertices, faces = filled(vertices, faces, loop)
+    spared = {int(loop[0]) for loop in wanted}
+    defects = [int(loop[0]) not in spared and is_defect(vertices, faces, loop) for loop in rims]
+    for loop in [loop for loop, defect in zip(rims, defects, strict=True) if defect]:
+        vertices, faces = filled(vertices, faces, loop)
     count = sum(defects)
     notes = [f"filled {count} {'hole' if count == 1 else 'holes'} of missing faces or open seams"] if count else []
     return vertices, faces, [loop for loop, defect in zip(rims, defects, strict=True) if not defect], notes
@@ -92,6 +106,8 @@ def _assembled(mesh: Mesh, surface: Skin, pair: list[End], words: list[str]) -> 
         raise BadInputError(
             f"{mesh.name}: trimming left {len(rims)} rims where a tube has 2; choose other ends or a smaller opening"
         )
+    if not areas(surface.vertices, surface.faces).min() > 0:
+        raise BadInputError(f"{mesh.name}: trimming left a face without area; remesh the part or choose other ends")
     start = int(np.argmin([_offset(surface.vertices[rim], pair) for rim in rims]))
     first, second = rims[start], rims[1 - start]
     # The faces' own sense has the surface on its left: growing u at the start, falling u at the end.
