@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from os import PathLike
+from os import PathLike, fspath
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -13,6 +13,8 @@ from meshwind.errors import BadInputError
 from meshwind.layup.families import families
 from meshwind.layup.layup import Layup, assess
 from meshwind.mandrel import Mesh, annulus, read
+from meshwind.notes import Note, about_fit
+from meshwind.options import Options
 from meshwind.output import driver, folder
 from meshwind.output.report import report, write_report
 from meshwind.output.write import write_files
@@ -23,20 +25,25 @@ Tell = Callable[[str], None]
 """Called with a stage's name as it starts."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Result:
     """A wound part: what every stage made, and what the run cost.
 
-    seconds holds each stage's wall time; notes are lines for the user about what could not be done.
+    options are those it was wound with; seconds holds each stage's wall time; notes say what the user should
+    know beside the figures.
     """
 
     mesh: Mesh
     chart: Chart
     layup: Layup
-    revolutions: float
+    options: Options
     command: str
     seconds: dict[str, float]
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
+
+    def __repr__(self) -> str:
+        at_rest = int((self.paths.status == Status.CONVERGED).sum())
+        return f"<meshwind Result: {self.mesh.name}, {at_rest} of {len(self.paths)} paths at rest>"
 
     @property
     def surface(self) -> Surface:
@@ -59,18 +66,22 @@ class Result:
             self.layup,
             self.mesh,
             self.chart,
-            revolutions=self.revolutions,
+            revolutions=self.options.revolutions,
             command=self.command,
+            units=self.options.units,
+            tolerance=self.options.tolerance,
             seconds=self.seconds,
+            notes=[str(note) for note in self.notes],
         )
 
     def write(self, out: str | PathLike[str], render: bool = True) -> "Result":
         """Write all files of the run into the folder `out`, whole or not at all.
 
-        Returns the result with the time that writing and drawing took and, where there is no OpenGL driver for
-        the picture, a note that says what to install.
+        Results of an earlier run there are replaced, or removed where this one has none.  Returns the result with
+        the time that writing and drawing took and, where there is no OpenGL driver for the picture, a note that
+        says what to install.
         """
-        return _write(self, Path(out), render, _Clock(None))
+        return _write(self, _folder(out), render, _Clock(None))
 
 
 class _Clock:
@@ -98,6 +109,8 @@ def wind(
     ends: str = "auto",
     opening: float | None = None,
     tolerance: float = 1e-5,
+    worst_fit: float = 0.1,
+    units: str = "",
     particles: int = 401,
     out: str | PathLike[str] | None = None,
     render: bool = True,
@@ -108,31 +121,42 @@ def wind(
 
     mesh: a file or a `Mesh`; paths: a family; revolutions: turns from end to end; friction: coefficient (0 for
     now); ends: "auto", "x", "y", "z" or two points "x,y,z x,y,z"; opening: radius at a closed end in the mesh's
-    units; tolerance: largest fit error over the mesh's diagonal; particles: a path; out: folder for the files;
-    render: draw winding.png as well.  Raises BadInputError, in one line, for whatever the caller can mend.
+    units; tolerance: largest distance of a vertex from the surface over the mesh's diagonal; worst_fit: largest
+    distance between surface and mesh, over the diagonal, that is wound at all; units: the name of the mesh's
+    unit, "" if unknown; particles: a path; out: folder for the files; render: draw winding.png as well.  Raises
+    BadInputError, in one line, for whatever the caller can mend.
     """
-    if friction != 0.0:
-        raise BadInputError(f"friction {friction:g} is not supported yet; use 0")
+    options = Options(paths, revolutions, particles, friction, ends, opening, tolerance, worst_fit, units)
+    if not isinstance(mesh, str | PathLike | Mesh):
+        raise BadInputError(f"mesh is of type {type(mesh).__name__}; give the path of a mesh file or a meshwind.Mesh")
     clock = _Clock(progress)
-    if out is not None:
-        folder.prepare(Path(out))
+    target = None if out is None else _folder(out)
+    if target is not None:
+        folder.prepare(target)
         if render:
             driver.start_probe()
     with clock.stage("read"):
         part = mesh if isinstance(mesh, Mesh) else read(mesh)
     with clock.stage("ends"):
-        opened = annulus(part, ends=ends, opening=opening)
+        opened = annulus(part, ends=options.ends, opening=options.opening)
     with clock.stage("flatten"):
         chart = flatten(opened)
     with clock.stage("fit"):
-        surface = fit(chart, tolerance)
+        surface = fit(chart, options.tolerance)
+        notes = about_fit(surface, chart, options.tolerance, options.worst_fit, options.units)
     with clock.stage("wind"):
-        rims = families(surface, paths, revolutions)
-        laid = solve(surface, rims.start, rims.end, family=rims.family, particles=particles)
+        rims = families(surface, options.paths, options.revolutions)
+        laid = solve(surface, rims.start, rims.end, family=rims.family, particles=options.particles)
     with clock.stage("assess"):
         layup = assess(laid)
-    result = Result(part, chart, layup, revolutions, command, clock.seconds)
-    return result if out is None else _write(result, Path(out), render, clock)
+    result = Result(part, chart, layup, options, command, clock.seconds, notes)
+    return result if target is None else _write(result, target, render, clock)
+
+
+def _folder(out: str | PathLike[str]) -> Path:
+    if not isinstance(out, str | PathLike) or not fspath(out).strip():
+        raise BadInputError(f"out is {out!r}; give the path of a folder for the results")
+    return Path(out)
 
 
 def _write(result: Result, out: Path, render: bool, clock: _Clock) -> Result:
@@ -142,8 +166,8 @@ def _write(result: Result, out: Path, render: bool, clock: _Clock) -> Result:
             write_files(staging, result.layup, result.mesh)
         if render:
             with clock.stage("render"):
-                note = driver.draw(staging / "winding.png", result.layup, result.mesh.name)
-            notes = (*notes, note) if note else notes
+                missing = driver.draw(staging / "winding.png", result.layup, result.mesh.name, result.options.units)
+            notes = (*notes, Note(missing)) if missing else notes
         result = replace(result, seconds=result.seconds | clock.seconds, notes=notes)
-        write_report(staging / "report.json", result.report() | {"notes": list(notes)})
+        write_report(staging / "report.json", result.report())
     return result

@@ -18,6 +18,8 @@ ORDER = [
     "path",
     "layup",
     "output",
+    "options",
+    "notes",
     "pipeline",
     "cli",
     "__main__",

@@ -72,6 +72,11 @@ def test_bad_meshes_exit_2_with_one_line_and_leave_nothing(name: str, tmp_path: 
     (["wind"], "MESH"), (["wind", "a.stl", "--paths", "none"], "paths"), (["wind", "a.stl", "--paths", "0"], "paths"),
     (["wind", "a.stl", "--revolutions", "-1"], "revolutions"), (["fly"], "fly"), ([], "command"),
     (["wind", "a.stl", "--friction", "0.2"], "friction"), (["wind", "a.stl", "--wings"], "wings"),
+    (["wind", "a.stl", "--revolutions", "nan"], "revolutions is nan; give a number from 0"),
+    (["wind", "a.stl", "--revolutions", "5/0"], "revolutions is '5/0'; give"),
+    (["wind", "a.stl", "--revolutions", "200"], "revolutions is 200; give a number from 0 to 50"),
+    (["wind", "a.stl", "--ends", "foo"], "ends 'foo'"), (["wind", "a.stl", "--opening", "-3"], "opening is -3"),
+    (["wind", "a.stl", "--paths", "100000"], "GB of memory"), (["wind", "a.stl", "--out", ""], "out is ''"),
 ])  # fmt: skip
 def test_bad_usage_exits_2_with_one_line(arguments: list[str], says: str, tmp_path: Path) -> None:
     done = meshwind(*arguments, folder=tmp_path)
@@ -108,6 +113,9 @@ def test_help_shows_every_option() -> None:
         "--ends",
         "--opening",
         "--tolerance",
+        "--worst-fit",
+        "--units",
+        "--particles",
         "--no-render",
     ):
         assert option in done.stdout
@@ -118,15 +126,29 @@ def test_help_shows_every_option() -> None:
 def tank(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, subprocess.CompletedProcess[str]]:
     out = tmp_path_factory.mktemp("tank") / "out"
     return out, meshwind(
-        "wind", DATA / "tank.ply", "--out", out, "--paths", "12", "--revolutions", "0.5", "--no-render"
+        "wind", DATA / "tank.ply", "--out", out, "--paths", "12", "--revolutions", "1/2", "--units", "mm", "--no-render"
     )
 
 
 def test_summary_and_progress(tank: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
     out, done = tank
     assert done.returncode == 0, done.stderr
-    for word in ("fit error", "24 of 24 at rest", "bridged", "seconds", str(out)):
+    report = json.loads((out / "report.json").read_text())
+    fit = report["surface"]["fit_error"]
+    for word in (
+        "5000 vertices, 9996 faces",
+        f"to the vertices {fit['to_surface']['max']:.2g} mm",
+        f"to the facets {fit['to_mesh']['max']:.2g} mm",
+        "tolerance 1e-5",
+        "24 of 24 at rest",
+        f"length {float(format(report['paths']['length_total'], '.4g')):,.0f} mm, no bridges",
+        "seconds",
+        str(out),
+    ):
         assert word in done.stdout
+    assert "warning" not in done.stdout
+    assert report["notes"] == []
+    assert report["mesh"]["units"] == "mm"
     assert done.stderr.splitlines()[0] == "read ..."
     assert "\x1b" not in done.stdout + done.stderr
 
@@ -165,6 +187,40 @@ def test_surface_lies_on_the_mesh(tank: tuple[Path, subprocess.CompletedProcess[
     off = np.hypot(P[:, 0], P[:, 1]) - 60 * np.sqrt(np.maximum(1 - (P[:, 2] / 120) ** 6, 0))
     steep = np.abs(P[:, 2]) < 100
     assert np.abs(off[steep]).max() < 0.01
+
+
+def test_without_a_unit_none_is_made_up(tmp_path: Path) -> None:
+    done = meshwind("wind", DATA / "elbow.obj", "--out", tmp_path, "--paths", "3", "--no-render")
+    assert done.returncode == 0
+    assert "mm" not in done.stdout.replace(str(tmp_path), "")
+    assert json.loads((tmp_path / "report.json").read_text())["mesh"]["units"] == "unknown"
+
+
+@pytest.mark.parametrize("arguments", [["wind", "--help"], ["wind", str(DATA / "tank.ply"), "--no-render"]])
+def test_an_output_that_takes_no_more_exits_1_with_one_line(arguments: list[str], tmp_path: Path) -> None:
+    with open("/dev/full", "w") as full:
+        command = [sys.executable, "-m", "meshwind", *arguments]
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, timeout=120, cwd=tmp_path)
+    complaint = [line for line in done.stderr.splitlines() if not line.endswith("...")]
+    assert done.returncode == 1
+    assert complaint == ["meshwind: error: cannot write to standard output: No space left on device; send it elsewhere"]
+
+
+def test_progress_that_cannot_be_shown_stops_nothing(tmp_path: Path) -> None:
+    with open("/dev/full", "w") as full:
+        command = [
+            sys.executable,
+            "-m",
+            "meshwind",
+            "wind",
+            str(DATA / "tank.ply"),
+            "--out",
+            str(tmp_path),
+            "--no-render",
+        ]
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=full, text=True, timeout=120)
+    assert done.returncode == 0
+    assert "24 of 24 at rest" in done.stdout
 
 
 def test_unsettled_paths_exit_3_and_are_named(tmp_path: Path) -> None:

@@ -26,6 +26,17 @@ def test_files_move_in_and_others_stay(tmp_path: Path) -> None:
     assert (out / "notes.txt").read_text() == "mine"
 
 
+def test_results_of_an_earlier_run_do_not_stay_beside_a_new_report(tmp_path: Path) -> None:
+    (tmp_path / "winding.png").write_text("of the last run")
+    (tmp_path / "photo.png").write_text("mine")
+    with pytest.raises(RuntimeError), writing(tmp_path):
+        raise RuntimeError
+    assert everything(tmp_path) == ["photo.png", "winding.png"]
+    with writing(tmp_path) as staging:
+        (staging / "report.json").write_text("new")
+    assert everything(tmp_path) == ["photo.png", "report.json"]
+
+
 def test_missing_parents_are_made(tmp_path: Path) -> None:
     with writing(tmp_path / "a" / "b") as staging:
         (staging / "f").write_text("x")

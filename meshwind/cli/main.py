@@ -1,14 +1,21 @@
 """The `meshwind` command: subcommands, and one line for whatever a user can mend."""
 
+import errno
+import os
 import sys
+from contextlib import suppress
+from typing import NoReturn
 
 import typer
 
 from meshwind.cli.wind import wind
 from meshwind.errors import BadInputError
 
+UNPRINTED = 1
 BAD_INPUT = 2
 INTERRUPTED = 130
+_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE, errno.EBADF}
+"""What a stream says that takes no more; it names no file, and all files of a run are guarded elsewhere."""
 
 app = typer.Typer(
     name="meshwind",
@@ -36,9 +43,15 @@ def _root(
 
 
 def main() -> None:
-    """Run the command line; exit 0 done, 2 bad input or usage, 3 done but not every path came to rest."""
+    """Run the command line.
+
+    Exits with 0 when done, 1 when standard output could not be written, 2 on bad input or usage, and 3 when done
+    but not every path came to rest.
+    """
     try:
         code = app(standalone_mode=False)
+        if sys.stdout is not None:
+            sys.stdout.flush()
     except typer.TyperException as error:
         context = getattr(error, "ctx", None)
         where = context.command_path if context else "meshwind"
@@ -49,9 +62,23 @@ def main() -> None:
         _fail(str(error))
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)
+    except OSError as error:
+        if error.filename is not None or error.errno not in _FULL:
+            raise
+        _give_up_printing(error)
     sys.exit(code if isinstance(code, int) else 0)
 
 
-def _fail(line: str) -> None:
-    print(f"meshwind: error: {' '.join(line.split())}", file=sys.stderr)  # noqa: T201
-    sys.exit(BAD_INPUT)
+def _fail(line: str, code: int = BAD_INPUT) -> NoReturn:
+    with suppress(OSError):
+        print(f"meshwind: error: {' '.join(line.split())}", file=sys.stderr, flush=True)  # noqa: T201
+    sys.exit(code)
+
+
+def _give_up_printing(error: OSError) -> NoReturn:
+    """End in one line where standard output takes no more, quietly where its reader has gone."""
+    # what is still in the buffer goes nowhere, or the interpreter would complain of it on its way out
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    if isinstance(error, BrokenPipeError):
+        sys.exit(UNPRINTED)
+    _fail(f"cannot write to standard output: {error.strerror}; send it elsewhere", UNPRINTED)

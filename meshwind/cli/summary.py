@@ -1,34 +1,59 @@
 """The closing summary: what a person wants to know of a run, in a few lines."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from meshwind.pipeline import Result
 
 
 def summary(result: "Result", folder: Path) -> str:
-    """Lines for the terminal."""
+    """Lines for the terminal; lengths with the unit that the run was told."""
     report = result.report()
-    surface, paths, seconds = report["surface"], report["paths"], report["seconds"]
-    total = paths["converged"] + len(paths["not_converged"])
-    fit = surface["fit_error"]
+    seconds = report["seconds"]
     lines = [
         f"part      {result.mesh.name}: {report['mesh']['vertices']} vertices, {report['mesh']['faces']} faces; "
-        f"{result.chart.annulus.ends}",
-        f"surface   {surface['control_points'][0]} x {surface['control_points'][1]} control points, "
-        f"fit error rms {fit['rms']:.2g}, max {fit['max']:.2g} ({fit['relative_max']:.1e} of the part)",
-        f"paths     {paths['converged']} of {total} at rest, length {paths['length_total']:.6g}, "
-        f"bridged {100 * paths['bridged_fraction']:.1f} %, largest gap {paths['max_gap']:.3g}",
+        f"{report['mesh']['ends']}",
+        *_surface(report["surface"], report["mesh"]["diagonal"], result.options.units),
+        *_paths(report["paths"], result.options.units),
     ]
-    if paths["longest_bridge"] > 0:
-        lines.append(f"bridges   {paths['bridges']}, the longest {paths['longest_bridge']:.4g}")
-    lines += _unsettled(paths["not_converged"])
-    lines += [f"repair    {act}" for act in result.mesh.repairs]
-    lines += [f"note      {note}" for note in result.notes]
+    lines += _unsettled(report["paths"]["not_converged"])
+    lines += [f"repair    {act}" for act in report["mesh"]["repairs"]]
+    lines += [f"{'warning' if note.warning else 'note':<10}{note.text}" for note in result.notes]
     lines.append("seconds   " + ", ".join(f"{stage} {value:.2f}" for stage, value in seconds.items()))
     lines.append(f"files     {folder}")
     return "\n".join(lines)
+
+
+def _surface(surface: dict[str, Any], size: float, units: str) -> list[str]:
+    """The fit's errors both ways, each also over the part's diagonal."""
+    from meshwind.output.words import quantity, ratio
+
+    around, along = surface["control_points"]
+    vertices, facets = surface["fit_error"]["to_surface"]["max"], surface["fit_error"]["to_mesh"]["max"]
+    return [
+        f"surface   {around} x {along} control points; largest distance to the vertices {quantity(vertices, units, 2)} "
+        f"({ratio(vertices / size)} of the part, tolerance {ratio(surface['tolerance'])}), "
+        f"to the facets {quantity(facets, units, 2)} ({ratio(facets / size)})"
+    ]
+
+
+def _paths(paths: dict[str, Any], units: str) -> list[str]:
+    from meshwind.output.words import quantity
+
+    failed = len(paths["not_converged"])
+    over = f" (figures: {paths['figures_over']})" if failed else ""
+    bridged = f"bridged {100 * paths['bridged_fraction']:.1f} %" if paths["bridges"] else "no bridges"
+    lines = [
+        f"paths     {paths['converged']} of {paths['converged'] + failed} at rest{over}: length "
+        f"{quantity(paths['length_total'], units)}, {bridged}"
+    ]
+    if paths["bridges"]:
+        lines.append(
+            f"bridges   {paths['bridges']}, the longest {quantity(paths['longest_bridge'], units)}, "
+            f"the largest gap {quantity(paths['max_gap'], units, 3)}"
+        )
+    return lines
 
 
 def _unsettled(failures: list[dict[str, object]]) -> list[str]:

@@ -2,6 +2,7 @@
 
 import shlex
 import sys
+from fractions import Fraction
 from pathlib import Path
 from typing import Annotated
 
@@ -9,8 +10,17 @@ import typer
 
 from meshwind.cli.display import display
 from meshwind.cli.summary import summary
+from meshwind.errors import BadInputError
 
 UNSETTLED = 3
+
+
+def turns(text: str) -> float:
+    """A number or a fraction of whole numbers: 0.5, 5/12."""
+    try:
+        return float(Fraction(text)) if "/" in text else float(text)
+    except (ValueError, ZeroDivisionError, OverflowError) as error:
+        raise BadInputError(f"revolutions is {text!r}; give a number as in 0.5 or 5/12") from error
 
 
 def wind(
@@ -18,42 +28,54 @@ def wind(
         Path,
         typer.Argument(help="Triangle mesh: STL, OBJ, PLY, OFF, GLB, 3MF, VTK, MSH, INP.", metavar="MESH"),
     ],
-    out: Annotated[Path | None, typer.Option(help="Folder for the results.  [default: MESH's name + -wound]")] = None,
-    paths: Annotated[int, typer.Option(help="Paths a family.", min=1)] = 12,
-    revolutions: Annotated[float, typer.Option(help="Turns of a path from end to end.", min=0.0)] = 0.5,
-    friction: Annotated[float, typer.Option(help="Coefficient of friction of fibre on part.", min=0.0)] = 0.0,
+    out: Annotated[str | None, typer.Option(help="Folder for the results.  [default: MESH's name + -wound]")] = None,
+    paths: Annotated[int, typer.Option(help="Paths a family.")] = 12,
+    revolutions: Annotated[
+        str, typer.Option(metavar="TURNS", help="Turns of a path from end to end, as in 0.5 or 5/12.")
+    ] = "0.5",
+    friction: Annotated[float, typer.Option(help="Coefficient of friction of fibre on part; only 0 for now.")] = 0.0,
     ends: Annotated[str, typer.Option(help='Where the ends are: auto, x, y, z, or two points "x,y,z x,y,z".')] = "auto",
     opening: Annotated[
         float | None,
         typer.Option(help="Radius of the opening at a closed end, in the mesh's units.  [default: from the part]"),
     ] = None,
-    tolerance: Annotated[float, typer.Option(help="Largest fit error over the part's diagonal.", min=1e-12)] = 1e-5,
+    tolerance: Annotated[
+        float, typer.Option(help="Largest distance of a vertex from the surface, over the part's diagonal.")
+    ] = 1e-5,
+    worst_fit: Annotated[
+        float, typer.Option(help="Largest distance between surface and mesh, over the diagonal, to wind at all.")
+    ] = 0.1,
+    units: Annotated[str, typer.Option(help="Name of the mesh's unit, as in mm, for report and picture.")] = "",
+    particles: Annotated[int, typer.Option(help="Particles a path; more for many turns.")] = 401,
     render: Annotated[bool, typer.Option("--render/--no-render", help="Draw winding.png.")] = True,
 ) -> int:
     """Lay two families of taut fibres on MESH and write paths, bridges, crossings, quads, maps and a report.
 
-    Exit status: 0 done; 2 bad input or usage; 3 done, but some paths did not come to rest (the report says which
-    and why).
+    Exit status: 0 done; 1 the summary could not be printed; 2 bad input or usage; 3 done, but some paths did not
+    come to rest (the report says which and why).
 
-    Example: meshwind wind part.stl --paths 24 --revolutions 0.6
+    Example: meshwind wind part.stl --paths 24 --revolutions 5/12 --units mm
     """
     # the numerical libraries are imported late: --help and usage errors must not wait for them
     from meshwind import pipeline
 
-    folder = out if out is not None else Path(f"{mesh.stem}-wound")
+    folder = out if out is not None else f"{mesh.stem}-wound"
     with display() as progress:
         result = pipeline.wind(
             mesh,
             paths=paths,
-            revolutions=revolutions,
+            revolutions=turns(revolutions),
             friction=friction,
             ends=ends,
             opening=opening,
             tolerance=tolerance,
+            worst_fit=worst_fit,
+            units=units,
+            particles=particles,
             out=folder,
             render=render,
             command=shlex.join(["meshwind", *sys.argv[1:]]),
             progress=progress,
         )
-    typer.echo(summary(result, folder))
+    typer.echo(summary(result, Path(folder)))
     return 0 if result.settled else UNSETTLED

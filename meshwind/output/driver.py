@@ -80,7 +80,7 @@ def stop() -> None:
         _waiting.pop().close()
 
 
-def draw(picture: Path, layup: Layup, name: str, units: str = "mm") -> str:
+def draw(picture: Path, layup: Layup, name: str, units: str = "") -> str:
     """Draw the part and its fibres into a .png; return "" or one line that says why there is no picture."""
     start_probe()
     return _waiting.pop().paint(picture, scene(layup, name, units))

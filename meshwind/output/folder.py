@@ -9,6 +9,12 @@ from pathlib import Path
 
 from meshwind.errors import BadInputError
 
+RESULTS = frozenset(
+    ("paths.vtp", "bridges.vtp", "crossings.vtp", "quads.vtu", "quads.obj", "surface.vtu", "surface.npz")
+    + ("report.json", "winding.png")
+)
+"""All that a run may leave in its folder."""
+
 
 def prepare(out: Path) -> None:
     """Make sure that files can be written into `out`, and leave nothing behind.
@@ -27,8 +33,9 @@ def prepare(out: Path) -> None:
 def writing(out: Path) -> Iterator[Path]:
     """Give a folder to write files into; on leaving they move to `out`, on an error they vanish.
 
-    Files of the same names in `out` are replaced, all others are left alone.  On an error nothing is left,
-    not even `out` itself where it was missing.  Raises BadInputError where `out` cannot be written.
+    Files of the same names in `out` are replaced; results of an earlier run that this one does not have are
+    removed, as they would belong to another report; all else is left alone.  On an error nothing is left, not
+    even `out` itself where it was missing.  Raises BadInputError where `out` cannot be written.
     """
     made = _missing(out)
     staging: Path | None = None
@@ -69,7 +76,11 @@ def _move(staging: Path, out: Path) -> None:
     for file in sorted(staging.iterdir()):
         if (out / file.name).is_dir():
             raise BadInputError(f"{out / file.name} is a folder where a file belongs; move it away")
-    for file in sorted(staging.iterdir()):
+    fresh = sorted(staging.iterdir())
+    for name in RESULTS - {file.name for file in fresh}:
+        if (out / name).is_file():
+            (out / name).unlink()
+    for file in fresh:
         os.replace(file, out / file.name)
 
 

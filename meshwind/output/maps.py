@@ -7,7 +7,6 @@ import numpy as np
 
 from meshwind.cast import Floats, Ints, frozen
 from meshwind.layup.layup import Layup
-from meshwind.mandrel.mesh import Mesh
 from meshwind.output.winding_angle import winding_angle
 from meshwind.surface.surface import Surface
 
@@ -98,7 +97,7 @@ def maps(on: Grid, layup: Layup, fit_error: Floats | None = None) -> dict[str, F
     return data if fit_error is None else data | {"fit_error": fit_error}
 
 
-def distance_to_mesh(points: Floats, mesh: Mesh) -> Floats:
-    """Distances (k,) of points (k, 3) to the mesh's facets, in its units."""
-    squared = igl.point_mesh_squared_distance(points, np.array(mesh.vertices), np.array(mesh.faces))[0]
+def distance_to_mesh(points: Floats, vertices: Floats, faces: Ints) -> Floats:
+    """Distances (k,) of points (k, 3) to the triangles of a mesh, in its units."""
+    squared = igl.point_mesh_squared_distance(np.array(points), np.array(vertices), np.array(faces))[0]
     return np.asarray(np.sqrt(squared))

@@ -2,18 +2,18 @@
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from meshwind.cast import Bools, Floats
+from meshwind.cast import Floats
 from meshwind.chart.chart import Chart
 from meshwind.layup.layup import Layup
-from meshwind.layup.lengths import bridges, lengths
 from meshwind.mandrel.mesh import Mesh
+from meshwind.output.figures import path_figures
 from meshwind.path.paths import Paths, Status
 from meshwind.surface.surface import Surface
 
@@ -25,21 +25,24 @@ def report(
     *,
     revolutions: float,
     command: str = "",
-    units: str = "mm",
+    units: str = "",
+    tolerance: float | None = None,
     seconds: Mapping[str, float] | None = None,
+    notes: Sequence[str] = (),
     model: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """Gather all figures; lengths in the mesh's units, angles in degrees.
+    """Gather all figures as plain Python values; lengths in the mesh's units, angles in degrees.
 
-    chart is None for a surface that was given rather than fitted; `seconds` per stage; `model` adds to or
-    replaces what the paths themselves tell of the model that the scene needed.
+    chart is None for a surface that was given rather than fitted; `tolerance` that the fit was asked for;
+    `seconds` per stage; `notes` for the user; `model` adds to or replaces what the paths themselves tell of the
+    model that the scene needed.  A figure that does not exist (NaN or infinite) is None.
     """
     paths = layup.paths
-    return {
+    figures = {
         "meshwind": _version(),
         "command": command,
         "mesh": _mesh(mesh, units) | ({} if chart is None else {"ends": chart.annulus.ends}),
-        "surface": _surface(paths.surface, chart),
+        "surface": _surface(paths.surface, chart, tolerance),
         "winding": {
             "revolutions": revolutions,
             "paths_per_family": int(max((paths.family == family).sum() for family in (1, -1))),
@@ -58,7 +61,10 @@ def report(
         "quads": _quads(layup),
         "model": _model(paths) | dict(model or {}),
         "seconds": dict(seconds or {}),
+        "notes": list(notes),
     }
+    told: dict[str, Any] = plain(figures)
+    return told
 
 
 def write_report(path: Path, figures: Mapping[str, Any]) -> None:
@@ -89,15 +95,17 @@ def _version() -> str:
 def _mesh(mesh: Mesh, units: str) -> dict[str, Any]:
     return {
         "name": mesh.name,
-        "vertices": mesh.read_vertices or len(mesh.vertices),
-        "faces": mesh.read_faces or len(mesh.faces),
-        "units": units,
+        "vertices": len(mesh.vertices),
+        "faces": len(mesh.faces),
+        "read_vertices": mesh.read_vertices or len(mesh.vertices),
+        "read_faces": mesh.read_faces or len(mesh.faces),
+        "units": units or "unknown",
         "diagonal": mesh.diagonal,
         "repairs": list(mesh.repairs),
     }
 
 
-def _surface(surface: Surface, chart: Chart | None) -> dict[str, Any]:
+def _surface(surface: Surface, chart: Chart | None, tolerance: float | None) -> dict[str, Any]:
     error = surface.error
     fit: dict[str, Any] = {"rms": None, "max": None, "relative_max": None}
     if error is not None:
@@ -110,26 +118,26 @@ def _surface(surface: Surface, chart: Chart | None) -> dict[str, Any]:
         }
     return {
         "control_points": list(surface.control_points.shape[:2]),
+        "tolerance": tolerance,
         "fit_error": fit,
         "flipped_triangles": 0 if chart is None else chart.flipped,
     }
 
 
 def _paths(paths: Paths) -> dict[str, Any]:
-    figures, spans = lengths(paths), bridges(paths)
-    taut = paths.status == Status.CONVERGED
-    told: Bools = taut if taut.any() else np.ones(len(paths), dtype=bool)
-    total = figures.length[told].sum()
+    figures = path_figures(paths)
+    loose = np.flatnonzero(paths.status != Status.CONVERGED)
     return {
-        "converged": int(taut.sum()),
-        "not_converged": [_failure(int(k), Status(int(paths.status[k]))) for k in np.flatnonzero(~taut)],
-        "length_total": figures.length.sum(),
-        "bridged_fraction": figures.bridged[told].sum() / total if total > 0 else 0.0,
-        "bridges": len(spans.path),
-        "longest_bridge": float(spans.length.max(initial=0.0)),
-        "max_gap": figures.max_gap[told].max(initial=0.0),
-        "max_slip": figures.max_slip[told].max(initial=0.0),
-        "max_residual": paths.residual[told].max(initial=0.0),
+        "converged": figures.at_rest,
+        "not_converged": [_failure(int(k), Status(int(paths.status[k]))) for k in loose],
+        "figures_over": figures.over,
+        "length_total": figures.length,
+        "bridged_fraction": figures.bridged_fraction,
+        "bridges": len(figures.spans),
+        "longest_bridge": figures.longest_bridge,
+        "max_gap": figures.max_gap,
+        "max_slip": figures.max_slip,
+        "max_residual": figures.max_residual,
     }
 
 

@@ -21,6 +21,6 @@ def write_files(out: Path, layup: Layup, mesh: Mesh | None = None) -> None:
     write_quads(out / "quads.vtu", layup.quads)
     write_obj(out / "quads.obj", layup.quads)
     on = grid(layup.paths.surface)
-    fit_error = None if mesh is None else distance_to_mesh(on.points, mesh)
+    fit_error = None if mesh is None else distance_to_mesh(on.points, mesh.vertices, mesh.faces)
     write_surface(out / "surface.vtu", on, maps(on, layup, fit_error))
     write_surface_npz(out / "surface.npz", layup.paths.surface)

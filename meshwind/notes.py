@@ -1,0 +1,78 @@
+"""What a user should know of a run beside its figures: how well the surface follows the mesh."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshwind.chart import Chart
+from meshwind.errors import BadInputError
+from meshwind.mandrel.annulus import Annulus
+from meshwind.output.maps import distance_to_mesh, grid
+from meshwind.output.words import place, power, quantity, ratio
+from meshwind.surface import FitError, Surface
+
+MISSED = 10.0
+"""A vertex error of so many times the tolerance is worth a warning, ..."""
+SHOWS = 1e-4
+"""... where it is also more than this part of the diagonal: less than the facets of most meshes are off."""
+UNRESOLVED = 1e-2
+"""An error, either way, of more than this part of the diagonal means that the surface is another shape."""
+
+SQUEEZED = 8.0
+"""Area scale that is this uneven (its 99th percentile over its mean) is the mark of fingers, ears and fins."""
+_PROTRUSIONS = "protrusions such as fingers and ears are squeezed by the chart; wind a part without them"
+_COARSE = "its edges there are too sharp for the mesh; give a finer mesh, or round them"
+
+
+@dataclass(frozen=True)
+class Note:
+    """One line for the user; a warning is one that says the results may not be what was wanted."""
+
+    text: str
+    warning: bool = False
+
+    def __str__(self) -> str:
+        return f"warning: {self.text}" if self.warning else self.text
+
+
+def about_fit(surface: Surface, chart: Chart, tolerance: float, worst_fit: float, units: str = "") -> tuple[Note, ...]:
+    """What to say of the fit; raises BadInputError where it is off by more than `worst_fit` of the part."""
+    error = surface.error
+    if error is None:
+        return ()
+    if error.relative_max > UNRESOLVED:
+        text = _unresolved(surface, chart, error, units)
+        if error.relative_max > worst_fit:
+            raise BadInputError(f"{text}, or raise worst_fit (--worst-fit), now {worst_fit:g}")
+        return (Note(text, warning=True),)
+    missed = error.to_surface_max / error.diagonal
+    if missed <= tolerance:
+        return ()
+    return (Note(_missed(error, missed, tolerance, units), missed > max(MISSED * tolerance, SHOWS)),)
+
+
+def _missed(error: FitError, missed: float, tolerance: float, units: str) -> str:
+    return (
+        f"the tolerance of {ratio(tolerance)} is missed: vertices lie up to {ratio(missed)} of the part "
+        f"({quantity(error.to_surface_max, units, 2)}) off the surface; give a finer or smoother mesh, or accept it "
+        f"with --tolerance {power(missed)}"
+    )
+
+
+def _unresolved(surface: Surface, chart: Chart, error: FitError, units: str) -> str:
+    squeezed = float(np.quantile(chart.stretch, 0.99)) > SQUEEZED
+    return (
+        f"the surface does not resolve the part: it lies up to {quantity(error.max, units, 2)} "
+        f"({100.0 * error.relative_max:.2g}% of the part) off the mesh near {_worst_place(surface, chart.annulus)}; "
+        + (_PROTRUSIONS if squeezed else _COARSE)
+    )
+
+
+def _worst_place(surface: Surface, annulus: Annulus) -> str:
+    """Where the surface and the mesh lie furthest apart, looked at from both."""
+    on = grid(surface)
+    to_mesh = distance_to_mesh(on.points, annulus.vertices, annulus.faces)
+    own = annulus.vertices[annulus.trusted]
+    to_surface = distance_to_mesh(own, on.points, np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]]))
+    points, away = (on.points, to_mesh) if to_mesh.max() > to_surface.max() else (own, to_surface)
+    return place(points[int(away.argmax())], annulus.mesh.diagonal)

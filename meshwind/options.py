@@ -1,0 +1,100 @@
+"""What a run is asked to do, checked whole before anything is read."""
+
+from dataclasses import dataclass
+from math import isfinite
+from numbers import Integral, Real
+
+from meshwind.errors import BadInputError
+from meshwind.mandrel.ends import parse
+
+STEPS_A_TURN = 8
+"""Fewest steps of a path in a turn: with fewer a polyline is no picture of the fibre."""
+MEMORY = 4e9
+"""Most bytes that a run may take."""
+_BYTES_A_PARTICLE, _BYTES_A_CROSSING = 350, 1500
+"""Peak memory of a run, measured from 3e5 to 1.6e6 particles and 2e4 to 5e5 crossings."""
+_LONGEST_UNIT = 12
+
+
+@dataclass(frozen=True)
+class Options:
+    """Options of a run; one that cannot be used raises BadInputError with its value and what it may be.
+
+    paths: a family; revolutions: turns from end to end; particles: a path; friction: coefficient; ends: "auto",
+    "x", "y", "z" or two points "x,y,z x,y,z"; opening: radius at a closed end in the mesh's units; tolerance:
+    largest distance of a vertex from the surface over the mesh's diagonal; worst_fit: largest distance between
+    surface and mesh over the diagonal that is wound at all; units: the name of the mesh's unit, "" if unknown.
+    """
+
+    paths: int = 12
+    revolutions: float = 0.5
+    particles: int = 401
+    friction: float = 0.0
+    ends: str = "auto"
+    opening: float | None = None
+    tolerance: float = 1e-5
+    worst_fit: float = 0.1
+    units: str = ""
+
+    def __post_init__(self) -> None:
+        set_ = object.__setattr__
+        set_(self, "paths", _whole(self.paths, "paths", 1))
+        set_(self, "particles", _whole(self.particles, "particles", 3))
+        most = (self.particles - 1) / STEPS_A_TURN
+        set_(self, "revolutions", _number(self.revolutions, "revolutions", 0.0))
+        if self.revolutions > most:
+            raise BadInputError(
+                f"revolutions is {_told(self.revolutions)}; give a number from 0 to {most:g}, which is as many as "
+                f"{self.particles} particles a path can follow, or more particles"
+            )
+        if _number(self.friction, "friction", 0.0) != 0.0:
+            raise BadInputError(f"friction {self.friction:g} is not supported yet; use 0")
+        set_(self, "friction", 0.0)
+        if not isinstance(self.ends, str):
+            raise BadInputError(f"ends is {self.ends!r}; give auto, x, y, z or two points as in '0,0,0 0,0,100'")
+        parse(self.ends)
+        if self.opening is not None:
+            set_(self, "opening", _number(self.opening, "opening", 0.0, above=True))
+        set_(self, "tolerance", _number(self.tolerance, "tolerance", 1e-12, 1.0))
+        set_(self, "worst_fit", _number(self.worst_fit, "worst_fit", 0.0, above=True))
+        _check_units(self.units)
+        _check_memory(self.paths, self.particles, self.revolutions)
+
+
+def _whole(value: object, name: str, least: int) -> int:
+    if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
+        raise BadInputError(f"{name} is {_told(value)}; give a whole number from {least} up")
+    return int(value)
+
+
+def _number(value: object, name: str, low: float, high: float | None = None, above: bool = False) -> float:
+    """A finite number from low (or, with `above`, above low) to high."""
+    number = float(value) if isinstance(value, Real) and not isinstance(value, bool) else float("nan")
+    inside = isfinite(number) and (number > low if above else number >= low) and (high is None or number <= high)
+    if inside:
+        return number
+    allowed = f"above {low:g}" if above else f"from {low:g} up" if high is None else f"from {low:g} to {high:g}"
+    raise BadInputError(f"{name} is {_told(value)}; give a number {allowed}")
+
+
+def _told(value: object) -> str:
+    """The value as a few characters of text."""
+    text = f"{float(value):g}" if isinstance(value, Real) and not isinstance(value, bool) else repr(value)
+    return text if len(text) <= 40 else text[:37] + "..."
+
+
+def _check_units(units: object) -> None:
+    if not isinstance(units, str):
+        raise BadInputError(f"units is {_told(units)}; give a short word such as mm")
+    if units and (len(units) > _LONGEST_UNIT or not units.isprintable() or " " in units):
+        raise BadInputError(f"units is {_told(units)}; give a word of at most {_LONGEST_UNIT} letters such as mm")
+
+
+def _check_memory(paths: int, particles: int, revolutions: float) -> None:
+    crossings = 2.0 * revolutions * float(paths) ** 2
+    needed = 2.0 * paths * particles * _BYTES_A_PARTICLE + crossings * _BYTES_A_CROSSING
+    if needed > MEMORY:
+        raise BadInputError(
+            f"{paths} paths a family of {particles} particles and {revolutions:g} revolutions would need about "
+            f"{needed / 1e9:,.0f} GB of memory, and {MEMORY / 1e9:.0f} are allowed; give fewer paths"
+        )

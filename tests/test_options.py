@@ -1,0 +1,69 @@
+"""What a caller may get wrong, told in one line before anything is read."""
+
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import meshwind as mw
+from meshwind.options import Options
+
+BAD: list[tuple[dict[str, Any], str]] = [
+    ({"paths": 0}, "paths is 0; give a whole number from 1 up"),
+    ({"paths": 2.5}, "paths is 2.5; give a whole number from 1 up"),
+    ({"paths": True}, "paths is True; give a whole number from 1 up"),
+    ({"paths": "12"}, "paths is '12'; give a whole number from 1 up"),
+    ({"particles": 2}, "particles is 2; give a whole number from 3 up"),
+    ({"revolutions": float("inf")}, "revolutions is inf; give a number from 0 up"),
+    ({"revolutions": -1}, "revolutions is -1; give a number from 0 up"),
+    ({"revolutions": "0.5"}, "revolutions is '0.5'; give a number from 0 up"),
+    ({"revolutions": 50.1}, "revolutions is 50.1; give a number from 0 to 50"),
+    ({"friction": 0.2}, "friction 0.2 is not supported yet; use 0"),
+    ({"friction": float("nan")}, "friction is nan; give a number from 0 up"),
+    ({"ends": "foo"}, "ends 'foo': give auto, x, y, z or two points"),
+    ({"ends": None}, "ends is None; give auto, x, y, z or two points"),
+    ({"opening": 0}, "opening is 0; give a number above 0"),
+    ({"opening": float("nan")}, "opening is nan; give a number above 0"),
+    ({"tolerance": float("nan")}, "tolerance is nan; give a number from 1e-12 to 1"),
+    ({"tolerance": 0.0}, "tolerance is 0; give a number from 1e-12 to 1"),
+    ({"worst_fit": 0.0}, "worst_fit is 0; give a number above 0"),
+    ({"units": "a b"}, "units is 'a b'; give a word of at most 12 letters such as mm"),
+    ({"units": None}, "units is None; give a short word such as mm"),
+    ({"paths": 100000}, "100000 paths a family of 401 particles and 0.5 revolutions would need about 15,028 GB"),
+    ({"particles": 10**9}, "would need about"),
+]
+
+
+@pytest.mark.parametrize(("options", "says"), BAD, ids=[str(options) for options, _ in BAD])
+def test_bad_options_are_told_before_reading(options: dict[str, Any], says: str) -> None:
+    with pytest.raises(mw.BadInputError) as caught:
+        mw.wind("no/such/file.stl", **options)
+    assert says in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(("mesh", "says"), [(3, "of type int"), (None, "of type NoneType"), (np.eye(3), "ndarray")])
+def test_what_is_no_mesh_is_told(mesh: Any, says: str) -> None:
+    with pytest.raises(mw.BadInputError, match=says):
+        mw.wind(mesh)
+
+
+@pytest.mark.parametrize("out", ["", "  ", 3])
+def test_a_folder_without_a_name_is_refused(out: Any) -> None:
+    with pytest.raises(mw.BadInputError, match="give the path of a folder"):
+        mw.wind("no/such/file.stl", out=out)
+
+
+def test_numbers_of_any_kind_are_taken() -> None:
+    options = Options(paths=np.int32(5), revolutions=Fraction(5, 12), opening=np.float32(2), tolerance=1)  # type: ignore[arg-type]
+    assert (options.paths, options.revolutions, options.opening, options.tolerance) == (5, 5 / 12, 2.0, 1.0)
+    assert [type(value) for value in (options.paths, options.revolutions, options.opening)] == [int, float, float]
+    assert Options(revolutions=100, particles=801).revolutions == 100.0
+
+
+def test_a_result_shows_itself_in_one_line() -> None:
+    result = mw.wind(Path(__file__).parents[1] / "data" / "tank.ply", paths=2, revolutions=0.25)
+    assert repr(result) == "<meshwind Result: tank.ply, 4 of 4 paths at rest>"
+    assert result.report()["winding"]["revolutions"] == 0.25
