@@ -40,7 +40,7 @@ class End:
         return place(self.centre, self.diagonal)
 
 
-def place(point: Floats, diagonal: float) -> str:
+def place(point: Floats | tuple[float, ...], diagonal: float) -> str:
     """Coordinates of a point as text, to a 10,000th of the part's diagonal or finer: no round-off, no 1e+08 twice."""
     digits = 5 - int(np.ceil(np.log10(diagonal)))
     return "(" + ", ".join(f"{round(float(x), digits) + 0.0:.12g}" for x in point) + ")"

@@ -63,11 +63,16 @@ def oriented(faces: Ints) -> Ints:
     return np.asarray(igl.bfs_orient(faces)[0], dtype=np.int64)
 
 
-def check_orientable(faces: Ints, name: str) -> None:
-    """Refuse a manifold mesh that has only one side."""
+def disagreements(faces: Ints) -> int:
+    """Number of edges across which the two faces are turned opposite ways."""
     found = edges(faces)
     first, second = pairs(found.of_face, np.flatnonzero(found.count == 2))
-    if (faces.ravel()[first] == faces.ravel()[second]).any():
+    return int((faces.ravel()[first] == faces.ravel()[second]).sum())
+
+
+def check_orientable(faces: Ints, name: str) -> None:
+    """Refuse a manifold mesh, oriented as well as can be, that has only one side."""
+    if disagreements(faces):
         raise BadInputError(f"{name}: has only one side, like a Moebius strip; give a part with an inside")
 
 

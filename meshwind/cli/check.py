@@ -1,0 +1,105 @@
+"""`meshwind check`: what a mesh is and what `wind` would do with it; nothing is changed or written."""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from meshwind.errors import BadInputError
+
+if TYPE_CHECKING:
+    from meshwind.mandrel.findings import Findings, Piece, Rim
+
+_MOST = 12  # pieces or rims that are listed one by one
+
+
+def check(
+    mesh: Annotated[
+        Path, typer.Argument(help="Triangle mesh: STL, OBJ, PLY, OFF, GLB, 3MF, VTK, MSH, INP.", metavar="MESH")
+    ],
+    ends: Annotated[
+        str, typer.Option(help='Where the ends are: auto, x, y, z, two points "x,y,z x,y,z", two rims "loops 0 1".')
+    ] = "auto",
+    opening: Annotated[
+        float | None,
+        typer.Option(help="Radius of the opening at a closed end, in the mesh's units.  [default: from the part]"),
+    ] = None,
+    component: Annotated[int, typer.Option(help="Which piece, by its rank of area; 0 is the largest.", min=0)] = 0,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the same as JSON.")] = False,
+) -> int:
+    """Tell what MESH is, its pieces, rims and faults, and what `wind` would do with it.  Writes nothing.
+
+    Exit status: 0 it has two ends and can be wound; 2 it cannot, and one line says why.
+
+    Example: meshwind check part.stl --ends "loops 0 2"
+    """
+    from meshwind.mandrel import inspect
+
+    findings = inspect(mesh, ends, opening, component)
+    typer.echo(json.dumps(asdict(findings), indent=2) if as_json else "\n".join(_lines(findings)))
+    if findings.problem:
+        raise BadInputError(findings.problem)
+    return 0
+
+
+def _lines(found: "Findings") -> list[str]:
+    """The findings for a person, a label before each line."""
+    size = " x ".join(f"{length:.4g}" for length in found.size)
+    rims = _count(len(found.rims), "open rim") if found.rims else "open"
+    shape = ["closed" if found.closed else rims]
+    shape += [] if found.genus is None else [f"genus {found.genus}"]
+    shape += ["one-sided"] if found.one_sided else []
+    faults = [
+        f"{_count(count, 'edge')} {what}"
+        for count, what in (
+            (found.crowded_edges, "with more than two faces"),
+            (found.turned_edges, "between faces that are turned opposite ways"),
+        )
+        if count
+    ]
+    return [
+        f"mesh      {found.name}: {found.format}, {found.vertices} vertices, {found.faces} faces",
+        f"size      {size}, diagonal {found.diagonal:.4g}",
+        *_listed("piece", [_piece(piece, found.component) for piece in found.pieces], found.piece_count),
+        f"shape     {', '.join(shape)}",
+        *_listed("rim", [_rim(rim, found.diagonal) for rim in found.rims], len(found.rims)),
+        *(f"fault     {fault}" for fault in faults),
+        *(f"repair    {act}" for act in found.repairs),
+        *_verdict(found),
+    ]
+
+
+def _verdict(found: "Findings") -> list[str]:
+    if found.problem:
+        return ["verdict   cannot be wound"]
+    lengths = " and ".join(f"{length:.4g}" for length in found.rim_lengths)
+    return [
+        f"ends      {found.ends}",
+        f"wound     {found.annulus_vertices} vertices, {found.annulus_faces} faces, rims {lengths} long",
+        "verdict   can be wound",
+    ]
+
+
+def _piece(piece: "Piece", chosen: int) -> str:
+    kind = "closed" if piece.closed else "open"
+    taken = ", taken" if piece.number == chosen else ""
+    return f"{piece.number}: area {piece.area:.4g}, {_count(piece.faces, 'face')}, {kind}{taken}"
+
+
+def _rim(rim: "Rim", diagonal: float) -> str:
+    from meshwind.mandrel.ends import place
+
+    use = f", {rim.use}" if rim.use else ""
+    return f"{rim.number}: at {place(rim.place, diagonal)}, {rim.length:.4g} long, {rim.vertices} vertices{use}"
+
+
+def _listed(label: str, rows: list[str], count: int) -> list[str]:
+    """The rows, a label before each; of many only the first."""
+    more = [f"{label:10}and {count - _MOST} more"] if count > _MOST else []
+    return [f"{label:10}{row}" for row in rows[:_MOST]] + more
+
+
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}{'' if number == 1 else 's'}"
