@@ -8,6 +8,7 @@ from typing import NoReturn
 
 import typer
 
+from meshwind.cli.check import check
 from meshwind.cli.wind import wind
 from meshwind.errors import BadInputError
 
@@ -25,6 +26,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.command()(wind)
+app.command()(check)
 
 
 def _version(wanted: bool) -> None:
