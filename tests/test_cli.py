@@ -19,6 +19,7 @@ FILES = {
     "quads.obj",
     "surface.vtu",
     "surface.npz",
+    "chart.png",
     "report.json",
 }
 

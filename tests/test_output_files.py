@@ -42,6 +42,7 @@ def written(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
 def test_all_files_are_there(written: tuple[Layup, Path]) -> None:
     assert sorted(file.name for file in written[1].iterdir()) == [
         "bridges.vtp",
+        "chart.png",
         "crossings.vtp",
         "paths.vtp",
         "quads.obj",
@@ -157,6 +158,7 @@ def test_surface_grid_and_maps(written: tuple[Layup, Path]) -> None:
         "angle",
         "coverage",
         "fit_error",
+        "stretch",
     }
     assert set(read.point_data) == names
     assert all(np.isfinite(values).all() for values in read.point_data.values())

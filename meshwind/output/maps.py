@@ -93,8 +93,15 @@ def maps(on: Grid, layup: Layup, fit_error: Floats | None = None) -> dict[str, F
         "class": kind,
         "angle": np.degrees(winding_angle(layup.paths, *on.shape)).ravel(),
         "coverage": layup.coverage.at(on.uv),
+        "stretch": _stretch(on),
     }
     return data if fit_error is None else data | {"fit_error": fit_error}
+
+
+def _stretch(on: Grid) -> Floats:
+    """Area scale from the plane to the part at each point, over its mean: how far the chart squeezes it."""
+    scale = np.linalg.norm(np.cross(on.frames[:, 1], on.frames[:, 2]), axis=1)
+    return np.asarray(scale / scale.mean())
 
 
 def distance_to_mesh(points: Floats, vertices: Floats, faces: Ints) -> Floats:

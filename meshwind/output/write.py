@@ -5,6 +5,7 @@ from pathlib import Path
 from meshwind.layup.layup import Layup
 from meshwind.mandrel.mesh import Mesh
 from meshwind.output.fibres import write_bridges, write_crossings, write_paths
+from meshwind.output.image_files import write_chart_image
 from meshwind.output.maps import distance_to_mesh, grid, maps
 from meshwind.output.quad_files import write_obj, write_quads
 from meshwind.output.surface_files import write_surface, write_surface_npz
@@ -24,3 +25,4 @@ def write_files(out: Path, layup: Layup, mesh: Mesh | None = None) -> None:
     fit_error = None if mesh is None else distance_to_mesh(on.points, mesh.vertices, mesh.faces)
     write_surface(out / "surface.vtu", on, maps(on, layup, fit_error))
     write_surface_npz(out / "surface.npz", layup.paths.surface)
+    write_chart_image(out / "chart.png", layup.paths.surface)
