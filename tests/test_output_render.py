@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,10 +11,15 @@ from layup_shapes import bridged, cylinder, helices, waisted
 from PIL import Image
 
 from meshwind.layup.layup import assess
+from meshwind.layup.lengths import bridges
+from meshwind.mandrel.mesh import Mesh
 from meshwind.output import driver
 from meshwind.output.maps import grid
-from meshwind.output.scene import scene
+from meshwind.output.report import report
+from meshwind.output.scene import lifts, scene
 from meshwind.output.view import best_view
+from meshwind.output.words import quantity
+from meshwind.surface import shapes
 
 
 def share(image: np.ndarray, colour: tuple[int, int, int], reach: float) -> float:
@@ -37,7 +43,7 @@ def test_the_picture_shows_both_families_and_the_bridges(tmp_path: Path) -> None
     body = image[140:1080, 60:1315]
     assert share(body, (0, 114, 178), 0.06) > 0.003
     assert share(body, (230, 159, 0), 0.06) > 0.003
-    assert share(body, (33, 145, 140), 0.06) > 0.001  # the middle of viridis
+    assert share(body, (220, 50, 152), 0.15) > 0.001  # the magenta of wide gaps
     assert (body[:, 0] == 255.0).all()
     assert (body[:, -1] == 255.0).all()
 
@@ -86,7 +92,7 @@ def test_the_view_is_square_on_and_holds_everything() -> None:
     for turned in np.eye(3), np.eye(3)[[2, 0, 1]], np.eye(3)[[1, 2, 0]]:
         points = on.points @ turned.T
         none = np.zeros((0, 3))
-        view = best_view(points, on.quads, none, none, np.zeros(0))
+        view = best_view(points, on.quads, points.reshape(*on.shape, 3).mean(axis=0), none, none, np.zeros(0))
         axes = np.stack([view.right, view.up, view.eye])
         assert axes @ axes.T == pytest.approx(np.eye(3), abs=1e-12)
         assert np.linalg.det(axes) == pytest.approx(1.0)
@@ -103,8 +109,70 @@ def test_the_view_is_square_on_and_holds_everything() -> None:
 def test_the_view_turns_to_where_the_bridges_are() -> None:
     on = grid(cylinder())
     for side in np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]):
-        view = best_view(on.points, on.quads, side[None] + [[0.0, 0.0, 2.0]], side[None], np.ones(1))
+        axis = on.points.reshape(*on.shape, 3).mean(axis=0)
+        view = best_view(on.points, on.quads, axis, side[None] + [[0.0, 0.0, 2.0]], side[None], np.ones(1))
         assert view.eye @ side > 0.9
+
+
+@pytest.mark.parametrize("inside", [1.0, -1.0])
+def test_a_bend_is_seen_from_its_side(inside: float) -> None:
+    """A quarter bend is looked at square onto its plane, whatever side of it the bridges are on."""
+    on = grid(shapes.elbow(3.0, 1.0))
+    axis = on.points.reshape(*on.shape, 3).mean(axis=0)
+    plane = np.linalg.svd(axis - axis.mean(axis=0))[2][2]
+    marks = axis[[len(axis) // 2]]
+    view = best_view(on.points, on.quads, axis, marks, inside * plane[None], np.ones(1))
+    assert view.eye @ (inside * plane) > np.cos(np.radians(25.0))
+
+
+def test_bridges_are_drawn_straight() -> None:
+    """Lifted by any radius, all particles of a bridge stay on the line between its lifted ends."""
+    paths = bridged()
+    points = paths.points + 0.05 * lifts(paths)
+    spans = bridges(paths)
+    assert len(spans) > 5
+    for path, first, last in zip(spans.path, spans.first, spans.last, strict=True):
+        chord = points[path, first : last + 1]
+        direction = (chord[-1] - chord[0]) / np.linalg.norm(chord[-1] - chord[0])
+        off = np.cross(chord - chord[0], direction)
+        assert np.abs(off).max() < 1e-12
+        assert chord[0] == pytest.approx(paths.points[path, first] + 0.05 * paths.normal[path, first])
+    touching = paths.on_surface
+    assert np.array_equal(lifts(paths)[touching], paths.normal[touching])
+
+
+@pytest.mark.parametrize("failed", [[], [0, 5], list(range(8))])
+def test_picture_and_report_tell_the_same_figures(failed: list[int]) -> None:
+    paths = bridged()
+    status = np.zeros(len(paths), dtype=np.int64)
+    status[np.array(failed, dtype=int)] = 2
+    if len(failed) == 8:
+        status[:] = 2
+    layup = assess(replace(paths, status=status))
+    figures = report(layup, Mesh(np.eye(3), np.array([[0, 1, 2]])), None, revolutions=0.5)
+    seen = scene(layup, "waist", "in")
+    told = figures["paths"]
+    assert f"bridged {100 * told['bridged_fraction']:.1f} %" in seen["subtitle"]
+    assert f"length {quantity(told['length_total'], 'in')}" in seen["subtitle"]
+    assert f"{figures['crossings']['count']} crossings" in seen["subtitle"]
+    assert (f"{told['converged']} of {len(paths)} at rest" in seen["subtitle"]) == bool(failed)
+    assert seen["max_gap"] == told["max_gap"] == seen["bridge_gap"].max()
+    assert len(seen["bridge_sizes"]) == told["bridges"]
+
+
+def test_a_picture_without_a_unit_names_none(tmp_path: Path) -> None:
+    layup = assess(bridged())
+    assert "in" not in scene(layup, "waist")["subtitle"].split()
+    images = []
+    for units in ("", "in"):
+        driver.start_probe()
+        if driver.draw(tmp_path / "winding.png", layup, "waist", units):
+            return  # a machine without a driver
+        with Image.open(tmp_path / "winding.png") as opened:
+            images.append(np.asarray(opened.convert("RGB"), dtype=int))
+    changed = (images[0] != images[1]).any(axis=2)
+    assert changed.any(axis=1)[1100:].any()  # the ruler
+    assert changed[300:460].any()  # the colour scale
 
 
 def test_thinning_keeps_the_ends_of_paths_and_bridges() -> None:

@@ -42,10 +42,10 @@ def _paths(paths: dict[str, Any], units: str) -> list[str]:
     from meshwind.output.words import quantity
 
     failed = len(paths["not_converged"])
-    over = f" (figures: {paths['figures_over']})" if failed else ""
+    whose = f"; {'these' if paths['converged'] else 'all'}" if failed else ""
     bridged = f"bridged {100 * paths['bridged_fraction']:.1f} %" if paths["bridges"] else "no bridges"
     lines = [
-        f"paths     {paths['converged']} of {paths['converged'] + failed} at rest{over}: length "
+        f"paths     {paths['converged']} of {paths['converged'] + failed} at rest{whose}: length "
         f"{quantity(paths['length_total'], units)}, {bridged}"
     ]
     if paths["bridges"]:

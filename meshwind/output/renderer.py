@@ -11,16 +11,18 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from matplotlib import colormaps, get_data_path
+from matplotlib.colors import ListedColormap
 from PIL import Image, ImageDraw, ImageFont
 
 SIZE = (1600, 1200)
-LEFT, RIGHT, TOP, BOTTOM = 60, 285, 140, 120
+LEFT, RIGHT, TOP, BOTTOM = 60, 285, 150, 120
 """Margins in pixels around the part: the title above, the scale below, the legend to the right."""
 PAPER, INK, FAINT = "#ffffff", "#1c1c1c", "#5a5a5a"
 PART, INSIDE = "#e6e2da", "#8f8a82"
 FAMILY = {1: "#0072b2", -1: "#e69f00"}  # Okabe and Ito's blue and orange: told apart by every eye
 LOOSE = "#7a7a7a"
-GAPS = "viridis"
+GAPS = ListedColormap(colormaps["RdPu"](np.linspace(0.3, 1.0, 256)))
+"""Pale where a bridge all but touches, dark where the gap is wide: what matters stands out, in greys too."""
 
 
 def main() -> None:
@@ -83,7 +85,7 @@ def add_smooth(plotter: Any, mesh: Any, **look: Any) -> None:
 def add_fibres(plotter: Any, scene: dict[str, Any], radius: float) -> None:
     """Both families as tubes lifted by their radius, so that they lie on the part and do not sink in."""
     size = scene["paths"].shape[1]
-    points = scene["paths"] + radius * scene["path_normals"]
+    points = scene["paths"] + radius * scene["path_lift"]
     for name, colour in FAMILY.items():
         add_tubes(plotter, points[(scene["family"] == name) & scene["taut"]], size, radius, colour)
     add_tubes(plotter, points[~scene["taut"]], size, 0.6 * radius, LOOSE)
@@ -100,9 +102,9 @@ def add_bridges(plotter: Any, scene: dict[str, Any], radius: float) -> None:
     """The spans off the surface, thicker and coloured by their gap."""
     if not len(scene["bridges"]):
         return
-    lines = polylines(scene["bridges"] + radius * scene["bridge_normals"], scene["bridge_sizes"])
+    lines = polylines(scene["bridges"] + radius * scene["bridge_lift"], scene["bridge_sizes"])
     lines.point_data["gap"] = scene["bridge_gap"]
-    tubes = lines.tube(radius=1.6 * radius, n_sides=10)
+    tubes = lines.tube(radius=1.4 * radius, n_sides=10)
     add_smooth(
         plotter,
         tubes,
@@ -131,7 +133,7 @@ def aim(plotter: Any, scene: dict[str, Any], scale: float) -> None:
     plotter.enable_parallel_projection()
     plotter.parallel_scale = 0.5 * SIZE[1] * scale
     plotter.set_background(PAPER)
-    for x, y, strength in ((-0.5, 0.6, 0.8), (0.9, 0.0, 0.35)):  # a key from the upper left, a fill
+    for x, y, strength in ((-0.6, 0.6, 0.68), (0.9, 0.0, 0.35)):  # a key from the upper left, a fill
         side = scene["eye"] + x * scene["right"] + y * scene["up"]
         light = pv.Light(position=focus + reach * side, focal_point=focus, intensity=strength)
         light.positional = False
@@ -140,7 +142,7 @@ def aim(plotter: Any, scene: dict[str, Any], scale: float) -> None:
 
 
 def annotate(image: Any, scene: dict[str, Any], scale: float) -> None:
-    """Title, legend, colour scale and ruler."""
+    """Title, legend, colour scale, ruler and axes."""
     pen = ImageDraw.Draw(image)
     pen.text((LEFT, 36), str(scene["title"]), INK, font=face(38))
     pen.text((LEFT, 88), str(scene["subtitle"]), FAINT, font=face(25))
@@ -148,6 +150,7 @@ def annotate(image: Any, scene: dict[str, Any], scale: float) -> None:
     if len(scene["bridges"]):
         colour_scale(image, pen, float(scene["max_gap"]), str(scene["units"]))
     ruler(pen, scale, str(scene["units"]))
+    axes(pen, scene)
 
 
 def face(size: int) -> Any:
@@ -160,7 +163,7 @@ def legend(pen: Any, scene: dict[str, Any]) -> None:
     x, y = SIZE[0] - RIGHT + 20, TOP + 40
     rows = [(FAMILY[1], "family +1"), (FAMILY[-1], "family −1")]
     if not scene["taut"].all():
-        rows.append((LOOSE, "no equilibrium"))
+        rows.append((LOOSE, "not at rest"))
     for k, (colour, words) in enumerate(rows):
         pen.rectangle((x, y + 44 * k + 10, x + 44, y + 44 * k + 17), fill=colour)
         pen.text((x + 58, y + 44 * k), words, INK, font=face(25))
@@ -169,12 +172,12 @@ def legend(pen: Any, scene: dict[str, Any]) -> None:
 def colour_scale(image: Any, pen: Any, most: float, units: str) -> None:
     """The gap of the bridges, 0 below."""
     x, top, bottom, width = SIZE[0] - RIGHT + 20, 470, 930, 34
-    shade = colormaps[GAPS](np.linspace(1.0, 0.0, bottom - top))[:, None, :3]
+    shade = GAPS(np.linspace(1.0, 0.0, bottom - top))[:, None, :3]
     bar = np.repeat((255 * shade).astype(np.uint8), width, axis=1)
     image.paste(Image.fromarray(bar), (x, top))
     pen.rectangle((x, top, x + width, bottom), outline=INK)
     pen.text((x, top - 84), "bridges:", INK, font=face(25))
-    pen.text((x, top - 50), f"gap in {units}", INK, font=face(25))
+    pen.text((x, top - 50), f"gap in {units}" if units else "gap", INK, font=face(25))
     for tick in ticks(most):
         y = bottom - (bottom - top) * tick / most
         pen.line((x + width, y, x + width + 8, y), fill=INK)
@@ -186,7 +189,23 @@ def ruler(pen: Any, scale: float, units: str) -> None:
     length = round_below(320.0 * scale)
     x, y, reach = LEFT, SIZE[1] - 52, length / scale
     pen.rectangle((x, y - 4, x + reach, y + 4), fill=INK)
-    pen.text((x + reach + 16, y), f"{length:g} {units}", INK, font=face(25), anchor="lm")
+    pen.text((x + reach + 16, y), f"{length:g} {units}".strip(), INK, font=face(25), anchor="lm")
+
+
+def axes(pen: Any, scene: dict[str, Any]) -> None:
+    """The model's axes as they point on the picture, the one towards the eye drawn last."""
+    toward = scene["eye"]
+    middle, reach = np.array([SIZE[0] - RIGHT + 110.0, SIZE[1] - 110.0]), 62.0
+    flat = np.stack([scene["right"], -scene["up"]], axis=1)
+    for axis in np.argsort(toward):
+        tip = middle + reach * flat[axis]
+        colour = INK if toward[axis] > -0.2 else FAINT
+        pen.line((*middle, *tip), fill=colour, width=4)
+        # an axis that points at the eye is all but a dot: its name goes where the other two are not
+        plain = bool(np.linalg.norm(flat[axis]) > 0.2)
+        away = flat[axis] if plain else -flat.sum(axis=0)
+        label = (tip if plain else middle) + 22.0 * away / np.linalg.norm(away)
+        pen.text(tuple(label), "xyz"[axis], colour, font=face(25), anchor="mm")
 
 
 def round_below(value: float) -> float:

@@ -9,6 +9,8 @@ from meshwind.cast import Floats, Ints
 _TILT = np.radians(14.0)
 """How far the eye is turned towards an end of the part, so that its roundness shows."""
 _TURNS = 24
+_BEND = 8.0
+"""Weight of the bend: one that strays by 5% of the part's size outweighs the bridges."""
 
 
 @dataclass(frozen=True)
@@ -26,11 +28,12 @@ class View:
     height: float
 
 
-def best_view(points: Floats, quads: Ints, marks: Floats, outward: Floats, weight: Floats) -> View:
-    """Look square onto the long axis, from where most of the part and of the marks are in sight.
+def best_view(points: Floats, quads: Ints, axis: Floats, marks: Floats, outward: Floats, weight: Floats) -> View:
+    """Look square onto the long axis, from where most of the part, of its bend and of the marks are in sight.
 
-    points (k, 3) and quads (q, 4) are the part; marks (m, 3) with outward normals (m, 3) and weights (m,) are
-    what the picture is about.  A part that stands up along z is shown upright, others lie along the picture.
+    points (k, 3) and quads (q, 4) are the part; axis (j, 3) its middle from end to end; marks (m, 3) with outward
+    normals (m, 3) and weights (m,) are what the picture is about.  A part that stands up along z is shown
+    upright, others lie along the picture.
     """
     area, normal = _facets(points, quads)
     middle = points[quads].mean(axis=1)
@@ -43,9 +46,12 @@ def best_view(points: Floats, quads: Ints, marks: Floats, outward: Floats, weigh
     sides = np.cos(turn)[:, None] * across + np.sin(turn)[:, None] * np.cross(long, across)
     shadow = np.abs(normal @ sides.T).T @ area / (2.0 * area.sum())
     seen = np.maximum(outward @ sides.T, 0.0).T @ weight / max(float(weight.sum()), 1e-300)
+    bend = _bend(axis, long, sides) / np.sqrt(np.trace(spread) / area.sum())
     # A tie, as on a body of revolution, goes to the side that faces -y: the customary front.
-    eye = sides[int(np.argmax(shadow + 0.5 * seen - 1e-3 * sides[:, 1]))]
+    eye = sides[int(np.argmax(shadow + 0.5 * seen + _BEND * bend - 1e-3 * sides[:, 1]))]
     upright = abs(long[2]) > 0.7
+    if upright and long[2] < 0.0:
+        long = -long
     side = np.cross(eye, long) * (-1.0 if upright else 1.0)
     if not upright and side[2] < 0.0:
         long, side = -long, -side
@@ -55,6 +61,15 @@ def best_view(points: Floats, quads: Ints, marks: Floats, outward: Floats, weigh
     low, high = flat.min(axis=0), flat.max(axis=0)
     middle = 0.5 * (low + high) @ np.stack([right, up, eye])
     return View(right, up, eye, middle, float(high[0] - low[0]), float(high[1] - low[1]))
+
+
+def _bend(axis: Floats, long: Floats, sides: Floats) -> Floats:
+    """How far the part's middle strays from a straight line as seen from each of the sides (s,), root mean square."""
+    along = axis @ long
+    across = axis @ np.cross(sides, long).T
+    slope = np.stack([along, np.ones_like(along)], axis=1)
+    stray = across - slope @ np.linalg.lstsq(slope, across, rcond=None)[0]
+    return np.asarray(np.sqrt((stray**2).mean(axis=0)))
 
 
 def _facets(points: Floats, quads: Ints) -> tuple[Floats, Floats]:
