@@ -325,3 +325,22 @@ def test_genus_two_is_counted() -> None:
     wall = [np.column_stack([np.roll(a, -1), a, b]), np.column_stack([np.roll(a, -1), b, np.roll(b, -1)])]
     with pytest.raises(BadInputError, match="genus 2"):
         annulus(mesh_from(vertices, np.concatenate([faces, *wall])))
+
+
+NEARLY: dict[str, Callable[[], Part]] = {
+    "nearly round": lambda: moved(ball(), np.diag([1.0, 1.003, 1.008]), np.zeros(3), 1.0),
+    "hardly fuller below": lambda: tube(lambda z: 1.0 - 1e-4 * z),
+    "as long, flared above": lambda: tube(lambda z: 1.0 + 1e-4 * np.sin(2 * np.pi * z / 3.0)),
+}
+
+
+@pytest.mark.parametrize("name", NEARLY)
+def test_a_slight_clue_in_the_part_outweighs_its_pose(name: str) -> None:
+    part = NEARLY[name]()
+    if name == "nearly round":  # a ball of one axis has no fuller end
+        part = part[0] * (1 + 0.002 * part[0][:, [2]]), part[1]
+    first = [rim.mean(axis=0) for rim in rim_points(trim(part))]
+    for seed in range(4):
+        matrix, shift = rotation(seed), np.array([3.0, -7.0, 2.0]) * seed
+        second = [(rim.mean(axis=0) - shift) @ matrix for rim in rim_points(trim(moved(part, matrix, shift, 1.0)))]
+        assert np.abs(np.array(first) - second).max() < 1e-3

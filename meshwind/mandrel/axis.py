@@ -6,7 +6,8 @@ from meshwind.cast import Floats, Ints
 from meshwind.mandrel.measure import areas
 
 _ALIKE = 0.05  # moments closer than this are equal
-_LEVEL = 1e-3  # a skewness below this is none
+_ROUND = 1e-4  # moments closer than this are equal to the accuracy of a mesh
+_LEVEL = 1e-6  # a skewness below this is round-off, of single precision too
 
 
 def moments(vertices: Floats, faces: Ints) -> tuple[Floats, Floats]:
@@ -23,13 +24,17 @@ def moments(vertices: Floats, faces: Ints) -> tuple[Floats, Floats]:
 def longest_axis(vertices: Floats, faces: Ints) -> tuple[Floats, str]:
     """Unit vector (3,) of the axis of a closed part, and what it is in words.
 
-    The longest principal axis, or the shortest where the other two are alike, as for a disc; z for a part as
-    round as a ball, which has none of its own.
+    The longest principal axis, or the shortest where the other two are alike, as for a disc.  Of a part almost as
+    round as a ball it is the one that stands out from the others more, and z where none does.
     """
     size, frame = np.linalg.eigh(moments(vertices, faces)[1])
-    if size[2] - size[0] < _ALIKE * size[2]:
-        return np.array([0.0, 0.0, 1.0]), "the z axis, for the part is as round as a ball"
-    if size[2] - size[1] < _ALIKE * size[2]:
+    short, long = (float(size[k + 1] - size[k]) / float(size[2]) for k in (0, 1))
+    if short + long < _ALIKE:
+        if max(short, long) < _ROUND:
+            return np.array([0.0, 0.0, 1.0]), "the z axis, for the part is as round as a ball"
+        which = "longest" if long >= short else "shortest"
+        return frame[:, 2 if long >= short else 0], f"its {which} axis, though it is almost round"
+    if long < _ALIKE:
         return frame[:, 0], "its axis of revolution"
     return frame[:, 2], "its longest axis"
 
@@ -37,14 +42,20 @@ def longest_axis(vertices: Floats, faces: Ints) -> tuple[Floats, str]:
 def forward(vertices: Floats, faces: Ints, direction: Floats) -> Floats:
     """The unit vector along or against `direction` that leads from the fuller end of the part to the slimmer.
 
-    A part without a fuller end is told from its mirror image by its coordinates: towards the larger ones.
+    Fuller is the end with more of the surface near it, or else the one with the surface further from the axis.  A
+    part with neither is told from its mirror image by its coordinates: towards the larger ones.
     """
     unit = direction / np.linalg.norm(direction)
-    along = vertices[faces].mean(axis=1) @ unit
-    area = areas(vertices, faces)
-    along = along - (area * along).sum() / area.sum()
-    spread = float(np.sqrt((area * along**2).sum() / area.sum()))
-    skewness = float((area * along**3).sum() / area.sum()) / spread**3
-    if abs(skewness) < _LEVEL:
-        skewness = float(unit[np.argmax(np.abs(unit))])
-    return np.asarray(unit if skewness > 0 else -unit)
+    centroid, second = moments(vertices, faces)
+    middle = vertices[faces].mean(axis=1) - centroid
+    along = middle @ unit
+    away = np.linalg.norm(middle - along[:, None] * unit, axis=1)
+    share = areas(vertices, faces)
+    share = share / share.sum()
+    along = along - share @ along
+    spread = float(np.sqrt(share @ along**2)) + 1e-300
+    radius = float(np.sqrt(np.trace(second)))
+    skewness = float(share @ along**3) / spread**3
+    flare = -float(share @ (along * away**2)) / (spread * radius**2)
+    clue = next((value for value in (skewness, flare) if abs(value) > _LEVEL), float(unit[np.argmax(np.abs(unit))]))
+    return np.asarray(unit if clue > 0 else -unit)
