@@ -20,6 +20,7 @@ _BY_EDGE = 0.1  # ... and this part of the edges at it
 _ALONG = 1e-6  # of the diagonal, how far a vertex may lie on the wrong side of an edge that it halves
 _SAME_WAY = 0.9  # cosine from which two boundaries point the same way, as the rims of a wall's two sides do
 _NEIGHBOURS = 16  # copies of a vertex that are looked at: twice as many as faces meet at most vertices
+_LOOSE = 2  # boundary edges a face from which the mesh is a heap of triangles, in which a search has no end
 _ROUNDS = 12
 
 
@@ -102,9 +103,8 @@ def _hanging(vertices: Floats, faces: Ints, reach: float) -> tuple[Ints, Ints, F
     """Boundary edges (k, 2) that a vertex of another boundary halves, that vertex (k,) and how far off it lies."""
     low, high, apex = _open_edges(faces)
     rim = np.unique(np.concatenate([low, high]))
-    none = np.empty((0, 2), dtype=np.int64), np.empty(0, dtype=np.int64), np.empty(0)
-    if len(rim) == 0:
-        return none
+    if not 0 < len(low) < _LOOSE * len(faces):
+        return np.empty((0, 2), dtype=np.int64), np.empty(0, dtype=np.int64), np.empty(0)
     out = _outward(vertices, low, high, apex)
     away = _at_vertices(len(vertices), low, high, out)
     along = vertices[high] - vertices[low]
