@@ -7,8 +7,9 @@ import numpy as np
 from meshwind.chart import Chart
 from meshwind.errors import BadInputError
 from meshwind.mandrel.annulus import Annulus
+from meshwind.mandrel.ends import place
 from meshwind.output.maps import distance_to_mesh, grid
-from meshwind.output.words import place, power, quantity, ratio
+from meshwind.output.words import power, quantity, ratio
 from meshwind.surface import FitError, Surface
 
 MISSED = 10.0

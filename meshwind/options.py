@@ -20,8 +20,9 @@ _LONGEST_UNIT = 12
 class Options:
     """Options of a run; one that cannot be used raises BadInputError with its value and what it may be.
 
-    paths: a family; revolutions: turns from end to end; particles: a path; friction: coefficient; ends: "auto",
-    "x", "y", "z" or two points "x,y,z x,y,z"; opening: radius at a closed end in the mesh's units; tolerance:
+    paths: a family; revolutions: turns from end to end; particles: a path; friction: coefficient; component: the
+    piece of the mesh by its rank of area; ends: "auto", "x", "y", "z", two points "x,y,z x,y,z" or two rims "loops
+    0 1"; opening: radius at a closed end in the mesh's units; tolerance:
     largest distance of a vertex from the surface over the mesh's diagonal; worst_fit: largest distance between
     surface and mesh over the diagonal that is wound at all; units: the name of the mesh's unit, "" if unknown.
     """
@@ -30,6 +31,7 @@ class Options:
     revolutions: float = 0.5
     particles: int = 401
     friction: float = 0.0
+    component: int = 0
     ends: str = "auto"
     opening: float | None = None
     tolerance: float = 1e-5
@@ -50,8 +52,7 @@ class Options:
         if _number(self.friction, "friction", 0.0) != 0.0:
             raise BadInputError(f"friction {self.friction:g} is not supported yet; use 0")
         set_(self, "friction", 0.0)
-        if not isinstance(self.ends, str):
-            raise BadInputError(f"ends is {self.ends!r}; give auto, x, y, z or two points as in '0,0,0 0,0,100'")
+        set_(self, "component", _whole(self.component, "component", 0))
         parse(self.ends)
         if self.opening is not None:
             set_(self, "opening", _number(self.opening, "opening", 0.0, above=True))

@@ -106,6 +106,7 @@ def wind(
     paths: int = 12,
     revolutions: float = 0.5,
     friction: float = 0.0,
+    component: int = 0,
     ends: str = "auto",
     opening: float | None = None,
     tolerance: float = 1e-5,
@@ -120,13 +121,14 @@ def wind(
     """Lay two families of taut paths on a triangle mesh.
 
     mesh: a file or a `Mesh`; paths: a family; revolutions: turns from end to end; friction: coefficient (0 for
-    now); ends: "auto", "x", "y", "z" or two points "x,y,z x,y,z"; opening: radius at a closed end in the mesh's
-    units; tolerance: largest distance of a vertex from the surface over the mesh's diagonal; worst_fit: largest
-    distance between surface and mesh, over the diagonal, that is wound at all; units: the name of the mesh's
-    unit, "" if unknown; particles: a path; out: folder for the files; render: draw winding.png as well.  Raises
-    BadInputError, in one line, for whatever the caller can mend.
+    now); component: which piece of a file, by its rank of area; ends: "auto", "x", "y", "z", two points "x,y,z
+    x,y,z" or two rims "loops 0 1"; opening: radius at a closed end in the mesh's units; tolerance: largest distance
+    of a vertex from the surface over the mesh's diagonal; worst_fit: largest distance between surface and mesh,
+    over the diagonal, that is wound at all; units: the name of the mesh's unit, "" if unknown; particles: a path;
+    out: folder for the files; render: draw winding.png as well.  Raises BadInputError, in one line, for whatever
+    the caller can mend.
     """
-    options = Options(paths, revolutions, particles, friction, ends, opening, tolerance, worst_fit, units)
+    options = Options(paths, revolutions, particles, friction, component, ends, opening, tolerance, worst_fit, units)
     if not isinstance(mesh, str | PathLike | Mesh):
         raise BadInputError(f"mesh is of type {type(mesh).__name__}; give the path of a mesh file or a meshwind.Mesh")
     clock = _Clock(progress)
@@ -136,7 +138,7 @@ def wind(
         if render:
             driver.start_probe()
     with clock.stage("read"):
-        part = mesh if isinstance(mesh, Mesh) else read(mesh)
+        part = mesh if isinstance(mesh, Mesh) else read(mesh, options.component)
     with clock.stage("ends"):
         opened = annulus(part, ends=options.ends, opening=options.opening)
     with clock.stage("flatten"):

@@ -115,6 +115,7 @@ def test_help_shows_every_option() -> None:
         "--opening",
         "--tolerance",
         "--worst-fit",
+        "--component",
         "--units",
         "--particles",
         "--no-render",

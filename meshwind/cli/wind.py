@@ -34,7 +34,10 @@ def wind(
         str, typer.Option(metavar="TURNS", help="Turns of a path from end to end, as in 0.5 or 5/12.")
     ] = "0.5",
     friction: Annotated[float, typer.Option(help="Coefficient of friction of fibre on part; only 0 for now.")] = 0.0,
-    ends: Annotated[str, typer.Option(help='Where the ends are: auto, x, y, z, or two points "x,y,z x,y,z".')] = "auto",
+    component: Annotated[int, typer.Option(help="Which piece of MESH, by its rank of area; 0 is the largest.")] = 0,
+    ends: Annotated[
+        str, typer.Option(help='Where the ends are: auto, x, y, z, two points "x,y,z x,y,z", two rims "loops 0 1".')
+    ] = "auto",
     opening: Annotated[
         float | None,
         typer.Option(help="Radius of the opening at a closed end, in the mesh's units.  [default: from the part]"),
@@ -66,6 +69,7 @@ def wind(
             paths=paths,
             revolutions=turns(revolutions),
             friction=friction,
+            component=component,
             ends=ends,
             opening=opening,
             tolerance=tolerance,

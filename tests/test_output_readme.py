@@ -1,0 +1,81 @@
+"""The README tells of every file, field, code and option, and its figures hold."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyvista as pv
+from layup_shapes import bridged
+
+import meshwind as mw
+from meshwind.layup.layup import assess
+from meshwind.mandrel.mesh import Mesh
+from meshwind.output.folder import RESULTS
+from meshwind.output.maps import grid
+from meshwind.output.write import write_files
+from meshwind.surface import shapes
+
+README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+
+
+def rows(heading: str) -> list[list[str]]:
+    """The cells of the table whose first heading is the given one."""
+    table = README.split(f"\n| {heading} |")[1].split("\n\n")[0]
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()[2:]]
+
+
+def test_every_field_is_told_and_no_other(tmp_path: Path) -> None:
+    layup = assess(bridged())
+    on = grid(layup.paths.surface)
+    faces = np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]])
+    write_files(tmp_path, layup, Mesh(on.points, faces))
+    held: set[tuple[str, str]] = set()
+    for file in (*tmp_path.glob("*.vtp"), *tmp_path.glob("*.vtu")):
+        read = pv.read(file)
+        held |= {(name, file.stem) for name in (*read.point_data.keys(), *read.cell_data.keys())}
+    told = {
+        (name, place.strip())
+        for names, places, *_ in rows("field")
+        for name in re.findall(r"`(\w+)`", names)
+        for place in places.split(",")
+    }
+    assert told == held
+
+
+def test_every_status_is_told() -> None:
+    told = {
+        (int(number), name)
+        for numbers, names, _ in rows("`status` | name")
+        for number, name in zip(numbers.split(","), re.findall(r"`(\w+)`", names), strict=True)
+    }
+    assert told == {(int(status), status.name.lower()) for status in mw.Status}
+
+
+def test_every_file_is_told() -> None:
+    assert {name for cells in rows("file") for name in re.findall(r"`([\w.]+)`", cells[0])} == RESULTS
+
+
+def test_every_option_is_told() -> None:
+    shown = subprocess.run(
+        [sys.executable, "-m", "meshwind", "wind", "--help"], capture_output=True, text=True, check=True
+    ).stdout
+    told = {re.findall(r"--[\w-]+", cells[0])[0] for cells in rows("option")}
+    assert told == set(re.findall(r"^  (?:--render / )?(--[a-z-]+)", shown, re.MULTILINE)) - {"--help", "--render"} | {
+        "--no-render"
+    }
+
+
+@pytest.mark.parametrize("turns", [1, 4])
+def test_lengths_are_those_of_chords(turns: int) -> None:
+    """A helix on a cylinder: relative error h^2 k^2 / 24, below 1e-5 at one turn and about 1.5e-4 at four."""
+    radius, height = 1.0, 2.0
+    path = mw.solve(shapes.cylinder(radius, height, (256, 16)), [(0.0, 0.0)], [(float(turns), 1.0)])
+    length = float(np.linalg.norm(np.diff(path.points[0], axis=0), axis=1).sum())
+    exact = float(np.hypot(2 * np.pi * radius * turns, height))
+    curvature = (2 * np.pi * turns / exact) ** 2 * radius
+    expected = (exact / 400 * curvature) ** 2 / 24
+    assert 1.0 - length / exact == pytest.approx(expected, rel=0.02)
+    assert expected < (1e-5 if turns == 1 else 1.7e-4)
