@@ -41,7 +41,7 @@ def about_fit(surface: Surface, chart: Chart, tolerance: float, worst_fit: float
     error = surface.error
     if error is None:
         return ()
-    if error.relative_max > UNRESOLVED:
+    if error.relative_max > min(UNRESOLVED, worst_fit):
         text = _unresolved(surface, chart, error, units)
         if error.relative_max > worst_fit:
             raise BadInputError(f"{text}, or raise worst_fit (--worst-fit), now {worst_fit:g}")

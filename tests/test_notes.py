@@ -82,6 +82,8 @@ def test_past_a_limit_the_part_is_refused() -> None:
     with pytest.raises(mw.BadInputError, match=r"--worst-fit\), now 0\.1"):
         about_fit(surface, chart, 1e-5, 0.1)
     assert about_fit(surface, chart, 1e-5, 0.3)[0].warning
+    with pytest.raises(mw.BadInputError, match=r"now 0\.001"):
+        about_fit(dented(0.002)[0], chart, 1e-5, 0.001)
 
 
 @pytest.mark.parametrize("name", ["cast.ply", "elbow.obj", "wing.stl", "bottle.obj", "tank.ply", "vase.stl"])
