@@ -94,3 +94,17 @@ def test_obtuse_meshes_fall_back_on_positive_weights() -> None:
 
     chart = flatten(annulus(squashed, 1500, 0.4))
     assert chart.flipped == 0
+
+
+def test_stages_say_what_they_take() -> None:
+    """Each stage by itself, given the wrong thing: one line that names the stage before."""
+    mesh = mw.read(DATA[0])
+    for call, before in (
+        (lambda: mw.flatten(mesh), "annulus"),  # type: ignore[arg-type]
+        (lambda: mw.fit(mesh), "flatten"),  # type: ignore[arg-type]
+        (lambda: mw.assess(mesh), "solve"),  # type: ignore[arg-type]
+        (lambda: mw.fit(flatten(mw.annulus(mesh)), float("nan")), "tolerance"),
+        (lambda: mw.shapes.cylinder("a", 2), "radius"),  # type: ignore[arg-type]
+    ):
+        with pytest.raises(mw.BadInputError, match=before):
+            call()

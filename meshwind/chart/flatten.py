@@ -1,13 +1,13 @@
 """Flatten an annulus to the periodic rectangle by sparse harmonic systems whose weights even out the stretch."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import igl
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
 
-from meshwind.cast import Bools, Floats, Ints, frozen
+from meshwind.cast import Floats, Ints, frozen
 from meshwind.chart.chart import Chart
 from meshwind.chart.cut import far_side, seam
 from meshwind.chart.phase import canonical
@@ -15,7 +15,7 @@ from meshwind.chart.spacing import even_speed
 from meshwind.errors import BadInputError
 from meshwind.mandrel.annulus import Annulus
 
-EVEN = 1.05
+EVEN = 1.15
 """Mean stretch (1 at best) up to which a chart is left as it is: mandrel-like parts need no second solve."""
 GAIN = 0.98
 """Another round of re-weighting must bring the mean stretch below this share of the last."""
@@ -38,6 +38,8 @@ def flatten(annulus: Annulus) -> Chart:
     turned to a canonical place.  Raises BadInputError if a triangle still flips, which only degenerate triangles
     can bring about.
     """
+    if not isinstance(annulus, Annulus):
+        raise BadInputError(f"flatten takes an Annulus, not {type(annulus).__name__}; make one with annulus(mesh)")
     jump = far_side(annulus, seam(annulus)).astype(np.float64)
     net = _Net.of(annulus, jump)
     weights = net.cotangents
@@ -76,7 +78,7 @@ class _Net:
         return _Net(
             np.stack([low[first], high[first]], axis=1),
             np.where(i[first] < j[first], gain[first], -gain[first]),
-            np.bincount(place, cotangent),
+            np.asarray(np.bincount(place, cotangent), dtype=np.float64),
         )
 
     @property
@@ -92,22 +94,23 @@ def _harmonic(annulus: Annulus, net: _Net, weights: Floats) -> Floats:
     off = sparse.csc_array((np.r_[weights, weights], (np.r_[i, j], np.r_[j, i])), shape=(n, n))
     laplacian = (sparse.diags_array(np.asarray(off.sum(axis=1))) - off).tocsc()
     uv = np.zeros((n, 2))
-    free = np.ones(n, dtype=bool)
-    free[annulus.rims[0][0]] = False
-    uv[free, 0] = _inner(laplacian, free, np.bincount(i, turned, n) - np.bincount(j, turned, n))
-    uv[annulus.rims[1], 1] = 1.0
-    free[np.concatenate(annulus.rims)] = False
-    uv[free, 1] = _inner(laplacian, free, -(laplacian @ uv[:, 1]))
+    pull = np.bincount(i, turned, n) - np.bincount(j, turned, n)
+    uv[:, 0] = _solved(laplacian, pull, annulus.rims[0][:1], np.zeros(1))
+    ends = [np.full(len(rim), float(v)) for v, rim in enumerate(annulus.rims)]
+    uv[:, 1] = _solved(laplacian, np.zeros(n), np.concatenate(annulus.rims), np.concatenate(ends))
     return uv
 
 
-def _inner(laplacian: sparse.csc_array, free: Bools, right: Floats) -> Floats:
-    where = np.flatnonzero(free)
-    if not len(where):
-        return np.zeros(0)
-    block = laplacian[where][:, where].tocsc()
-    factor = splu(block, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    return np.asarray(factor.solve(right[where]))
+def _solved(laplacian: sparse.csc_array, right: Any, known: Ints, values: Floats) -> Floats:
+    """Solve laplacian x = right with x given at some vertices, by libigl's sparse Cholesky.
+
+    It takes about half the time of SuperLU's, which matters at a million faces.
+    """
+    none = sparse.csc_matrix((0, len(right)))
+    x = igl.min_quad_with_fixed(
+        sparse.csc_matrix(laplacian), -right[:, None], known, values[:, None], none, np.zeros((0, 1)), True
+    )
+    return np.asarray(x)[:, 0]
 
 
 def _evened(

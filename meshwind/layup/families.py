@@ -30,8 +30,8 @@ def families(surface: Surface, paths: int, revolutions: float) -> Families:
     """
     if not surface.periodic:
         raise BadInputError("families need a surface that closes in u; give end points to `solve` instead")
-    if paths < 1:
-        raise BadInputError(f"{paths} paths a family is too few; give at least 1")
+    if not isinstance(paths, int | np.integer) or paths < 1:
+        raise BadInputError(f"paths is {paths}; give a whole number of paths a family, at least 1")
     if not (np.isfinite(revolutions) and revolutions >= 0):
         raise BadInputError(f"revolutions is {revolutions}; give a number >= 0")
     turn = np.arange(paths) / paths

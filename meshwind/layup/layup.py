@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from meshwind.cast import Bools
+from meshwind.errors import BadInputError
 from meshwind.layup.coverage import Coverage, coverage
 from meshwind.layup.crossings import Crossings, crossings
 from meshwind.layup.quads import QuadMesh, quads
@@ -27,6 +28,8 @@ def assess(paths: Paths, width: float | None = None) -> Layup:
 
     Crossings and quads are those of the converged paths, or of all where a family has fewer than three such.
     """
+    if not isinstance(paths, Paths):
+        raise BadInputError(f"assess takes Paths, not {type(paths).__name__}; make them with solve(...)")
     met = crossings(paths, _worth_crossing(paths))
     return Layup(paths, met, quads(paths, met), coverage(paths, width))
 

@@ -42,8 +42,8 @@ def solve(
     """
     if friction != 0.0:
         raise BadInputError(f"friction {friction:g} is not supported yet; use 0")
-    if particles < 3:
-        raise BadInputError(f"{particles} particles cannot make a path; use at least 3")
+    if not isinstance(particles, int | np.integer) or particles < 3:
+        raise BadInputError(f"particles is {particles}; give a whole number, at least 3")
     first, last = floats(start, "start", -1, 2), floats(end, "end", -1, 2)
     if len(first) != len(last):
         raise BadInputError(f"{len(first)} start points but {len(last)} end points; give as many of each")

@@ -6,6 +6,7 @@ import numpy as np
 from threadpoolctl import ThreadpoolController
 
 from meshwind.chart.chart import Chart
+from meshwind.errors import BadInputError
 from meshwind.surface import normal_equations
 from meshwind.surface.certify import certify, to_mesh
 from meshwind.surface.noise import roughness
@@ -55,6 +56,10 @@ def fit(chart: Chart, tolerance: float = 1e-5) -> Surface:
     fitted, not samples of the facets: vertices lie on the true part, facets do not.  The surface carries its
     error both ways in `Surface.error`, in the mesh's units.
     """
+    if not isinstance(chart, Chart):
+        raise BadInputError(f"fit takes a Chart, not {type(chart).__name__}; make one with flatten(annulus)")
+    if not tolerance > 0:
+        raise BadInputError(f"tolerance is {tolerance}; give a share of the diagonal above 0, such as 1e-5")
     annulus = chart.annulus
     diagonal = float(np.linalg.norm(np.ptp(annulus.vertices, axis=0)))
     samples = Samples.of(chart)

@@ -19,7 +19,7 @@ Spans = tuple[int, int]
 
 def _positive(**lengths: float) -> None:
     for name, value in lengths.items():
-        if not (np.isfinite(value) and value > 0):
+        if not isinstance(value, int | float | np.number) or not (np.isfinite(value) and value > 0):
             raise BadInputError(f"{name} is {value}; give a positive length")
 
 
