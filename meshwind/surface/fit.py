@@ -26,8 +26,6 @@ ROUGH = 2.0
 PATIENCE = 2
 """So many finer nets in a row without that gain end the search: one alone may be bad luck."""
 COARSEST, RUNGS = 8, 18
-INFILL = 0.05
-"""Weight of a point between vertices against a vertex: enough to hold a span that has nothing else."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +64,6 @@ def fit(chart: Chart, tolerance: float = 1e-5) -> Surface:
     lengths = _lengths(chart)
     best, *finer = _ladder(lengths)
     count = len(annulus.vertices)
-    noise = roughness(samples.points)
     # one thread of BLAS: the bands are narrow, more threads cost up to ten times as much and blur the last bits
     with ThreadpoolController().limit(limits=1, user_api="blas"):
         fitted = _fit(samples, best, lengths)
@@ -80,7 +77,7 @@ def fit(chart: Chart, tolerance: float = 1e-5) -> Surface:
             idle = 0 if trial.expected < GAIN * fitted.expected else idle + 1
             if trial.expected < fitted.expected:
                 fitted = trial
-        if fitted.largest > tolerance * diagonal and fitted.rms > ROUGH * noise:
+        if fitted.largest > tolerance * diagonal and fitted.rms > ROUGH * roughness(samples.points):
             fitted = _follow_facets(fitted, finer, lengths, count)
     error = certify(fitted.surface, fitted.samples)
     return Surface(fitted.surface.control_points + samples.middle, True, error)
@@ -137,8 +134,8 @@ def _fit(samples: Samples, spans: tuple[int, int], lengths: tuple[float, float])
             samples, _ = samples.corrected(surface)
         stencil, right = bending.copy(), np.zeros((nu, nv, 3))
         normal_equations.accumulate(samples.uv, samples.points, samples.weight, *spans, stencil, right)
-        inner, points = samples.between(spans)
-        normal_equations.accumulate(inner, points, np.full(len(inner), INFILL), *spans, stencil, right)
+        inner, points, weight = samples.between(spans)
+        normal_equations.accumulate(inner, points, weight, *spans, stencil, right)
         surface = Surface(normal_equations.solve(stencil, right))
     assert surface is not None  # ROUNDS >= 1
     samples, distance = samples.corrected(surface)

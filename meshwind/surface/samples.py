@@ -17,6 +17,9 @@ from meshwind.threads import spread
 
 LOOSE = 0.1
 """Weight of a vertex that trimming made, against one of the part's own."""
+INFILL, SLIGHT = 0.05, 5e-5
+"""Weight of a point between vertices: enough to hold a span that has nothing else; and among spans that all hold
+vertices, where its own error (second order next to a rim, whose normals are one-sided) would show in the surface."""
 
 
 @dataclass(frozen=True)
@@ -69,8 +72,8 @@ class Samples:
         facets = Facets(points, annulus.faces)
         return Samples(points, np.array(chart.uv), weight, rim, annulus.trusted, middle, chart, turns, facets)
 
-    def between(self, spans: tuple[int, int]) -> tuple[Floats, Floats]:
-        """Points between vertices for a net of so many spans: (k, 2) in the plane, (k, 3) about the middle."""
+    def between(self, spans: tuple[int, int]) -> tuple[Floats, Floats, Floats]:
+        """Points between vertices for a net: in the plane (k, 2), about the middle (k, 3), weights (k,)."""
         annulus = self.chart.annulus
         across = np.empty(len(annulus.faces), dtype=np.int8)
         spread(spans_across, len(across), 20_000, annulus.faces, self.uv, self.turns, spans, across)
@@ -78,7 +81,16 @@ class Samples:
         corners = self.uv[annulus.faces[coarse]]
         corners[..., 0] += self.turns[coarse]
         uv, points = infill(annulus, coarse, corners, across[coarse].astype(np.int64))
-        return uv, points - self.middle
+        return uv, points - self.middle, self._hold(uv, spans)
+
+    def _hold(self, uv: Floats, spans: tuple[int, int]) -> Floats:
+        """How far points (k, 2) between vertices count: little where all spans about them hold vertices."""
+        held = np.zeros(spans, dtype=bool)
+        held[_span(self.uv, spans)] = True
+        held = np.pad(held, ((0, 0), (1, 1)), constant_values=True)
+        held = held[:, :-2] & held[:, 1:-1] & held[:, 2:]
+        held = held & np.roll(held, 1, axis=0) & np.roll(held, -1, axis=0)
+        return np.where(held[_span(uv, spans)], SLIGHT, INFILL)
 
     def corrected(self, surface: Surface) -> tuple["Samples", Floats]:
         """Every vertex moved to its foot in the plane, on a rim along the rim; and the distances (n,)."""
@@ -103,3 +115,9 @@ def _foot_distances(
         foot(net, periodic, points[i], guesses[i], frame)
         off = points[i] - frame[0]
         distance[i] = np.sqrt(off[0] * off[0] + off[1] * off[1] + off[2] * off[2])
+
+
+def _span(uv: Floats, spans: tuple[int, int]) -> tuple[Ints, Ints]:
+    """Indices of the span that each of the points (n, 2) lies in."""
+    index = np.floor(uv * spans).astype(np.int64)
+    return index[:, 0] % spans[0], np.clip(index[:, 1], 0, spans[1] - 1)
