@@ -1,6 +1,6 @@
 """Fit the smooth surface to a chart: least squares on the vertices with parameter correction (Hoschek)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from threadpoolctl import ThreadpoolController
@@ -23,6 +23,8 @@ SUPPORT, FACET_SUPPORT = 0.5, 2.0
 """Most control points a vertex: where vertices alone are followed, and where the facets between them are."""
 ROUGH = 2.0
 """An error of more than so many times the mesh's own roughness is not noise."""
+NEAR = 1e-3
+"""Of the diagonal: a net that is further off somewhere than this is not yet held by vertices alone."""
 PATIENCE = 2
 """So many finer nets in a row without that gain end the search: one alone may be bad luck."""
 COARSEST, RUNGS = 8, 18
@@ -142,4 +144,6 @@ def _fit(samples: Samples, spans: tuple[int, int], lengths: tuple[float, float])
     distance = distance[samples.trusted]
     rms = float(np.sqrt(np.mean(distance**2)))
     expected = rms / max(1.0 - nu * nv / len(distance), 1e-3)
-    return _Fitted(surface, samples, rms, expected, float(distance.max()))
+    largest = float(distance.max())
+    size = float(np.linalg.norm(np.ptp(samples.points, axis=0)))
+    return _Fitted(surface, replace(samples, near=largest <= NEAR * size), rms, expected, largest)

@@ -58,6 +58,8 @@ class Samples:
     chart: Chart
     turns: Int8s
     facets: "Facets"
+    near: bool = False
+    """Whether the last net came near everywhere: only then can vertices be left to hold the next one alone."""
 
     @staticmethod
     def of(chart: Chart) -> "Samples":
@@ -85,6 +87,8 @@ class Samples:
 
     def _hold(self, uv: Floats, spans: tuple[int, int]) -> Floats:
         """How far points (k, 2) between vertices count: little where all spans about them hold vertices."""
+        if not self.near:
+            return np.full(len(uv), INFILL)
         held = np.zeros(spans, dtype=bool)
         held[_span(self.uv, spans)] = True
         held = np.pad(held, ((0, 0), (1, 1)), constant_values=True)
