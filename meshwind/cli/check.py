@@ -2,11 +2,11 @@
 
 import json
 from dataclasses import asdict
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from meshwind.cli.arguments import Ends, MeshFile, Opening
 from meshwind.errors import BadInputError
 
 if TYPE_CHECKING:
@@ -16,16 +16,9 @@ _MOST = 12  # pieces or rims that are listed one by one
 
 
 def check(
-    mesh: Annotated[
-        Path, typer.Argument(help="Triangle mesh: STL, OBJ, PLY, OFF, GLB, 3MF, VTK, MSH, INP.", metavar="MESH")
-    ],
-    ends: Annotated[
-        str, typer.Option(help='Where the ends are: auto, x, y, z, two points "x,y,z x,y,z", two rims "loops 0 1".')
-    ] = "auto",
-    opening: Annotated[
-        float | None,
-        typer.Option(help="Radius of the opening at a closed end, in the mesh's units.  [default: from the part]"),
-    ] = None,
+    mesh: MeshFile,
+    ends: Ends = "auto",
+    opening: Opening = None,
     component: Annotated[int, typer.Option(help="Which piece, by its rank of area; 0 is the largest.", min=0)] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="Print the same as JSON.")] = False,
 ) -> int:

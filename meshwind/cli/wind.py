@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from meshwind.cli.arguments import Ends, MeshFile, Opening
 from meshwind.cli.display import display
 from meshwind.cli.summary import summary
 from meshwind.errors import BadInputError
@@ -24,10 +25,7 @@ def turns(text: str) -> float:
 
 
 def wind(
-    mesh: Annotated[
-        Path,
-        typer.Argument(help="Triangle mesh: STL, OBJ, PLY, OFF, GLB, 3MF, VTK, MSH, INP.", metavar="MESH"),
-    ],
+    mesh: MeshFile,
     out: Annotated[str | None, typer.Option(help="Folder for the results.  [default: MESH's name + -wound]")] = None,
     paths: Annotated[int, typer.Option(help="Paths a family.")] = 12,
     revolutions: Annotated[
@@ -35,13 +33,8 @@ def wind(
     ] = "0.5",
     friction: Annotated[float, typer.Option(help="Coefficient of friction of fibre on part; only 0 for now.")] = 0.0,
     component: Annotated[int, typer.Option(help="Which piece of MESH, by its rank of area; 0 is the largest.")] = 0,
-    ends: Annotated[
-        str, typer.Option(help='Where the ends are: auto, x, y, z, two points "x,y,z x,y,z", two rims "loops 0 1".')
-    ] = "auto",
-    opening: Annotated[
-        float | None,
-        typer.Option(help="Radius of the opening at a closed end, in the mesh's units.  [default: from the part]"),
-    ] = None,
+    ends: Ends = "auto",
+    opening: Opening = None,
     tolerance: Annotated[
         float, typer.Option(help="Largest distance of a vertex from the surface, over the part's diagonal.")
     ] = 1e-5,
