@@ -10,6 +10,7 @@ from scipy import sparse
 from meshwind.cast import Floats, Ints, frozen
 from meshwind.chart.chart import Chart
 from meshwind.chart.cut import far_side, seam
+from meshwind.chart.measure import signed_areas
 from meshwind.chart.phase import canonical
 from meshwind.chart.spacing import even_speed
 from meshwind.errors import BadInputError
@@ -45,16 +46,15 @@ def flatten(annulus: Annulus) -> Chart:
     weights = net.cotangents
     uv = _harmonic(annulus, net, weights)
     corner = _corners(annulus, uv, jump)
-    if (_area(corner) <= 0).any():
+    if (signed_areas(corner) <= 0).any():
         weights = net.positive
         uv = _harmonic(annulus, net, weights)
         corner = _corners(annulus, uv, jump)
-        count = int((_area(corner) <= 0).sum())
+        count = int((signed_areas(corner) <= 0).sum())
         if count:
             raise BadInputError(f"{count} triangles flip in the flattening; remesh the part without slivers")
-    uv, corner = _evened(annulus, net, weights, uv, corner, jump)
-    uv, corner = canonical(annulus, *even_speed(annulus, uv, corner))
-    area = _area(corner)
+    uv, corner = canonical(annulus, *_evened(annulus, net, weights, uv, corner, jump))
+    area = signed_areas(corner)
     return Chart(annulus, frozen(uv), frozen(corner), int((area <= 0).sum()), frozen(_stretch(annulus, area)))
 
 
@@ -116,11 +116,12 @@ def _solved(laplacian: sparse.csc_array, right: Any, known: Ints, values: Floats
 def _evened(
     annulus: Annulus, net: _Net, weights: Floats, uv: Floats, corner: Floats, jump: Floats
 ) -> tuple[Floats, Floats]:
-    """Divide the weights by the stretch at their ends until the mean stretch no longer falls."""
+    """Space v evenly, and divide the weights by the stretch at their ends until the mean stretch no longer falls."""
     space = igl.doublearea(annulus.vertices, annulus.faces) / 2
     faces, n = annulus.faces.ravel(), len(annulus.vertices)
     around = np.bincount(faces, np.repeat(space, 3), n)
-    stretch = _stretch(annulus, _area(even_speed(annulus, uv, corner)[1]))
+    spaced = even_speed(annulus, uv, corner)
+    stretch = _stretch(annulus, signed_areas(spaced[1]))
     for _ in range(ROUNDS):
         mean = float(np.average(stretch, weights=space))
         if mean < EVEN:
@@ -130,24 +131,20 @@ def _evened(
         weights = weights / np.sqrt(at[net.ends[:, 0]] * at[net.ends[:, 1]])
         trial = _harmonic(annulus, net, weights)
         trial_corner = _corners(annulus, trial, jump)
-        if (_area(trial_corner) <= 0).any():
+        if (signed_areas(trial_corner) <= 0).any():
             break
-        trial_stretch = _stretch(annulus, _area(even_speed(annulus, trial, trial_corner)[1]))
+        trial_spaced = even_speed(annulus, trial, trial_corner)
+        trial_stretch = _stretch(annulus, signed_areas(trial_spaced[1]))
         if np.average(trial_stretch, weights=space) > GAIN * mean:
             break
-        uv, corner, stretch = trial, trial_corner, trial_stretch
-    return uv, corner
+        spaced, stretch = trial_spaced, trial_stretch
+    return spaced
 
 
 def _corners(annulus: Annulus, uv: Floats, jump: Floats) -> Floats:
     corner = uv[annulus.faces]
     corner[..., 0] += jump
     return corner
-
-
-def _area(corner: Floats) -> Floats:
-    a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    return np.asarray((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2)
 
 
 def _stretch(annulus: Annulus, area: Floats) -> Floats:

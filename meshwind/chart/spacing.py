@@ -4,6 +4,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator, make_lsq_spline
 
 from meshwind.cast import Floats
+from meshwind.chart.measure import signed_areas, speeds
 from meshwind.mandrel.annulus import Annulus
 
 BINS = 96
@@ -16,11 +17,11 @@ def even_speed(annulus: Annulus, uv: Floats, corner: Floats) -> tuple[Floats, Fl
 
     Blends back towards the identity if a triangle would flip.
     """
-    law = _law(*_speed(annulus, corner))
+    area, _, speed = speeds(annulus, corner)
+    law = _law(corner[..., 1].mean(axis=1), speed, area)
     for share in (1.0, 0.75, 0.5, 0.25):
         out = [_apply(array, law, share) for array in (uv, corner)]
-        a, b = out[1][:, 1] - out[1][:, 0], out[1][:, 2] - out[1][:, 0]
-        if (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).min() > 0:
+        if signed_areas(out[1]).min() > 0:
             return out[0], out[1]
     return uv, corner
 
@@ -29,15 +30,6 @@ def _apply(array: Floats, law: PchipInterpolator, share: float) -> Floats:
     out = array.copy()
     out[..., 1] = np.clip((1 - share) * array[..., 1] + share * law(array[..., 1]), 0.0, 1.0)
     return out
-
-
-def _speed(annulus: Annulus, corner: Floats) -> tuple[Floats, Floats, Floats]:
-    """Each triangle's middle v, speed |s_v| and area in the plane."""
-    P = annulus.vertices[annulus.faces]
-    (a, b), (p, q) = ((x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]) for x in (corner, P))
-    det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    s_v = (a[:, :1] * q - b[:, :1] * p) / det[:, None]
-    return corner[..., 1].mean(axis=1), np.linalg.norm(s_v, axis=1), det / 2
 
 
 def _law(v: Floats, speed: Floats, area: Floats) -> PchipInterpolator:

@@ -6,6 +6,7 @@ import numpy as np
 from threadpoolctl import ThreadpoolController
 
 from meshwind.chart.chart import Chart
+from meshwind.chart.measure import speeds
 from meshwind.errors import BadInputError
 from meshwind.surface import normal_equations
 from meshwind.surface.certify import certify, to_mesh
@@ -87,13 +88,8 @@ def fit(chart: Chart, tolerance: float = 1e-5) -> Surface:
 
 def _lengths(chart: Chart) -> tuple[float, float]:
     """Mean length on the part of a turn of u and of v from end to end."""
-    P = chart.annulus.vertices[chart.annulus.faces]
-    a, b = (chart.corner_uv[:, k] - chart.corner_uv[:, 0] for k in (1, 2))
-    p, q = (P[:, k] - P[:, 0] for k in (1, 2))
-    det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    s_u = np.linalg.norm(b[:, 1:] * p - a[:, 1:] * q, axis=1)
-    s_v = np.linalg.norm(a[:, :1] * q - b[:, :1] * p, axis=1)
-    return float(s_u.sum() / det.sum()), float(s_v.sum() / det.sum())
+    area, s_u, s_v = speeds(chart.annulus, chart.corner_uv)
+    return float(np.average(s_u, weights=area)), float(np.average(s_v, weights=area))
 
 
 def _follow_facets(fitted: _Fitted, finer: list[tuple[int, int]], lengths: tuple[float, float], count: int) -> _Fitted:
