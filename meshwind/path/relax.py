@@ -13,12 +13,14 @@ from numba import njit
 from meshwind.path.block_tridiagonal import solve
 from meshwind.path.contact import lift, link
 from meshwind.path.newton import EVALUATIONS, FEET, ITERATIONS, SOLVES, advance, assemble, sag
+from meshwind.path.paths import Status
 from meshwind.path.state import blank, copy, energy, place, space_evenly
 from meshwind.surface.evaluate import S, unit_normal
 from meshwind.surface.tree import nearest_foot
 
-CONVERGED, SLID_START, SLID_END, UNSTABLE, STALLED, LIFTED = range(6)
-"""As `paths.Status`; LIFTED: the fibre leaves the surface and no search tree was given, so start again with one."""
+CONVERGED, SLID_START, SLID_END, UNSTABLE, STALLED = (int(status) for status in Status)
+LIFTED = STALLED + 1
+"""The fibre leaves the surface and no search tree was given: start again with one.  No result ever has it."""
 
 PULL = 1e-9
 """A pull off the surface below this angle (radians) is round-off, not lift."""
