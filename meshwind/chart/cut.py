@@ -7,18 +7,17 @@ from scipy.sparse.csgraph import dijkstra
 
 from meshwind.cast import Bools, Ints
 from meshwind.mandrel.annulus import Annulus
+from meshwind.mandrel.topology import edges
 
 
 def seam(annulus: Annulus) -> Ints:
     """Vertices of a shortest edge path from the start rim to the end rim that touches each rim once."""
-    V, F, n = annulus.vertices, annulus.faces, len(annulus.vertices)
-    i, j = (
-        np.concatenate([F, np.roll(F, -1, axis=1)], axis=0).ravel(),
-        np.concatenate([np.roll(F, -1, axis=1), F]).ravel(),
-    )
-    pairs = np.unique(np.stack([i, j], axis=1), axis=0)
-    length = np.linalg.norm(V[pairs[:, 0]] - V[pairs[:, 1]], axis=1)
-    graph = sparse.csr_array((length, (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    ends, n = edges(annulus.faces).ends, len(annulus.vertices)
+    length = np.linalg.norm(annulus.vertices[ends[:, 0]] - annulus.vertices[ends[:, 1]], axis=1)
+    both = np.concatenate([ends, ends[:, ::-1]])
+    # rows sorted by column, so that of equally short paths it is always the same one
+    graph = sparse.csr_array((np.tile(length, 2), (both[:, 0], both[:, 1])), shape=(n, n))
+    graph.sort_indices()
     distance, previous, _ = dijkstra(graph, indices=annulus.rims[0], return_predecessors=True, min_only=True)
     path = [int(annulus.rims[1][np.argmin(distance[annulus.rims[1]])])]
     while previous[path[-1]] >= 0:

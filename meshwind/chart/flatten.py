@@ -15,6 +15,7 @@ from meshwind.chart.phase import canonical
 from meshwind.chart.spacing import even_speed
 from meshwind.errors import BadInputError
 from meshwind.mandrel.annulus import Annulus
+from meshwind.mandrel.topology import edges
 
 EVEN = 1.15
 """Mean stretch (1 at best) up to which a chart is left as it is: mandrel-like parts need no second solve."""
@@ -68,17 +69,17 @@ class _Net:
 
     @staticmethod
     def of(annulus: Annulus, jump: Floats) -> "_Net":
-        F = annulus.faces
-        i, j = np.roll(F, -1, axis=1).ravel(), np.roll(F, 1, axis=1).ravel()
-        gain = (np.roll(jump, 1, axis=1) - np.roll(jump, -1, axis=1)).ravel()
-        low, high = np.minimum(i, j), np.maximum(i, j)
-        # two directed copies of an edge, from its two triangles, agree but for the sign of the turn
-        _, first, place = np.unique(low * len(annulus.vertices) + high, return_index=True, return_inverse=True)
-        cotangent = igl.cotmatrix_entries(annulus.vertices, F).ravel()
+        found = edges(annulus.faces)
+        # either of an edge's two half-edges tells the same turn, but for its sign
+        half = found.halves[:, 0]
+        gain = (np.roll(jump, -1, axis=1) - jump).ravel()[half]
+        upwards = annulus.faces.ravel()[half] == found.ends[:, 0]
+        # libigl's entry k is that of the edge across from corner k
+        cotangent = np.roll(igl.cotmatrix_entries(annulus.vertices, annulus.faces), 1, axis=1)
         return _Net(
-            np.stack([low[first], high[first]], axis=1),
-            np.where(i[first] < j[first], gain[first], -gain[first]),
-            np.asarray(np.bincount(place, cotangent), dtype=np.float64),
+            found.ends,
+            np.where(upwards, gain, -gain),
+            np.asarray(np.bincount(found.of_face.ravel(), cotangent.ravel()), dtype=np.float64),
         )
 
     @property

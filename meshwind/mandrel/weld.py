@@ -15,6 +15,8 @@ def weld(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
     exact = _first_of_equal(vertices)
     distinct, inverse = np.unique(exact, return_inverse=True)
     close = _close_pairs(vertices[distinct])
+    if len(distinct) == len(vertices) and len(close) == 0:
+        return vertices, faces
     group = components(len(distinct), close[:, 0], close[:, 1])
     representative = np.full(group.max(initial=-1) + 1, len(vertices), dtype=np.int64)
     np.minimum.at(representative, group, distinct)
