@@ -16,6 +16,7 @@ ORDER = [
     "chart",
     "surface",
     "path",
+    "methods",
     "layup",
     "output",
     "options",

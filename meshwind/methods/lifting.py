@@ -1,0 +1,101 @@
+"""Lifting from the surface and landing on it as the source has them (chapter 5, Algorithms 1 and 2)."""
+
+import numpy as np
+from numba import njit
+
+from meshwind.methods.chain import EVALUATIONS, FEET, link
+from meshwind.surface.evaluate import S, unit_normal
+from meshwind.surface.foot import foot
+
+PULL = 1e-9
+"""A pull below this times the spacing is round-off: Algorithm 1 says > 0, which noise alone would pass."""
+
+
+@njit(cache=True)
+def lift(chain, weighted, slack, before, after):
+    """Algorithm 1: release every touching particle that its touching neighbours pull off, until none is.
+
+    The test is the source's unweighted (P- - 2 P + P+) . n > 0; `weighted` takes the force of (5.2) instead, which
+    has the right sign where the gaps on the two sides differ.
+    """
+    X, normal, touching, clear = chain[0], chain[4], chain[5], chain[6]
+    n = len(X)
+    link(touching, before, after)
+    released = True
+    while released:
+        released = False
+        i = after[0]
+        while i < n - 1:
+            p, q = before[i], after[i]
+            a, b = (1.0 / (i - p), 1.0 / (q - i)) if weighted else (1.0, 1.0)
+            pull = 0.0
+            for k in range(3):
+                pull += (a * (X[p, k] - X[i, k]) + b * (X[q, k] - X[i, k])) * normal[i, k]
+            if pull > slack:
+                touching[i] = False
+                clear[i] = 0.0
+                after[p], before[q] = q, p
+                released = True
+            i = q
+
+
+@njit(cache=True)
+def straighten(chain, after):
+    """Spread the lifted particles evenly between touching ones (section 5.2)."""
+    X, clear = chain[0], chain[6]
+    i, n = 0, len(X)
+    while i < n - 1:
+        j = after[i]
+        for m in range(i + 1, j):
+            t = (m - i) / (j - i)
+            moved = 0.0
+            for k in range(3):
+                x = (1.0 - t) * X[i, k] + t * X[j, k]
+                moved += (x - X[m, k]) ** 2
+                X[m, k] = x
+            clear[m] -= np.sqrt(moved)
+        i = j
+
+
+@njit(cache=True)
+def land(net, periodic, chain, tally):
+    """Algorithm 2: lifted particles below the surface land on their feet, found by Newton (5.4 to 5.7).
+
+    Newton starts at the last foot, which is where (5.10) keeps the shadow particle.  The gap shrinks by no more
+    than the particle moves, so most need no foot.  What lands has lost its velocity.
+    """
+    X, uv, V, frames, normal, touching, clear = chain
+    for m in range(1, len(X) - 1):
+        if touching[m] or clear[m] > 0.0:
+            continue
+        tally[FEET] += 1
+        tally[EVALUATIONS] += foot(net, periodic, X[m], uv[m], frames[m])
+        unit_normal(frames[m], normal[m])
+        height = square = 0.0
+        for k in range(3):
+            r = X[m, k] - frames[m, S, k]
+            height += r * normal[m, k]
+            square += r * r
+        clear[m] = np.sqrt(square)
+        if height <= 0.0:
+            touching[m] = True
+            V[m, 0] = V[m, 1] = 0.0
+            for k in range(3):
+                X[m, k] = frames[m, S, k]
+
+
+@njit(cache=True)
+def contact(net, periodic, chain, weighted, slack, before, after, kept, tally):
+    """Lift, straighten, land; returns whether the set of touching particles has changed."""
+    touching = chain[5]
+    n = len(touching)
+    for i in range(n):
+        kept[i] = touching[i]
+    lift(chain, weighted, slack, before, after)
+    straighten(chain, after)
+    land(net, periodic, chain, tally)
+    link(touching, before, after)
+    changed = False
+    for i in range(n):
+        changed = changed or kept[i] != touching[i]
+    return changed
