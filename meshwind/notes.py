@@ -1,14 +1,13 @@
 """What a user should know of a run beside its figures: how well the surface follows the mesh."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from meshwind.chart import Chart
 from meshwind.errors import BadInputError
-from meshwind.mandrel.annulus import Annulus
 from meshwind.mandrel.ends import place
-from meshwind.output.maps import distance_to_mesh, grid
+from meshwind.output.apart import apart
 from meshwind.output.words import power, quantity, ratio
 from meshwind.surface import FitError, Surface
 
@@ -21,23 +20,39 @@ UNRESOLVED = 1e-2
 
 SQUEEZED = 8.0
 """Area scale that is this uneven (its 99th percentile over its mean) is the mark of fingers, ears and fins."""
+FIT_ERROR = "fit_error.png"
+"""The picture of how far the surface and the mesh lie apart."""
+_TOLD = 3
+"""So many of the places where they do are told by their coordinates."""
 _PROTRUSIONS = "protrusions such as fingers and ears are squeezed by the chart; wind a part without them"
 _COARSE = "its edges there are too sharp for the mesh; give a finer mesh, or round them"
 
 
 @dataclass(frozen=True)
 class Note:
-    """One line for the user; a warning is one that says the results may not be what was wanted."""
+    """One line for the user; a warning is one that says the results may not be what was wanted.
+
+    picture: name of the file that shows what it is about, "" if none does.
+    """
 
     text: str
     warning: bool = False
+    picture: str = ""
 
     def __str__(self) -> str:
         return f"warning: {self.text}" if self.warning else self.text
 
+    def shown(self, there: bool) -> "Note":
+        """The note, naming its picture where that is there and not where it is not."""
+        words = f"; see {self.picture}"
+        return replace(self, text=self.text.removesuffix(words) + (words if there and self.picture else ""))
+
 
 def about_fit(surface: Surface, chart: Chart, tolerance: float, worst_fit: float, units: str = "") -> tuple[Note, ...]:
-    """What to say of the fit; raises BadInputError where it is off by more than `worst_fit` of the part."""
+    """What to say of the fit; raises BadInputError where it is off by more than `worst_fit` of the part.
+
+    A warning has FIT_ERROR for its picture.
+    """
     error = surface.error
     if error is None:
         return ()
@@ -45,11 +60,14 @@ def about_fit(surface: Surface, chart: Chart, tolerance: float, worst_fit: float
         text = _unresolved(surface, chart, error, units)
         if error.relative_max > worst_fit:
             raise BadInputError(f"{text}, or raise worst_fit (--worst-fit), now {worst_fit:g}")
-        return (Note(text, warning=True),)
+        return (Note(text, True, FIT_ERROR),)
     missed = error.to_surface_max / error.diagonal
     if missed <= tolerance:
         return ()
-    return (Note(_missed(error, missed, tolerance, units), missed > max(MISSED * tolerance, SHOWS)),)
+    text = _missed(error, missed, tolerance, units)
+    if missed <= max(MISSED * tolerance, SHOWS):
+        return (Note(text),)
+    return (Note(f"{text}; surface and mesh lie furthest apart {_places(surface, chart)}", True, FIT_ERROR),)
 
 
 def _missed(error: FitError, missed: float, tolerance: float, units: str) -> str:
@@ -64,16 +82,16 @@ def _unresolved(surface: Surface, chart: Chart, error: FitError, units: str) -> 
     squeezed = float(np.quantile(chart.stretch, 0.99)) > SQUEEZED
     return (
         f"the surface does not resolve the part: it lies up to {quantity(error.max, units, 2)} "
-        f"({100.0 * error.relative_max:.2g}% of the part) off the mesh near {_worst_place(surface, chart.annulus)}; "
+        f"({100.0 * error.relative_max:.2g}% of the part) off the mesh {_places(surface, chart)}; "
         + (_PROTRUSIONS if squeezed else _COARSE)
     )
 
 
-def _worst_place(surface: Surface, annulus: Annulus) -> str:
-    """Where the surface and the mesh lie furthest apart, looked at from both."""
-    on = grid(surface)
-    to_mesh = distance_to_mesh(on.points, annulus.vertices, annulus.faces)
-    own = annulus.vertices[annulus.trusted]
-    to_surface = distance_to_mesh(own, on.points, np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]]))
-    points, away = (on.points, to_mesh) if to_mesh.max() > to_surface.max() else (own, to_surface)
-    return place(points[int(away.argmax())], annulus.mesh.diagonal)
+def _places(surface: Surface, chart: Chart) -> str:
+    """Where the surface and the mesh lie furthest apart, looked at from both, region by region."""
+    found = apart(surface, chart.annulus).places
+    diagonal = chart.annulus.mesh.diagonal
+    told = [place(where.on_surface, diagonal) for where in found]
+    rest = len(told) - _TOLD
+    more = told[1:_TOLD] + ([f"{rest} more {'place' if rest == 1 else 'places'}"] if rest > 0 else [])
+    return f"near {told[0]}" + (f", then near {' and '.join(more)}" if more else "")

@@ -13,10 +13,12 @@ from meshwind.errors import BadInputError
 from meshwind.layup.families import families
 from meshwind.layup.layup import Layup, assess
 from meshwind.mandrel import Mesh, annulus, read
-from meshwind.notes import Note, about_fit
+from meshwind.notes import FIT_ERROR, Note, about_fit
 from meshwind.options import Options
 from meshwind.output import driver, folder
+from meshwind.output.fit_scene import fit_scene
 from meshwind.output.report import report, write_report
+from meshwind.output.scene import scene
 from meshwind.output.write import write_files
 from meshwind.path import Paths, Status, solve
 from meshwind.surface import Surface, fit
@@ -78,8 +80,8 @@ class Result:
         """Write all files of the run into the folder `out`, whole or not at all.
 
         Results of an earlier run there are replaced, or removed where this one has none.  Returns the result with
-        the time that writing and drawing took and, where there is no OpenGL driver for the picture, a note that
-        says what to install.
+        the time that writing and drawing took and, where there is no OpenGL driver for the pictures, a note that
+        says what to install.  fit_error.png is drawn where a note warns of the fit.
         """
         return _write(self, _folder(out), render, _Clock(None))
 
@@ -125,7 +127,7 @@ def wind(
     x,y,z" or two rims "loops 0 1"; opening: radius at a closed end in the mesh's units; tolerance: largest distance
     of a vertex from the surface over the mesh's diagonal; worst_fit: largest distance between surface and mesh,
     over the diagonal, that is wound at all; units: the name of the mesh's unit, "" if unknown; particles: a path;
-    out: folder for the files; render: draw winding.png as well.  Raises BadInputError, in one line, for whatever
+    out: folder for the files; render: draw the pictures as well.  Raises BadInputError, in one line, for whatever
     the caller can mend.
     """
     options = Options(paths, revolutions, particles, friction, component, ends, opening, tolerance, worst_fit, units)
@@ -168,8 +170,18 @@ def _write(result: Result, out: Path, render: bool, clock: _Clock) -> Result:
             write_files(staging, result.layup, result.mesh)
         if render:
             with clock.stage("render"):
-                missing = driver.draw(staging / "winding.png", result.layup, result.mesh.name, result.options.units)
+                missing = driver.paint({staging / name: seen for name, seen in _pictures(result).items()})
             notes = (*notes, Note(missing)) if missing else notes
+        notes = tuple(note.shown((staging / note.picture).is_file()) for note in notes)
         result = replace(result, seconds=result.seconds | clock.seconds, notes=notes)
         write_report(staging / "report.json", result.report())
     return result
+
+
+def _pictures(result: Result) -> dict[str, dict[str, Any]]:
+    """What there is to draw, by the name of the file: the winding, and what a warning wants to show."""
+    name, options = result.mesh.name, result.options
+    seen = {"winding.png": scene(result.layup, name, options.units, options.revolutions)}
+    if any(note.picture == FIT_ERROR for note in result.notes):
+        seen[FIT_ERROR] = fit_scene(result.surface, result.chart.annulus, name, options.units)
+    return seen

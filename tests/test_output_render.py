@@ -60,7 +60,7 @@ def test_without_a_driver_the_run_goes_on(tmp_path: Path, monkeypatch: pytest.Mo
 
 def test_a_picture_that_cannot_be_saved_is_told(tmp_path: Path) -> None:
     note = driver.draw(tmp_path / "nowhere" / "winding.png", assess(helices(4, 0.5, 21, cylinder())), "cylinder")
-    assert note.startswith("no picture: ")
+    assert note.startswith("no winding.png: ")
     assert "\n" not in note
 
 

@@ -1,5 +1,1 @@
-"""Files, report and pictures."""
-
-from meshwind.output.report import report as report
-from meshwind.output.report import write_report as write_report
-from meshwind.output.write import write_files as write_files
+"""Files, report and pictures.  Loads nothing by itself: the process that draws must start quickly."""

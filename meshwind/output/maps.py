@@ -35,11 +35,11 @@ class Grid:
         return np.ascontiguousarray(self.frames[:, 0])
 
 
-def grid(surface: Surface) -> Grid:
-    """Sample a surface four times a span, at most 200 x 200."""
+def grid(surface: Surface, per_span: int = _PER_SPAN, most: int = _MOST) -> Grid:
+    """Sample a surface so many times a span, at most `most` x `most` times."""
     around, along = surface.spans
-    nu = min(_PER_SPAN * around + (not surface.periodic), _MOST)
-    nv = min(_PER_SPAN * along + 1, _MOST)
+    nu = min(per_span * around + (not surface.periodic), most)
+    nv = min(per_span * along + 1, most)
     u = np.arange(nu) / (nu if surface.periodic else nu - 1)
     v = np.linspace(0.0, 1.0, nv)
     uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2)

@@ -17,8 +17,11 @@ _MOST_POINTS = 250
 """Points of a path that are drawn; more do not show."""
 
 
-def scene(layup: Layup, name: str, units: str = "") -> dict[str, Any]:
-    """All that the renderer needs: the part, the fibres, the bridges, the view and the words."""
+def scene(layup: Layup, name: str, units: str = "", revolutions: float | None = None) -> dict[str, Any]:
+    """All that the renderer needs: the part, the fibres, the bridges, the view and the words.
+
+    revolutions: what was asked for, for the title; without it the paths' mean, which bent rims shift a little.
+    """
     on = grid(layup.paths.surface)
     paths = layup.paths
     figures = path_figures(paths)
@@ -30,7 +33,8 @@ def scene(layup: Layup, name: str, units: str = "") -> dict[str, Any]:
     normals = np.cross(on.frames[:, 1], on.frames[:, 2])
     lift = lifts(paths)
     return {
-        "title": _title(paths, name),
+        "kind": "winding",
+        "title": _title(paths, name, revolutions),
         "subtitle": _subtitle(layup, figures, units),
         "units": units,
         "points": on.points,
@@ -99,9 +103,10 @@ def _bridges(paths: Paths, spans: Bridges, lift: Floats, stride: int) -> dict[st
     }
 
 
-def _title(paths: Paths, name: str) -> str:
+def _title(paths: Paths, name: str, revolutions: float | None) -> str:
     count = " + ".join(str(int((paths.family == family).sum())) for family in (1, -1))
-    turns = float(np.abs(paths.uv[:, -1, 0] - paths.uv[:, 0, 0]).mean())
+    mean = float(np.abs(paths.uv[:, -1, 0] - paths.uv[:, 0, 0]).mean())
+    turns = mean if revolutions is None else revolutions
     return f"{name}: {count} fibres, {turns:.4g} revolutions"
 
 

@@ -57,10 +57,44 @@ def best_view(points: Floats, quads: Ints, axis: Floats, marks: Floats, outward:
         long, side = -long, -side
     eye, long = np.cos(_TILT) * eye + np.sin(_TILT) * long, np.cos(_TILT) * long - np.sin(_TILT) * eye
     right, up = (side, long) if upright else (long, side)
-    flat = np.concatenate([points, marks]) @ np.stack([right, up, eye]).T
+    return _framed(np.concatenate([points, marks]), right, up, eye)
+
+
+def place_view(points: Floats, faces: Ints, eyes: Floats, merit: Floats) -> View:
+    """Look from the best of the directions `eyes` (k, 3), by their merit (k,) and by how much of a part they show.
+
+    points (n, 3) and faces (m, 3) are the part.  Upright or lying as in `best_view`.
+    """
+    area, normal = _facets(points, faces[:, [0, 1, 2, 2]])
+    middle = points[faces].mean(axis=1)
+    centre = (area[:, None] * middle).sum(axis=0) / area.sum()
+    frame = np.linalg.eigh((middle - centre).T @ (area[:, None] * (middle - centre)))[1]
+    shadow = area @ np.abs(normal @ eyes.T)
+    eye = eyes[int(np.argmax(merit + shadow / shadow.max()))]
+    long = next(axis for axis in frame.T[::-1] if abs(axis @ eye) < 0.9)
+    along = long - (long @ eye) * eye
+    along /= np.linalg.norm(along)
+    if abs(long[2]) > 0.7:
+        up = along if along[2] > 0.0 else -along
+        return _framed(points, np.cross(up, eye), up, eye)
+    right = along if np.cross(eye, along)[2] >= 0.0 else -along
+    return _framed(points, right, np.cross(eye, right), eye)
+
+
+def around(count: int) -> Floats:
+    """Unit vectors (count, 3) all around, evenly on a spiral."""
+    height = 1.0 - (2.0 * np.arange(count) + 1.0) / count
+    turn = np.pi * (3.0 - np.sqrt(5.0)) * np.arange(count)
+    across = np.sqrt(1.0 - height**2)
+    return np.stack([across * np.cos(turn), across * np.sin(turn), height], axis=1)
+
+
+def _framed(points: Floats, right: Floats, up: Floats, eye: Floats) -> View:
+    """The view along given axes that holds all points (n, 3)."""
+    axes = np.stack([right, up, eye])
+    flat = points @ axes.T
     low, high = flat.min(axis=0), flat.max(axis=0)
-    middle = 0.5 * (low + high) @ np.stack([right, up, eye])
-    return View(right, up, eye, middle, float(high[0] - low[0]), float(high[1] - low[1]))
+    return View(right, up, eye, 0.5 * (low + high) @ axes, float(high[0] - low[0]), float(high[1] - low[1]))
 
 
 def _bend(axis: Floats, long: Floats, sides: Floats) -> Floats:

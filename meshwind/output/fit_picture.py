@@ -1,0 +1,153 @@
+"""fit_error.png: the mesh, the surface that was fitted to it, and the worst place from near, by their distance."""
+
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+from matplotlib import colormaps
+from matplotlib.colors import ListedColormap
+from PIL import Image
+
+from meshwind.output.canvas import (
+    BOTTOM,
+    FAINT,
+    INK,
+    LEFT,
+    PAPER,
+    RIGHT,
+    SIZE,
+    TOP,
+    aim,
+    axes,
+    colour_bar,
+    face,
+    ruler,
+    shot,
+    titled,
+)  # fmt: skip
+
+DISTANCES = ListedColormap(colormaps["magma_r"](np.linspace(0.04, 0.86, 256)))
+"""Pale where surface and mesh agree, dark where they do not; even to the eye, in greys too."""
+FAINTEST = 0.05
+"""The scale is logarithmic from the worst down to this part of it, and palest for all that is less."""
+LOST = 0.15
+"""A vertex of the mesh that is further off than this part of the worst is drawn over the surface."""
+GLASS, MARK = "#0072b2", "#0072b2"
+GAP, HEAD = 20, 44
+"""Pixels between the views, and above each for its name."""
+RING = 17
+LEGIBLE = 14.0
+"""Pixels that an edge of the mesh must be long for a net of them not to hide all else."""
+
+Box = tuple[float, float, float, float]
+
+
+def draw(window: Any, scene: dict[str, Any]) -> Any:
+    """Three views from one side, with words."""
+    image = Image.new("RGB", SIZE, PAPER)
+    pen = titled(image, scene)
+    boxes = cells(scene["extent"])
+    whole = max(float(scene["extent"][k]) / (boxes[0][2 + k] - (40, HEAD)[k]) for k in (0, 1))
+    near = 2.0 * float(scene["close_up"]) / min(boxes[2][2], boxes[2][3] - HEAD)
+    middle = scene["places"][0].mean(axis=0)
+    views = (
+        ("the mesh", ("mesh",), scene["centre"], whole, 0),
+        ("the surface fitted to it", ("surface",), scene["centre"], whole, 1),
+        ("place 1, lost mesh in blue", ("surface", "lost"), middle, near, 1),
+    )
+    for k, (name, bodies, target, scale, side) in enumerate(views):
+        view(window, image, scene, boxes[k], bodies, target, scale)
+        pen.text(boxes[k][:2], name, INK, font=face(25))
+        for number in range(len(scene["places"]) if k < 2 else 1):
+            if scene["seen"][number, side] or number == 0:
+                ring(pen, scene, boxes[k], target, scale, scene["places"][number, side], str(number + 1))
+    legend(image, pen, scene)
+    units = str(scene["units"])
+    ruler(pen, whole, units)
+    ruler(pen, near, f"{units} at place 1".strip(), 0.5 * (SIZE[0] + LEFT - RIGHT) + 60)
+    axes(pen, scene)
+    return image
+
+
+def cells(extent: Any) -> list[Box]:
+    """Left, top, width and height of three boxes: in a row, in a column, or two over one; as the part is largest."""
+    width, height = SIZE[0] - LEFT - RIGHT, SIZE[1] - TOP - BOTTOM
+    w, h = (width - 2 * GAP) / 3, (height - 2 * GAP) / 3
+    row: list[Box] = [(LEFT + k * (w + GAP), TOP, w, height) for k in range(3)]
+    column: list[Box] = [(LEFT, TOP + k * (h + GAP), width, h) for k in range(3)]
+    w, h = (width - GAP) / 2, (height - GAP) / 2
+    over: list[Box] = [(LEFT, TOP, w, h), (LEFT + w + GAP, TOP, w, h), (LEFT, TOP + h + GAP, width, h)]
+    return max((row, column, over), key=lambda boxes: min(boxes[0][2] / extent[0], (boxes[0][3] - HEAD) / extent[1]))
+
+
+def view(window: Any, image: Any, scene: Any, box: Any, bodies: Any, target: Any, scale: float) -> None:
+    """One view, its target in the middle of its box."""
+    left, top, width, height = (round(x) for x in box)
+    window.clear_actors()
+    for body in bodies:
+        add(window, scene, body, scale)
+    aim(window, scene, target, middle_of(box), scale)
+    frame = left, top + HEAD, left + width, top + height
+    image.paste(shot(window).crop(frame), frame[:2])
+
+
+def middle_of(box: Any) -> tuple[float, float]:
+    """The middle in pixels of a box below its name."""
+    left, top, width, height = box
+    return left + 0.5 * width, top + HEAD + 0.5 * (height - HEAD)
+
+
+def add(window: Any, scene: Any, body: str, scale: float) -> None:
+    """The mesh or the surface coloured by its distance to the other, or as blue glass what the surface lost of it."""
+    name = "mesh" if body == "lost" else body
+    faces, share = scene[f"{name}_faces"], scene[f"{name}_away"] / float(scene["most"])
+    if body == "lost":
+        faces = faces[(share[faces] > LOST).any(axis=1)]
+        legible = float(scene["edge"]) > LEGIBLE * scale
+        look = {"color": GLASS, "opacity": 0.3, "show_edges": legible, "edge_color": GLASS}
+    else:
+        look = {"scalars": "away", "cmap": DISTANCES, "clim": [0.0, 1.0], "show_scalar_bar": False}
+    if len(faces):
+        part = pv.PolyData.from_regular_faces(scene[f"{name}_points"], faces)
+        part.point_data["away"] = 1.0 - np.log(np.maximum(share, FAINTEST)) / np.log(FAINTEST)
+        window.add_mesh(part, ambient=0.4, diffuse=0.7, render=False, **look)
+
+
+def ring(pen: Any, scene: Any, box: Any, target: Any, scale: float, point: Any, word: str) -> None:
+    """A ring about a place, with its number beside it."""
+    x, y = middle_of(box)
+    x += float((point - target) @ scene["right"]) / scale
+    y -= float((point - target) @ scene["up"]) / scale
+    for width, colour in ((7, PAPER), (3, MARK)):
+        reach = RING + width / 2
+        pen.ellipse((x - reach, y - reach, x + reach, y + reach), outline=colour, width=width)
+    look = {"font": face(28), "anchor": "mm", "stroke_width": 4, "stroke_fill": PAPER}
+    pen.text((x + RING + 16, y - RING - 8), word, MARK, **look)
+
+
+def legend(image: Any, pen: Any, scene: Any) -> None:
+    """The places by number with their distance, and the scale of colours."""
+    x, y = SIZE[0] - RIGHT + 20, TOP + 6
+    for k, away in enumerate(scene["away"]):
+        hidden = not scene["seen"][k].any()
+        pen.text((x, y + 38 * k), f"{k + 1}", MARK, font=face(25))
+        pen.text((x + 30, y + 38 * k + 2), told(scene, float(away)), FAINT if hidden else INK, font=face(21))
+    if not scene["seen"].any(axis=1).all():
+        pen.text((x, y + 38 * len(scene["away"]) + 2), "grey: out of sight", FAINT, font=face(21))
+    units = str(scene["units"])
+    colour_bar(image, pen, DISTANCES, ["distance" + (f" in {units}" if units else ""), "(% of the part)"], marks(scene))
+
+
+def marks(scene: Any) -> list[tuple[float, str]]:
+    """1, 2 and 5 times powers of ten on the scale, with their shares of the part."""
+    most = float(scene["most"])
+    powers = 10.0 ** np.arange(np.floor(np.log10(FAINTEST * most)), np.ceil(np.log10(most)) + 1)
+    values = np.outer(powers, [1.0, 2.0, 5.0]).ravel()
+    share = 1.0 - np.log(values / most) / np.log(FAINTEST)
+    inside = (share >= 0.0) & (share <= 1.0)
+    return [(float(share[k]), told(scene, float(values[k]))) for k in np.flatnonzero(inside)]
+
+
+def told(scene: Any, away: float) -> str:
+    """A distance and its share of the part."""
+    return f"{away:.2g} ({100.0 * away / float(scene['diagonal']):.2g} %)"
