@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from meshwind.cast import Bools, Floats, Ints, floats, frozen
 from meshwind.errors import BadInputError
-from meshwind.methods import march
+from meshwind.methods import march, march_space
 from meshwind.methods.chain import Physics
 from meshwind.methods.run import Ending, History, Method, Run
 from meshwind.path.paths import Counters
@@ -18,7 +18,11 @@ SCHEMES = {
     Method.SYMPLECTIC_EULER: march.SYMPLECTIC,
     Method.RUNGE_KUTTA: march.RUNGE_KUTTA,
     Method.BACKWARD_EULER: march.BACKWARD,
+    Method.PENALTY: march_space.PENALTY,
+    Method.KKT: march_space.KKT,
 }
+WIDTHS = {Method.PENALTY: 1e-3, Method.KKT: 1e-5}
+"""Default contact width over the surface's size."""
 CLOSEST = 1e-12
 """Ends nearer than this times the surface's size leave no fibre between them."""
 
@@ -42,45 +46,50 @@ def run(
     lifting: bool = True,
     weighted: bool = False,
     inertial: bool = False,
+    width: float | None = None,
+    push: float | None = None,
+    stabilisation: float = 0.2,
     history: bool = False,
 ) -> Run:
     """Let one path move from rest until it comes to rest, the steps run out, or it explodes.
 
     method: one of `Method`.  start, end (2,): parametric ends, u unwrapped; initial (particles, 2): the starting
-    curve, a straight line in (u, v) by default.  Each particle has `mass` and each spring the constant `stiffness`
-    (K of 4.1) and no rest length, so that time counts in sqrt(mass / stiffness): step_size h is in those units of
-    time, `damping` (beta of 4.7) in mass over time, and the highest natural frequency is 2 sqrt(K / m) whatever the
-    part's size; see `largest_frequency` and `stable_step`.  reuse: steps that a factored matrix serves (7.2).
-    tolerance: largest unbalanced tangential force over the tension.
+    curve, a straight line in (u, v) by default.  Each particle has `mass` m and each spring the constant `stiffness`
+    K of (4.1) and no rest length, so that only K/m counts: step_size h is a time, `damping` beta of (4.7) a mass
+    over time, and the highest natural frequency 2 sqrt(K/m) whatever the part's size; see `largest_frequency` and
+    `stable_step`.  steps: at most so many.  tolerance: largest unbalanced tangential force over the tension.
 
-    lifting=False keeps every particle on the surface (chapter 4).  weighted=True lifts by the force of (5.2) rather
-    than by Algorithm 1's test.  inertial=True keeps the velocity term of (4.10) that (4.12) drops.  friction > 0
-    scales velocities by (4.19); the run has converged when nothing moves at all.
+    On the surface: lifting=False keeps every particle there (chapter 4); weighted=True lifts by the force of (5.2)
+    rather than by Algorithm 1's test; inertial=True keeps the velocity term of (4.10) that (4.12) drops; friction
+    scales velocities by (4.19), and the run has then converged when nothing moves at all.  reuse: steps that
+    backward Euler's factored matrix serves (7.2).
+
+    In space: width is epsilon_PF of (7.1), 1e-3 of the surface's size by default, and for KKT the gap below which a
+    particle is in contact, 1e-5 of it; push is the penalty force k_PF, the tension at the start by default;
+    stabilisation in [0, 1] is the share of a contact's gap that a step of KKT takes back.
     """
     scheme = _method(method)
-    for name, value in (("steps", steps), ("reuse", reuse)):
-        if not isinstance(value, int | np.integer) or value < 1:
-            raise BadInputError(f"{name} is {value}; give a whole number, at least 1")
-    for name, number in (("step_size", step_size), ("stiffness", stiffness), ("mass", mass)):
-        if not (number > 0.0 and math.isfinite(number)):
-            raise BadInputError(f"{name} is {number}; give a positive number")
-    for name, number in (("damping", damping), ("friction", friction), ("tolerance", tolerance)):
-        if not (number >= 0.0 and math.isfinite(number)):
-            raise BadInputError(f"{name} is {number}; give a number that is not negative")
+    if scheme.in_space and friction != 0.0:
+        raise BadInputError(f"method {scheme} has no friction; set friction=0 or choose a scheme on the surface")
+    _whole(steps=steps, reuse=reuse)
+    _positive(step_size=step_size, stiffness=stiffness, mass=mass, width=width, push=push)
+    _not_negative(damping=damping, friction=friction, tolerance=tolerance, stabilisation=stabilisation)
     curve = _curve(surface, start, end, particles, initial)
     physics = Physics(float(step_size), stiffness / mass, damping / mass, float(friction))
-    record = np.empty((steps + 1 if history else 0, 3))
-    tally = np.zeros(4, np.int64)
-    middle = surface.control_points.reshape(-1, 3).mean(axis=0)
-    net = frozen(surface.net - middle)
-    count = len(curve)
-    gap = np.zeros(count)
-    chain = (np.empty((count, 3)), curve, np.zeros((count, 2)), np.empty((count, 6, 3)), np.empty((count, 3)),
-             np.ones(count, np.bool_), gap)  # fmt: skip
+    tally, record = np.zeros(4, np.int64), np.empty((steps + 1 if history else 0, 3))
+    if scheme.in_space:
+        tension = stiffness * np.linalg.norm(np.diff(surface.points(curve), axis=0), axis=1).mean()
+        contact = march_space.Contact(
+            SCHEMES[scheme],
+            int(steps),
+            float(tolerance),
+            float(WIDTHS[scheme] * surface.size if width is None else width),
+            float((tension if push is None else push) / mass),
+            float(stabilisation),
+        )
+        return _in_space(scheme, surface, contact, physics, curve, record, tally)
     rules = march.Rules(SCHEMES[scheme], int(steps), float(tolerance), int(reuse), inertial, lifting, weighted)
-    residual, length, status = march.march(net, surface.periodic, rules, physics, chain, record, tally)
-    X, touching = chain[0], chain[5]
-    return _result(surface, scheme, X + middle, curve, touching, residual, length, status, record, tally)
+    return _on_surface(scheme, surface, rules, physics, curve, record, tally)
 
 
 def _method(name: str) -> Method:
@@ -90,6 +99,24 @@ def _method(name: str) -> Method:
         raise BadInputError(f"no method {name!r}; choose one of {', '.join(Method)}") from None
 
 
+def _whole(**values: int) -> None:
+    for name, value in values.items():
+        if not isinstance(value, int | np.integer) or value < 1:
+            raise BadInputError(f"{name} is {value}; give a whole number, at least 1")
+
+
+def _positive(**values: float | None) -> None:
+    for name, value in values.items():
+        if value is not None and not (value > 0.0 and math.isfinite(value)):
+            raise BadInputError(f"{name} is {value}; give a positive number")
+
+
+def _not_negative(**values: float) -> None:
+    for name, value in values.items():
+        if not (value >= 0.0 and math.isfinite(value)):
+            raise BadInputError(f"{name} is {value}; give a number that is not negative")
+
+
 def _curve(surface: Surface, start: ArrayLike, end: ArrayLike, particles: int, initial: ArrayLike | None) -> Floats:
     """The starting curve (particles, 2), checked: a straight line (6.2) unless one is given."""
     if not isinstance(particles, int | np.integer) or particles < 3:
@@ -97,7 +124,7 @@ def _curve(surface: Surface, start: ArrayLike, end: ArrayLike, particles: int, i
     ends = np.array([floats(start, "start", 2), floats(end, "end", 2)])
     if initial is None:
         t = np.linspace(0.0, 1.0, particles)[:, None]
-        curve = (1.0 - t) * ends[0] + t * ends[1]
+        curve = np.ascontiguousarray((1.0 - t) * ends[0] + t * ends[1])
     else:
         curve = floats(initial, "initial", particles, 2).copy()
         curve[0], curve[-1] = ends
@@ -105,25 +132,73 @@ def _curve(surface: Surface, start: ArrayLike, end: ArrayLike, particles: int, i
         raise BadInputError("the starting curve has v outside [0, 1]; v runs from rim to rim")
     if np.ptp(surface.points(curve), axis=0).max() <= CLOSEST * surface.size:
         raise BadInputError("the starting curve has no length; give two different ends")
-    return np.ascontiguousarray(curve)
+    return curve
 
 
-def _result(
-    surface: Surface,
+def _middle(surface: Surface) -> Floats:
+    """Where the origin is put while solving, as in `path.solve`: a part far from it loses no digits."""
+    return np.asarray(surface.control_points.reshape(-1, 3).mean(axis=0))
+
+
+def _on_surface(
     method: Method,
-    points: Floats,
+    surface: Surface,
+    rules: march.Rules,
+    physics: Physics,
     uv: Floats,
-    touching: Bools,
-    residual: float,
-    length: float,
-    status: int,
     record: Floats,
     tally: Ints,
 ) -> Run:
-    frames = surface.frames(uv)
-    offset = points - frames[:, 0]
+    n, middle = len(uv), _middle(surface)
+    X, V, frames, normal = np.empty((n, 3)), np.zeros((n, 2)), np.empty((n, 6, 3)), np.empty((n, 3))
+    touching = np.ones(n, np.bool_)
+    chain = X, uv, V, frames, normal, touching, np.zeros(n)
+    ending = march.march(frozen(surface.net - middle), surface.periodic, rules, physics, chain, record, tally)
+    return _result(method, surface, X + middle, uv, touching, ending, record, tally)
+
+
+def _in_space(
+    method: Method,
+    surface: Surface,
+    contact: march_space.Contact,
+    physics: Physics,
+    uv: Floats,
+    record: Floats,
+    tally: Ints,
+) -> Run:
+    n, middle = len(uv), _middle(surface)
+    X, W, frames, normal = surface.points(uv) - middle, np.zeros((n, 3)), surface.frames(uv), surface.normals(uv)
+    touching = np.ones(n, np.bool_)
+    boxes, levels = surface.tree
+    strand = X, W, uv, frames, normal, touching, np.zeros(n)
+    ending = march_space.march(
+        frozen(surface.net - middle),
+        surface.periodic,
+        frozen(boxes - np.tile(middle, 2)),
+        levels,
+        contact,
+        physics,
+        strand,
+        record,
+        tally,
+    )
+    return _result(method, surface, X + middle, uv, touching, ending, record, tally)
+
+
+def _result(
+    method: Method,
+    surface: Surface,
+    points: Floats,
+    uv: Floats,
+    touching: Bools,
+    ending: tuple[float, float, int],
+    record: Floats,
+    tally: Ints,
+) -> Run:
+    residual, length, status = ending
+    offset = points - surface.points(uv)
     gap = np.copysign(np.linalg.norm(offset, axis=1), np.einsum("ik,ik->i", offset, surface.normals(uv)))
-    taken = record[: tally[3] + 1]
+    lengths, residuals, angles = record[: tally[3] + 1].T
     return Run(
         method=method,
         points=frozen(points),
@@ -134,5 +209,5 @@ def _result(
         residual=float(residual),
         status=Ending(status),
         counters=Counters(*(int(k) for k in tally)),
-        history=History(*(frozen(taken[:, k]) for k in range(3))) if len(record) else None,
+        history=History(frozen(lengths), frozen(residuals), frozen(angles)) if len(record) else None,
     )
