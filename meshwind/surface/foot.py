@@ -17,10 +17,20 @@ def foot(net, periodic, point, guess, at):
     surface evaluations.  A step is Newton's where the Hessian (5.7) is positive definite, Gauss-Newton's
     otherwise, halved until g falls, so that g never grows.
     """
-    trial = np.empty(3)
+    return approach(net, periodic, point, guess, at, np.empty(3), 0.0)[0]
+
+
+@njit(cache=True)
+def approach(net, periodic, point, guess, at, trial, close):
+    """As `foot`, but done with the first full step that is shorter than `close` turns, and without its frame.
+
+    The error after such a step is of the order of close^2.  Returns the number of evaluations and the squared
+    distance; trial (3,) is room to work in.
+    """
     u, v = guess[0], guess[1]
     frame(net, periodic, u, v, at)
     count = 1
+    g0 = 0.0
     for _ in range(MAX_STEPS):
         g0 = gu = gv = 0.0
         huu = huv = hvv = auu = auv = avv = 0.0
@@ -76,11 +86,14 @@ def foot(net, periodic, point, guess, at):
                 break
         if not better:
             break
-        u, v = nu_, nv_
+        free = nu_ == u + du and nv_ == v + dv
+        u, v, g0 = nu_, nv_, g1
+        if free and reach <= close * scale:
+            break
         frame(net, periodic, u, v, at)
         count += 1
     guess[0], guess[1] = u, v
-    return count
+    return count, g0
 
 
 @njit(nogil=True, cache=True)

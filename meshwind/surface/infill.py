@@ -13,7 +13,6 @@ from numba import njit
 from numpy.typing import NDArray
 
 from meshwind.cast import Bools, Floats, Ints
-from meshwind.mandrel.annulus import Annulus
 
 Int8s: TypeAlias = NDArray[np.int8]
 
@@ -24,19 +23,17 @@ FINEST = 24
 """Most points along an edge."""
 
 
-def infill(annulus: Annulus, faces: Ints, corner_uv: Floats, pieces: Ints) -> tuple[Floats, Floats]:
+def infill(corners: Floats, normals: Floats, corner_uv: Floats, pieces: Int8s) -> tuple[Floats, Floats]:
     """Points (k, 2) in the plane and (k, 3) in space that leave no span of the net without data.
 
-    Each of the triangles `faces` (c,) of the annulus, with corners corner_uv (c, 3, 2) in the plane, gets a lattice
-    of so many `pieces` (c,) an edge, without the corners.
+    Each of the triangles with corners (c, 3, 3) in space, normals (c, 3, 3) there and corner_uv (c, 3, 2) in the
+    plane gets a lattice of so many `pieces` (c,) an edge, without the corners.
     """
-    if not len(faces):
-        return np.zeros((0, 2)), np.zeros((0, 3))
-    normals = np.asarray(igl.per_vertex_normals(annulus.vertices, annulus.faces, ANGLE))
+    tangent = _tangent_normals(corners, normals)
     found = []
     for count in np.unique(pieces):
-        chosen = pieces == count
-        found.append(_lattice(annulus, faces[chosen], corner_uv[chosen], normals, count))
+        chosen = np.flatnonzero(pieces == count)
+        found.append(_lattice(corners[chosen], tangent[chosen], corner_uv[chosen], int(count)))
     return np.concatenate([f[0] for f in found]), np.concatenate([f[1] for f in found])
 
 
@@ -60,13 +57,11 @@ def spans_across(
         out[m] = min(int(np.ceil(widest)), FINEST)
 
 
-def _lattice(annulus: Annulus, chosen: Ints, corner_uv: Floats, normals: Floats, pieces: int) -> tuple[Floats, Floats]:
+def _lattice(corners: Floats, normals: Floats, corner_uv: Floats, pieces: int) -> tuple[Floats, Floats]:
     i, j = np.meshgrid(np.arange(pieces + 1), np.arange(pieces + 1), indexing="ij")
     inside = (i + j <= pieces) & (np.maximum(np.maximum(i, j), pieces - i - j) < pieces)
     weight = np.stack([i[inside], j[inside], (pieces - i - j)[inside]], axis=1) / pieces
-    faces = annulus.faces[chosen]
-    corners = annulus.vertices[faces]
-    points = _curved(corners, _tangent_normals(corners, normals[faces]), weight)
+    points = _curved(corners, normals, weight)
     uv = np.einsum("sk,mkd->msd", weight, corner_uv)
     return uv.reshape(-1, 2), points.reshape(-1, 3)
 

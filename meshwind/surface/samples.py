@@ -10,13 +10,15 @@ from numba import njit
 
 from meshwind.cast import Bools, Floats, Ints
 from meshwind.chart.chart import Chart
-from meshwind.surface.foot import foot
-from meshwind.surface.infill import Int8s, infill, spans_across
+from meshwind.surface.foot import approach
+from meshwind.surface.infill import ANGLE, Int8s, infill, spans_across
 from meshwind.surface.surface import Surface
 from meshwind.threads import spread
 
 LOOSE = 0.1
 """Weight of a vertex that trimming made, against one of the part's own."""
+CLOSE = 1e-5
+"""Of the plane: a foot's last step is at most so long, and what it leaves is of the order of its square."""
 INFILL, SLIGHT = 0.05, 5e-5
 """Weight of a point between vertices: enough to hold a span that has nothing else; and among spans that all hold
 vertices, where its own error (second order next to a rim, whose normals are one-sided) would show in the surface."""
@@ -28,6 +30,11 @@ class Facets:
 
     points: Floats
     faces: Ints
+
+    @cached_property
+    def normals(self) -> Floats:
+        """Unit normals (n, 3) at the points, faces weighted by their angles there."""
+        return np.asarray(igl.per_vertex_normals(self.points, self.faces, ANGLE))
 
     def distances(self, points: Floats) -> Floats:
         """Distances (k,) of points (k, 3) to the nearest triangle."""
@@ -80,10 +87,13 @@ class Samples:
         across = np.empty(len(annulus.faces), dtype=np.int8)
         spread(spans_across, len(across), 20_000, annulus.faces, self.uv, self.turns, spans, across)
         coarse = np.flatnonzero(across > 1)
+        if not len(coarse):
+            return np.zeros((0, 2)), np.zeros((0, 3)), np.zeros(0)
         corners = self.uv[annulus.faces[coarse]]
         corners[..., 0] += self.turns[coarse]
-        uv, points = infill(annulus, coarse, corners, across[coarse].astype(np.int64))
-        return uv, points - self.middle, self._hold(uv, spans)
+        chosen = annulus.faces[coarse]
+        uv, points = infill(self.points[chosen], self.facets.normals[chosen], corners, across[coarse])
+        return uv, points, self._hold(uv, spans)
 
     def _hold(self, uv: Floats, spans: tuple[int, int]) -> Floats:
         """How far points (k, 2) between vertices count: little where all spans about them hold vertices."""
@@ -99,7 +109,7 @@ class Samples:
     def corrected(self, surface: Surface) -> tuple["Samples", Floats]:
         """Every vertex moved to its foot in the plane, on a rim along the rim; and the distances (n,)."""
         moved, distance = self.uv.copy(), np.empty(len(self.uv))
-        spread(_foot_distances, len(moved), 500, surface.net, surface.periodic, self.points, moved, distance)
+        spread(_foot_distances, len(moved), 2000, surface.net, surface.periodic, self.points, moved, distance)
         rim = np.flatnonzero(self.rim)
         moved[rim, 1] = self.uv[rim, 1]
         at = surface.frames(self.uv[rim])
@@ -114,11 +124,9 @@ def _foot_distances(
     first: int, last: int, net: Floats, periodic: bool, points: Floats, guesses: Floats, distance: Floats
 ) -> None:
     """Move guesses (n, 2) first to last to the feet of their points (n, 3); write the distances (n,)."""
-    frame = np.empty((6, 3))
+    frame, trial = np.empty((6, 3)), np.empty(3)
     for i in range(first, last):
-        foot(net, periodic, points[i], guesses[i], frame)
-        off = points[i] - frame[0]
-        distance[i] = np.sqrt(off[0] * off[0] + off[1] * off[1] + off[2] * off[2])
+        distance[i] = np.sqrt(approach(net, periodic, points[i], guesses[i], frame, trial, CLOSE)[1])
 
 
 def _span(uv: Floats, spans: tuple[int, int]) -> tuple[Ints, Ints]:
