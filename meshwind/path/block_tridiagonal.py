@@ -45,3 +45,37 @@ def solve(diagonal, upper, metric, shift, right, count, x, inverse):
         x[j, 0] = inverse[j, 0] * p + inverse[j, 1] * q
         x[j, 1] = inverse[j, 1] * p + inverse[j, 2] * q
     return True
+
+
+@njit(cache=True)
+def solve_general(lower, diagonal, upper, shift, right, count, x, carry):
+    """Solve (A + shift I) x = right for the first `count` 2 x 2 blocks by block elimination; A need not be symmetric.
+
+    lower, diagonal, upper (n, 2, 2): row block j couples to j - 1, j, j + 1.  carry (n, 2, 2) is work space.  Returns
+    False at a singular pivot, and then x (n, 2) is meaningless.
+    """
+    for j in range(count):
+        a, b = diagonal[j, 0, 0] + shift, diagonal[j, 0, 1]
+        c, d = diagonal[j, 1, 0], diagonal[j, 1, 1] + shift
+        r, s = right[j, 0], right[j, 1]
+        scale = abs(a * d) + abs(b * c)
+        if j > 0:
+            w, low = carry[j - 1], lower[j]
+            a -= low[0, 0] * w[0, 0] + low[0, 1] * w[1, 0]
+            b -= low[0, 0] * w[0, 1] + low[0, 1] * w[1, 1]
+            c -= low[1, 0] * w[0, 0] + low[1, 1] * w[1, 0]
+            d -= low[1, 0] * w[0, 1] + low[1, 1] * w[1, 1]
+            r -= low[0, 0] * x[j - 1, 0] + low[0, 1] * x[j - 1, 1]
+            s -= low[1, 0] * x[j - 1, 0] + low[1, 1] * x[j - 1, 1]
+        det = a * d - b * c
+        if abs(det) <= DEFINITE * scale:
+            return False
+        x[j, 0], x[j, 1] = (d * r - b * s) / det, (a * s - c * r) / det
+        up = upper[j]
+        carry[j, 0, 0], carry[j, 0, 1] = (d * up[0, 0] - b * up[1, 0]) / det, (d * up[0, 1] - b * up[1, 1]) / det
+        carry[j, 1, 0], carry[j, 1, 1] = (a * up[1, 0] - c * up[0, 0]) / det, (a * up[1, 1] - c * up[0, 1]) / det
+    for j in range(count - 2, -1, -1):
+        w = carry[j]
+        x[j, 0] -= w[0, 0] * x[j + 1, 0] + w[0, 1] * x[j + 1, 1]
+        x[j, 1] -= w[1, 0] * x[j + 1, 0] + w[1, 1] * x[j + 1, 1]
+    return True

@@ -31,14 +31,14 @@ def assemble(state, periodic, before, after, contacts, diagonal, upper, metric, 
     """Hessian and force of the energy over the touching particles (5.2) in the parametric plane.
 
     The diagonal block is J'J's share of (4.16) less F . s_ab, which makes the step Newton's.  Returns the number
-    of blocks and the largest unbalanced force in the tangent plane.
+    of blocks, the largest unbalanced force in the tangent plane, and the last particle held at a rim or edge (0: none).
     """
     X, uv, frames = state[0], state[1], state[2]
     n = len(X)
     force = np.empty(3)
     count = 0
     worst = 0.0
-    last = 0
+    last = leaning = 0
     i = after[0]
     while i < n - 1:
         contacts[count] = i
@@ -69,6 +69,7 @@ def assemble(state, periodic, before, after, contacts, diagonal, upper, metric, 
                             dot -= frames[p, SU + a, k] * frames[i, SU + b, k]
                     upper[count - 1, a, b] = dot / (i - p)
         if bits:  # a held direction drops out of the system
+            leaning = i
             auv = 0.0
             diagonal[count, 1] = 0.0
             if bits & 1:
@@ -85,19 +86,14 @@ def assemble(state, periodic, before, after, contacts, diagonal, upper, metric, 
         last = bits
         count += 1
         i = after[i]
-    return count, np.sqrt(worst)
+    return count, np.sqrt(worst), leaning
 
 
 @njit(cache=True)
-def advance(net, periodic, boxes, levels, size, step, move, contacts, count, state, trial, tally):
-    """Write into `trial` the state after a step that stays outside the body.
-
-    Touching particles move on the surface by step * move (count, 2); lifted ones are carried along by their two
-    touching neighbours and drawn towards the chord; those that would sink land on their feet (5.3).
-    """
-    X, uv, clear = state[0], state[1], state[5]
-    Y = trial[0]
-    n = len(X)
+def move_touching(net, periodic, step, move, contacts, count, state, trial, tally):
+    """Write into `trial` the touching particles moved on the surface by step * move (count, 2), and the two ends."""
+    uv = state[1]
+    n = len(uv)
     copy_particle(state, trial, 0)
     copy_particle(state, trial, n - 1)
     for c in range(count):
@@ -107,9 +103,20 @@ def advance(net, periodic, boxes, levels, size, step, move, contacts, count, sta
             u = min(max(u, 0.0), 1.0)
         touch_down(net, periodic, trial, i, u, v)
     tally[EVALUATIONS] += count
+
+
+@njit(cache=True)
+def carry_lifted(net, periodic, boxes, levels, size, step, contacts, count, state, trial, tally):
+    """Write into `trial` the lifted particles, so that none is inside the body.
+
+    They are carried along by their two touching neighbours, which `trial` already holds, and drawn towards the
+    chord; those that would sink land on their feet (5.3).
+    """
+    X, clear = state[0], state[5]
+    Y = trial[0]
     i = 0
     for c in range(count + 1):
-        j = contacts[c] if c < count else n - 1
+        j = contacts[c] if c < count else len(X) - 1
         for m in range(i + 1, j):
             t = (m - i) / (j - i)
             copy_particle(state, trial, m)

@@ -15,6 +15,7 @@ class Status(IntEnum):
     SLID_OFF_END = 2
     UNSTABLE = 3
     STALLED = 4
+    LEFT_CHART = 5
 
     @property
     def advice(self) -> str:
@@ -26,7 +27,8 @@ _ADVICE = {
     Status.CONVERGED: "taut equilibrium",
     Status.SLID_OFF_START: "the fibre slides off the start rim (v=0): use fewer revolutions, or a wider opening there",
     Status.SLID_OFF_END: "the fibre slides off the end rim (v=1): use fewer revolutions, or a wider opening there",
-    Status.UNSTABLE: "the fibre is balanced on a ridge and would fall to either side: change the revolutions a little",
+    Status.UNSTABLE: "no stable path: the fibre is balanced on a ridge and falls off it (a conjugate point, or windings "
+    "too long for the bulge): use fewer revolutions",
     Status.STALLED: "the solver stopped before the fibre was at rest: use fewer revolutions, or a smoother surface "
     "(--tolerance 1e-3)",
 }
@@ -50,7 +52,8 @@ class Paths:
     on_surface (p, n); gap (p, n) distance to the surface, 0 where on it; normal (p, n, 3) outward at the
     particle or its foot; slip (p, n) = |kg| / kn, NaN off the surface and at the two ends; family (p,) +1 or
     -1; status (p,) of `Status`; residual (p,) largest unbalanced tangential force over the tension, the
-    certificate of equilibrium.
+    certificate of equilibrium; friction: the largest coefficient; holding_turns, holding_friction (p,): the turns
+    and the friction that would hold a path that is not at rest, 0 where none was found.
     """
 
     surface: Surface
@@ -65,6 +68,18 @@ class Paths:
     residual: Floats
     friction: float
     counters: Counters
+    holding_turns: Floats
+    holding_friction: Floats
 
     def __len__(self) -> int:
         return len(self.points)
+
+    def advice(self, path: int) -> str:
+        """What became of a path and, where it does not hold, what would hold it."""
+        status = Status(int(self.status[path]))
+        ways = []
+        if self.holding_turns[path] > 0.0:
+            ways.append(f"{self.holding_turns[path]:.2g} revolutions")
+        if self.holding_friction[path] > 0.0:
+            ways.append(f"friction {self.holding_friction[path]:g}")
+        return status.advice + (f"; {' or '.join(ways)} would hold it" if ways else "")

@@ -12,14 +12,14 @@ from numba import njit
 
 from meshwind.path.block_tridiagonal import solve
 from meshwind.path.contact import lift, link
-from meshwind.path.newton import EVALUATIONS, FEET, ITERATIONS, SOLVES, advance, assemble, sag
+from meshwind.path.newton import EVALUATIONS, FEET, ITERATIONS, SOLVES, assemble, carry_lifted, land, move_touching, sag
 from meshwind.path.paths import Status
-from meshwind.path.state import blank, copy, energy, place, space_evenly
+from meshwind.path.state import blank, copy, energy, place, space_evenly, touch_down
 from meshwind.surface.evaluate import S, unit_normal
 from meshwind.surface.tree import nearest_foot
 
-CONVERGED, SLID_START, SLID_END, UNSTABLE, STALLED = (int(status) for status in Status)
-LIFTED = STALLED + 1
+CONVERGED, SLID_START, SLID_END, UNSTABLE, STALLED, LEFT_CHART = (int(status) for status in Status)
+LIFTED = LEFT_CHART + 1
 """The fibre leaves the surface and no search tree was given: start again with one.  No result ever has it."""
 
 PULL = 1e-9
@@ -29,21 +29,22 @@ LONGEST_MOVE = 0.25
 """No step moves a particle further than this in u or v: beyond it the quadratic model means nothing."""
 DESCENT = 1e-4
 """Armijo's share of the predicted fall."""
+PATIENCE = 60
+"""Steps in a row that a path may lean on a rim before it counts as slid off there."""
+MOST_FALLS = 5
+"""Saddles that a path may leave on its way to rest."""
 
 
 @njit(cache=True)
-def relax(net, periodic, boxes, levels, size, tolerance, limit, state, tally):
-    """Bring the path that starts as the curve state[1] (n, 2) on the surface to rest, in place.
+def relax(net, periodic, boxes, levels, size, pull_off, tolerance, limit, state, tally):
+    """Bring a path to rest from `state`, in place.
 
+    pull_off: angle (radians) of the pull that lifts a particle, infinite for a fibre that cannot leave the surface.
     Returns (residual, status): residual is the largest unbalanced force over the tension, an angle in radians.
     """
     X, uv, frames, normal, touching, clear = state
     n = len(X)
     trial = blank(n)
-    place(net, periodic, state)
-    space_evenly(state)
-    place(net, periodic, state)
-    tally[EVALUATIONS] += 2 * n
     contacts = np.empty(n, np.int64)
     before, after = np.zeros(n, np.int64), np.zeros(n, np.int64)
     diagonal, upper, metric = np.empty((n, 3)), np.empty((n, 2, 2)), np.empty((n, 3))
@@ -52,7 +53,7 @@ def relax(net, periodic, boxes, levels, size, tolerance, limit, state, tally):
     shift, least = 0.0, 0.1 * (np.pi / n) ** 2
     now, length = energy(X)
     residual = np.inf
-    caution = 0
+    caution = falls = leant = leaning = 0
     for _ in range(limit):
         tally[ITERATIONS] += 1
         spacing = length / (n - 1)
@@ -60,20 +61,33 @@ def relax(net, periodic, boxes, levels, size, tolerance, limit, state, tally):
             kept[i] = touching[i]
         released = 0
         if caution < 2:
-            released = lift(X, normal, touching, PULL * spacing, caution == 0, before, after)
+            released = lift(X, normal, touching, pull_off * spacing, caution == 0, before, after)
         else:
             link(touching, before, after)
         if released > 0 and len(levels) == 0:
             return residual, LIFTED
-        count, force = assemble(state, periodic, before, after, contacts, diagonal, upper, metric, right)
+        count, force, leaning = assemble(state, periodic, before, after, contacts, diagonal, upper, metric, right)
         residual = max(force, sag(X, after)) / spacing
         if released == 0 and residual <= tolerance:
-            if caution == 2 and lift(X, normal, touching, PULL * spacing, False, before, after) > 0:
+            if caution == 2 and lift(X, normal, touching, pull_off * spacing, False, before, after) > 0:
                 break  # at rest but for pulls that no step could follow
             tally[SOLVES] += 1
-            if not solve(diagonal, upper, metric, 0.0, right, count, move, work):
+            if solve(diagonal, upper, metric, 0.0, right, count, move, work):
+                if leaning == 0:
+                    return residual, CONVERGED
+                return residual, UNSTABLE if falls > 0 else leaving_by(uv, leaning)
+            falls += 1
+            if falls > MOST_FALLS or not fall(
+                net, periodic, boxes, levels, size, state, trial, contacts, count,
+                diagonal, upper, metric, least, tally,
+            ):  # fmt: skip
                 return residual, UNSTABLE
-            return residual, resting_place(uv, contacts, count)
+            copy(trial, state)
+            now, length = energy(X)
+            continue
+        leant = leant + 1 if leaning > 0 else 0
+        if leant > PATIENCE:
+            return residual, leaving_by(uv, leaning)
         definite = False
         while not definite and shift < 1.0 / least:
             tally[SOLVES] += 1
@@ -90,7 +104,8 @@ def relax(net, periodic, boxes, levels, size, tolerance, limit, state, tally):
         step = min(1.0, LONGEST_MOVE / max(reach, 1e-300))
         accepted = False
         while step > SMALLEST_STEP:
-            advance(net, periodic, boxes, levels, size, step, move, contacts, count, state, trial, tally)
+            move_touching(net, periodic, step, move, contacts, count, state, trial, tally)
+            carry_lifted(net, periodic, boxes, levels, size, step, contacts, count, state, trial, tally)
             then, length_then = energy(trial[0])
             # below round-off the energy cannot judge a step, and Newton's is right
             blind = slope <= 1e-13 * now and then <= now * (1.0 + 1e-12)
@@ -109,49 +124,91 @@ def relax(net, periodic, boxes, levels, size, tolerance, limit, state, tally):
             if caution == 2:
                 break
             caution += 1
-    return residual, STALLED
+    return residual, leaving_by(uv, leaning) if leaning > 0 else STALLED
 
 
 @njit(cache=True)
-def resting_place(uv, contacts, count):
-    """Which rim a path at rest leans on, if any: it has slid off there."""
+def fall(net, periodic, boxes, levels, size, state, trial, contacts, count, diagonal, upper, metric, least, tally):
+    """Leave a saddle of the energy along its steepest descending mode, found by inverse iteration.
+
+    Writes the lower of the two sides into `trial`; returns False where neither side is lower.
+    """
+    right, mode, work = np.empty((count, 2)), np.zeros((count, 2)), np.empty((count, 3))
+    shift = least
     for c in range(count):
-        if uv[contacts[c], 1] <= 0.0:
-            return SLID_START
-        if uv[contacts[c], 1] >= 1.0:
-            return SLID_END
-    return CONVERGED
+        right[c, 0] = right[c, 1] = np.sin(np.pi * (c + 1.0) / (count + 1.0)) + 0.1
+    while True:
+        tally[SOLVES] += 1
+        if solve(diagonal, upper, metric, shift, right, count, mode, work):
+            break
+        shift *= 2.0
+        if shift > 1.0 / least:
+            return False
+    for _ in range(8):
+        reach = np.abs(mode).max()
+        for c in range(count):
+            x, y = mode[c, 0] / reach, mode[c, 1] / reach
+            right[c, 0] = metric[c, 0] * x + metric[c, 1] * y
+            right[c, 1] = metric[c, 1] * x + metric[c, 2] * y
+        tally[SOLVES] += 1
+        solve(diagonal, upper, metric, shift, right, count, mode, work)
+    mode /= np.abs(mode).max()
+    best = energy(state[0])[0]
+    chosen = 0.0
+    for step in (0.03, -0.03):
+        move_touching(net, periodic, step, mode, contacts, count, state, trial, tally)
+        carry_lifted(net, periodic, boxes, levels, size, 0.0, contacts, count, state, trial, tally)
+        then = energy(trial[0])[0]
+        if then < best:
+            best, chosen = then, step
+    if chosen > 0.0:  # the trial holds the other side
+        move_touching(net, periodic, chosen, mode, contacts, count, state, trial, tally)
+        carry_lifted(net, periodic, boxes, levels, size, 0.0, contacts, count, state, trial, tally)
+    return chosen != 0.0
+
+
+@njit(cache=True)
+def leaving_by(uv, i):
+    """Where a path leaves whose particle i is held: over a rim, or an edge of a surface open in u."""
+    if uv[i, 1] <= 0.0:
+        return SLID_START
+    return SLID_END if uv[i, 1] >= 1.0 else LEFT_CHART
 
 
 @njit(nogil=True, cache=True)
 def relax_all(
-    first,
-    last,
-    net,
-    periodic,
-    boxes,
-    levels,
-    size,
-    tolerance,
-    limit,
-    X,
-    uv,
-    normal,
-    touching,
-    gap,
-    slip,
-    residual,
-    status,
-    tallies,
-):
-    """Relax paths first to last; uv (p, n, 2) holds the starting curves and becomes the answer."""
+    first, last, net, periodic, boxes, levels, size, pull_off, tolerance, limit, resume,
+    X, uv, normal, touching, gap, slip, residual, status, tallies,
+):  # fmt: skip
+    """Relax paths first to last: from the curves uv (p, n, 2), or with `resume` from what the arrays hold."""
     n = uv.shape[1]
     frames = np.empty((n, 6, 3))
     for p in range(first, last):
         state = (X[p], uv[p], frames, normal[p], touching[p], gap[p])
-        residual[p], status[p] = relax(net, periodic, boxes, levels, size, tolerance, limit, state, tallies[p])
+        if resume:
+            take_up(net, periodic, boxes, levels, size, state, tallies[p])
+        else:
+            place(net, periodic, state)
+            space_evenly(state)
+            place(net, periodic, state)
+            tallies[p, EVALUATIONS] += 2 * n
+        residual[p], status[p] = relax(
+            net, periodic, boxes, levels, size, pull_off, tolerance, limit, state, tallies[p]
+        )
         if status[p] != LIFTED:
             certify(net, periodic, boxes, levels, state, slip[p], tallies[p])
+
+
+@njit(cache=True)
+def take_up(net, periodic, boxes, levels, size, state, tally):
+    """Complete a state of which positions, parameters and contacts are known; what is inside the body lands."""
+    touching, uv = state[4], state[1]
+    for i in range(len(touching)):
+        if touching[i]:
+            touch_down(net, periodic, state, i, uv[i, 0], uv[i, 1])
+            tally[EVALUATIONS] += 1
+        else:
+            land(net, periodic, boxes, levels, size, state, i, tally)
 
 
 @njit(cache=True)

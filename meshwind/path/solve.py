@@ -1,18 +1,23 @@
 """Solve a batch of taut paths on a surface."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from meshwind.cast import Floats, floats, frozen, ints
 from meshwind.errors import BadInputError
+from meshwind.path.batch import Batch, Setting
+from meshwind.path.friction import Friction, friction_of
+from meshwind.path.ladder import climb
 from meshwind.path.paths import Counters, Paths
-from meshwind.path.relax import LIFTED, relax_all
 from meshwind.surface.surface import Surface
-from meshwind.threads import spread
 
 TOLERANCE = 1e-10
 """Largest unbalanced force at rest, over the tension (an angle in radians)."""
 ITERATIONS = 1000
+ACCURACY = 1e-5
+"""Error of a length, relative, for which particles are chosen where their number is left open."""
 
 
 def straight(start: Floats, end: Floats, particles: int) -> Floats:
@@ -26,68 +31,59 @@ def solve(
     start: ArrayLike,
     end: ArrayLike,
     *,
-    particles: int = 401,
+    particles: int | None = 401,
     family: ArrayLike | None = None,
-    friction: float = 0.0,
+    friction: "float | Friction | Callable[[Floats], Floats] | Floats" = 0.0,
     initial: ArrayLike | None = None,
+    bridging: bool = True,
+    accuracy: float = ACCURACY,
     tolerance: float = TOLERANCE,
     iterations: int = ITERATIONS,
 ) -> Paths:
     """Lay taut paths between fixed ends, bridging hollows where the fibre lifts off.
 
     start, end (p, 2): parametric end points, u unwrapped: its change is the number of revolutions (6.1).
-    initial (p, particles, 2): starting curves, straight lines in (u, v) by default (6.2).  tolerance: largest
-    unbalanced tangential force over the tension.  Solved in coordinates about the surface's middle, so that a
-    part far from the origin loses no digits.  Returns `Paths`, each with its status and residual.
+    particles: of each path; None for as many as bring the lengths' relative error to `accuracy`, by its estimate.
+    friction: a coefficient, a table of them over u and v, or a function of points (n, 3); it holds to the starting
+    curves.  initial (p, k, 2): starting curves, straight lines in (u, v) by default (6.2).  bridging: whether the
+    fibre can leave the surface.  tolerance: largest unbalanced tangential force over the tension.  iterations: most
+    steps a path at any number of particles.  Returns `Paths`, each with its status and residual.
     """
-    if friction != 0.0:
-        raise BadInputError(f"friction {friction:g} is not supported yet; use 0")
-    if not isinstance(particles, int | np.integer) or particles < 3:
-        raise BadInputError(f"particles is {particles}; give a whole number, at least 3")
+    if particles is not None and (not isinstance(particles, int | np.integer) or particles < 3):
+        raise BadInputError(f"particles is {particles}; give a whole number, at least 3, or None")
+    if not accuracy > 0.0:
+        raise BadInputError(f"accuracy is {accuracy:g}; give a relative error above 0")
     first, last = floats(start, "start", -1, 2), floats(end, "end", -1, 2)
     if len(first) != len(last):
         raise BadInputError(f"{len(first)} start points but {len(last)} end points; give as many of each")
     for name, point in (("start", first), ("end", last)):
         if np.any((point[:, 1] < 0) | (point[:, 1] > 1)):
             raise BadInputError(f"a {name} point has v outside [0, 1]; v runs from rim to rim")
-    curves = (
-        straight(first, last, particles) if initial is None else floats(initial, "initial", len(first), particles, 2)
-    )
+    curves = straight(first, last, 2) if initial is None else floats(initial, "initial", len(first), -1, 2)
     count = len(curves)
     sense = np.where(last[:, 0] >= first[:, 0], 1, -1) if family is None else ints(family, "family", count)
-    middle = surface.control_points.reshape(-1, 3).mean(axis=0)
-    net = frozen(surface.net - middle)  # read-only as everywhere: kernels compile once
-    shape = (count, particles)
-    X, normal, uv = np.empty((*shape, 3)), np.empty((*shape, 3)), np.array(curves)
-    touching, gap, slip = np.empty(shape, np.bool_), np.zeros(shape), np.empty(shape)
-    residual, status, tallies = np.empty(count), np.empty(count, np.int64), np.zeros((count, 4), np.int64)
-    results = X, uv, normal, touching, gap, slip, residual, status, tallies
-    setting = net, surface.periodic
-    limits = surface.size, tolerance, iterations
-    # a part that presses everywhere never pays for the search tree
-    spread(
-        relax_all, count, 1, *setting, frozen(np.empty((0, 6))), frozen(np.empty((0, 3), np.int64)), *limits, *results
-    )
-    lifted = np.flatnonzero(status == LIFTED)
-    if len(lifted):
-        boxes, levels = surface.tree
-        again = tuple(np.ascontiguousarray(array[lifted]) for array in results)
-        again[1][:] = curves[lifted]
-        spread(relax_all, len(lifted), 1, *setting, frozen(boxes - np.tile(middle, 2)), levels, *limits, *again)
-        for array, redone in zip(results, again, strict=True):
-            array[lifted] = redone
-    total = tallies.sum(axis=0)
+    setting = Setting(surface, friction_of(surface, friction), bridging, tolerance, iterations)
+    batch, holds = climb(setting, curves, particles, accuracy)
+    return as_paths(setting, batch, sense, holds)
+
+
+def as_paths(setting: Setting, batch: Batch, sense: ArrayLike, holds: tuple[Floats, Floats] | None = None) -> Paths:
+    """The public form of a solved batch."""
+    total = batch.tallies.sum(axis=0)
+    turns, coefficients = holds if holds is not None else (np.zeros(len(batch)), np.zeros(len(batch)))
     return Paths(
-        surface=surface,
-        points=frozen(X + middle),
-        uv=frozen(uv),
-        on_surface=frozen(touching),
-        gap=frozen(gap),
-        normal=frozen(normal),
-        slip=frozen(slip),
-        family=frozen(sense.astype(np.int64)),
-        status=frozen(status),
-        residual=frozen(residual),
-        friction=friction,
+        surface=setting.surface,
+        points=frozen(batch.X + setting.middle),
+        uv=frozen(batch.uv),
+        on_surface=frozen(batch.touching),
+        gap=frozen(batch.gap),
+        normal=frozen(batch.normal),
+        slip=frozen(batch.slip),
+        family=frozen(np.asarray(sense, dtype=np.int64)),
+        status=frozen(batch.status),
+        residual=frozen(batch.residual),
+        friction=setting.friction.largest,
         counters=Counters(*(int(total[k]) for k in range(4))),
+        holding_turns=frozen(turns),
+        holding_friction=frozen(coefficients),
     )

@@ -1,0 +1,124 @@
+"""A batch of paths at work: its arrays, and the setting in which the compiled solvers run."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from meshwind.cast import Bools, Floats, Ints, frozen
+from meshwind.path.friction import Friction
+from meshwind.path.hold import hold_all
+from meshwind.path.refine import refine_all
+from meshwind.path.relax import LIFTED, PULL, relax_all
+from meshwind.surface.surface import Surface
+from meshwind.threads import spread
+
+
+@dataclass
+class Batch:
+    """Arrays of p paths of n particles; X, uv, touching and grip are both where a solver starts and its answer.
+
+    starts (p, m, 2) are the starting curves, to which friction holds; place and mode (p, n) say where on them each
+    particle belongs and how it is held (coulomb.py).
+    """
+
+    starts: Floats
+    X: Floats
+    uv: Floats
+    normal: Floats
+    touching: Bools
+    gap: Floats
+    slip: Floats
+    place: Floats
+    mode: Ints
+    residual: Floats
+    status: Ints
+    tallies: Ints
+
+    def __len__(self) -> int:
+        return len(self.X)
+
+    def rows(self, index: Ints) -> "Batch":
+        """A copy of some of the paths."""
+        return Batch(**{f.name: np.ascontiguousarray(getattr(self, f.name)[index]) for f in fields(self)})
+
+    def put(self, index: Ints, part: "Batch") -> None:
+        """Write paths solved apart back into their rows."""
+        for f in fields(self):
+            getattr(self, f.name)[index] = getattr(part, f.name)
+
+    def refined(self, particles: int) -> "Batch":
+        """The same paths with more particles, those between on the old ones' curve; counters go on."""
+        fine = fresh(self.starts, particles)
+        fine.tallies[:] = self.tallies
+        spread(refine_all, len(self), 64, self.X, self.uv, self.touching, self.place, self.mode,
+               fine.X, fine.uv, fine.touching, fine.place, fine.mode)  # fmt: skip
+        return fine
+
+
+def fresh(starts: Floats, particles: int) -> Batch:
+    """A batch that begins on its starting curves (p, m, 2), resampled evenly by parameter."""
+    p, m = starts.shape[:2]
+    at = np.linspace(0.0, m - 1.0, particles)
+    k = np.minimum(at.astype(np.int64), m - 2)
+    x = (at - k)[:, None]
+    uv = (1.0 - x) * starts[:, k] + x * starts[:, k + 1]
+    shape = (p, particles)
+    return Batch(
+        np.ascontiguousarray(starts), np.zeros((*shape, 3)), np.ascontiguousarray(uv), np.zeros((*shape, 3)),
+        np.ones(shape, np.bool_), np.zeros(shape), np.full(shape, np.nan), np.zeros(shape), np.zeros(shape, np.int8),
+        np.full(p, np.inf), np.zeros(p, np.int64), np.zeros((p, 4), np.int64),
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What all paths of a solve have in common.
+
+    Solved in coordinates about the surface's middle, so that a part far from the origin loses no digits.
+    """
+
+    surface: Surface
+    friction: Friction
+    bridging: bool
+    tolerance: float
+    iterations: int
+
+    @property
+    def middle(self) -> Floats:
+        """The point that kernels take as the origin."""
+        return np.asarray(self.surface.control_points.reshape(-1, 3).mean(axis=0))
+
+    def run(self, batch: Batch, resume: bool) -> None:
+        """Bring the batch to rest, from its starting curves or, with `resume`, from where it is.
+
+        A part that presses everywhere never pays for the search tree, and a frictionless one none for friction.
+        """
+        aloft = ~batch.touching.all(axis=1) if resume else np.zeros(len(batch), np.bool_)
+        low = np.flatnonzero(~aloft)
+        self._run(batch, low, resume, tree=False)
+        lifted = low[batch.status[low] == LIFTED]
+        self._run(batch, np.sort(np.concatenate([np.flatnonzero(aloft), lifted])), resume, tree=True)
+
+    def _run(self, batch: Batch, index: Ints, resume: bool, tree: bool) -> None:
+        if not len(index):
+            return
+        surface, middle = self.surface, self.middle
+        net = frozen(surface.net - middle)  # read-only as everywhere: kernels compile once
+        boxes, levels = frozen(np.empty((0, 6))), frozen(np.empty((0, 3), np.int64))
+        if tree:
+            boxes, levels = frozen(surface.tree[0] - np.tile(middle, 2)), surface.tree[1]
+        pull_off = PULL if self.bridging else np.inf
+        part = batch.rows(index)
+        general = net, surface.periodic, boxes, levels, surface.size, pull_off, self.tolerance, self.iterations, resume
+        places = part.X, part.uv, part.normal, part.touching, part.gap, part.slip
+        results = part.residual, part.status, part.tallies
+        if self.friction.none:
+            spread(relax_all, len(part), 1, *general, *places, *results)
+        else:
+            spread(hold_all, len(part), 1, *general, self.friction.table, part.starts, part.place, part.mode, *places,
+                   *results)  # fmt: skip
+        rerun = part.status == LIFTED
+        part.X[rerun], part.uv[rerun] = batch.X[index][rerun], batch.uv[index][rerun]
+        part.touching[rerun], part.place[rerun] = batch.touching[index][rerun], batch.place[index][rerun]
+        part.mode[rerun] = batch.mode[index][rerun]
+        batch.put(index, part)

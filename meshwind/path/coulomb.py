@@ -1,0 +1,239 @@
+"""Coulomb's law at a touching particle: stuck to the starting curve, or slipping with friction mu N against it.
+
+Friction holds the lateral part of the force only, because the tension is the same all along the fibre (3.4): each
+particle is free along the fibre.  A stuck one stays on the starting curve c and needs |F . b| <= mu N (3.12); one that
+slips has left c to the side where F . b pulls, and is held back by the whole of mu N.  With b = n x t and N = -F . n
+the balance reads R_t = F . t = 0 and R_b = F . b + sigma mu N = 0, where sigma = -sign of the slip.
+"""
+
+import numpy as np
+from numba import njit
+
+from meshwind.path.contact import pull
+from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV
+
+STUCK, HELD = 0, 2
+"""Modes of a touching particle beside sigma = +1 and -1: on the starting curve; pressed against a rim."""
+
+
+@njit(inline="always", cache=True)
+def dot(a, b):
+    """Scalar product of two vectors in space."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@njit(cache=True)
+def curve_at(curve, s, point, tangent):
+    """Point and derivative by s of the Catmull-Rom spline through curve (m, 2), s in samples: third order."""
+    m = len(curve)
+    k = min(max(int(np.floor(s)), 0), m - 2)
+    x = s - k
+    for a in range(2):
+        p0, p1 = curve[k, a], curve[k + 1, a]
+        if m == 2:
+            d0 = d1 = p1 - p0
+        else:
+            d0 = 0.5 * (p1 - curve[k - 1, a]) if k > 0 else -1.5 * p0 + 2.0 * p1 - 0.5 * curve[2, a]
+            d1 = 0.5 * (curve[k + 2, a] - p0) if k < m - 2 else 1.5 * p1 - 2.0 * p0 + 0.5 * curve[m - 3, a]
+        y, z = x * x, x * x * x
+        point[a] = (2 * z - 3 * y + 1) * p0 + (z - 2 * y + x) * d0 + (3 * y - 2 * z) * p1 + (z - y) * d1
+        tangent[a] = (6 * y - 6 * x) * (p0 - p1) + (3 * y - 4 * x + 1) * d0 + (3 * y - 2 * x) * d1
+
+
+@njit(cache=True)
+def nearest_on(curve, s, u, v, frame, point, tangent):
+    """The s whose point of the curve is nearest (u, v) in the metric of `frame`, from a guess; leaves that point."""
+    for _ in range(12):
+        curve_at(curve, s, point, tangent)
+        along = square = 0.0
+        for k in range(3):
+            c = frame[SU, k] * tangent[0] + frame[SV, k] * tangent[1]
+            along += c * (frame[SU, k] * (u - point[0]) + frame[SV, k] * (v - point[1]))
+            square += c * c
+        step = min(max(along / max(square, 1e-300), -4.0), 4.0)
+        then = min(max(s + step, 0.0), len(curve) - 1.0)
+        done = abs(then - s) <= 1e-12 * len(curve)
+        s = then
+        if done:
+            break
+    curve_at(curve, s, point, tangent)
+    return s
+
+
+@njit(cache=True)
+def coefficient(table, periodic, u, v, out):
+    """Friction at (u, v) and its two derivatives, bilinear in a table (rows over u, columns over v)."""
+    rows, columns = table.shape
+    out[1] = out[2] = 0.0
+    if rows == 1 and columns == 1:
+        out[0] = table[0, 0]
+        return
+    spans = rows if periodic else rows - 1
+    x = (u - np.floor(u)) * spans if periodic else u * spans
+    y = v * (columns - 1)
+    i, j = min(max(int(x), 0), spans - 1), min(max(int(y), 0), columns - 2)
+    x, y = x - i, y - j
+    k = (i + 1) % rows
+    a, b, c, d = table[i, j], table[i, j + 1], table[k, j], table[k, j + 1]
+    out[0] = (1 - x) * ((1 - y) * a + y * b) + x * ((1 - y) * c + y * d)
+    out[1] = ((1 - y) * (c - a) + y * (d - b)) * spans
+    out[2] = ((1 - x) * (b - a) + x * (d - c)) * (columns - 1)
+
+
+@njit(cache=True)
+def to_parameters(frame, w, out):
+    """The (u, v) rates whose velocity on the surface is the tangent vector w."""
+    e, f, g = dot(frame[SU], frame[SU]), dot(frame[SU], frame[SV]), dot(frame[SV], frame[SV])
+    a, b = dot(frame[SU], w), dot(frame[SV], w)
+    det = max(e * g - f * f, 1e-300)
+    out[0], out[1] = (g * a - f * b) / det, (e * b - f * a) / det
+
+
+@njit(inline="always", cache=True)
+def second_form(frame, n, a, b):
+    """The second fundamental form of two (u, v) rates, about the outward normal n."""
+    return (
+        dot(frame[SUU], n) * a[0] * b[0]
+        + dot(frame[SUV], n) * (a[0] * b[1] + a[1] * b[0])
+        + dot(frame[SVV], n) * a[1] * b[1]
+    )
+
+
+@njit(cache=True)
+def weigh(state, periodic, before, after, table, curve, grip, balance):
+    """Force balance of every touching particle, and the directions in which it may move.
+
+    grip is (s, offset, mode): place on the starting curve, signed lateral distance from it, and mode.  Fills
+    balance: t, b (n, 3); basis (n, 2, 3) in space and ways (n, 2, 2) in (u, v) of the unknowns; load (n, 4) as
+    F . t, F . b, N, mu; rest (n, 2) the residual R.  Releases stuck particles that slip and holds those pressed
+    against a rim.  Returns the number of modes changed and the largest unbalanced force.
+    """
+    X, uv, frames, normal, touching, clear = state
+    place, offset, mode = grip
+    t, b, basis, ways, load, rest = balance
+    n = len(X)
+    force, m, mu = np.empty(3), np.empty(3), np.empty(3)
+    point, tangent = np.empty(2), np.empty(2)
+    changed, worst = 0, 0.0
+    i = after[0]
+    while i < n - 1:
+        p, q = before[i], after[i]
+        pull(X, i, p, q, force)
+        normal_i = normal[i]
+        for k in range(3):
+            m[k] = (X[q, k] - X[i, k]) / (q - i) + (X[i, k] - X[p, k]) / (i - p)
+        lean = dot(m, normal_i)
+        for k in range(3):
+            t[i, k] = m[k] - lean * normal_i[k]
+        size = np.sqrt(max(dot(t[i], t[i]), 1e-300))
+        for k in range(3):
+            t[i, k] /= size
+        b[i, 0] = normal_i[1] * t[i, 2] - normal_i[2] * t[i, 1]
+        b[i, 1] = normal_i[2] * t[i, 0] - normal_i[0] * t[i, 2]
+        b[i, 2] = normal_i[0] * t[i, 1] - normal_i[1] * t[i, 0]
+        coefficient(table, periodic, uv[i, 0], uv[i, 1], mu)
+        press = max(-dot(force, normal_i), 0.0)
+        load[i, 0], load[i, 1], load[i, 2], load[i, 3] = dot(force, t[i]), dot(force, b[i]), press, mu[0]
+        before_mode = mode[i]
+        if mode[i] == HELD:
+            mode[i] = np.int8(-1 if offset[i] > 0.0 else 1)
+        if mode[i] == STUCK and abs(load[i, 1]) > mu[0] * press + 1e-12 * size:
+            mode[i] = np.int8(-1 if load[i, 1] > 0.0 else 1)
+        rest[i, 0] = load[i, 0]
+        rest[i, 1] = load[i, 1] + mode[i] * mu[0] * press if mode[i] != STUCK else 0.0
+        if mode[i] != STUCK:
+            out_v = rest[i, 0] * dot(t[i], frames[i, SV]) + rest[i, 1] * dot(b[i], frames[i, SV])
+            if (uv[i, 1] <= 0.0 and out_v < 0.0) or (uv[i, 1] >= 1.0 and out_v > 0.0):
+                mode[i] = np.int8(HELD)
+        ways[i, :, :] = 0.0
+        if mode[i] == STUCK:
+            curve_at(curve, place[i], point, tangent)
+            square = 0.0
+            for k in range(3):
+                basis[i, 0, k] = frames[i, SU, k] * tangent[0] + frames[i, SV, k] * tangent[1]
+                square += basis[i, 0, k] ** 2
+            square = np.sqrt(max(square, 1e-300))
+            for k in range(3):
+                basis[i, 0, k] /= square
+                basis[i, 1, k] = 0.0
+            ways[i, 0, 0], ways[i, 0, 1] = tangent[0] / square, tangent[1] / square
+        elif mode[i] == HELD:
+            square = np.sqrt(dot(frames[i, SU], frames[i, SU]))
+            for k in range(3):
+                basis[i, 0, k] = frames[i, SU, k] / square
+                basis[i, 1, k] = 0.0
+            ways[i, 0, 0] = 1.0 / square
+            rest[i, 0] = dot(force, basis[i, 0])
+            rest[i, 1] = 0.0
+        else:
+            for k in range(3):
+                basis[i, 0, k], basis[i, 1, k] = t[i, k], b[i, k]
+            to_parameters(frames[i], t[i], ways[i, 0])
+            to_parameters(frames[i], b[i], ways[i, 1])
+        if mode[i] != before_mode:
+            changed += 1
+        worst = max(worst, np.sqrt(rest[i, 0] ** 2 + rest[i, 1] ** 2))
+        i = q
+    return changed, worst
+
+
+@njit(cache=True)
+def differentiate(state, periodic, before, after, table, mode, balance, contacts, lower, diagonal, upper, right):
+    """Blocks of -dR/dx over the touching particles, exact, so that the step is Newton's; returns their number."""
+    X, uv, frames, normal = state[0], state[1], state[2], state[3]
+    t, b, basis, ways, load, rest = balance
+    n = len(X)
+    force, m, mu = np.empty(3), np.empty(3), np.empty(3)
+    t_uv, b_uv = np.empty(2), np.empty(2)
+    count = 0
+    i = after[0]
+    while i < n - 1:
+        p, q = before[i], after[i]
+        contacts[count] = i
+        gp, gq = 1.0 / (i - p), 1.0 / (q - i)
+        pull(X, i, p, q, force)
+        n_i = normal[i]
+        for k in range(3):
+            m[k] = gq * (X[q, k] - X[i, k]) + gp * (X[i, k] - X[p, k])
+        lean = dot(m, n_i)
+        flat = max(np.sqrt(max(dot(m, m) - lean * lean, 0.0)), 1e-300)
+        to_parameters(frames[i], t[i], t_uv)
+        to_parameters(frames[i], b[i], b_uv)
+        coefficient(table, periodic, uv[i, 0], uv[i, 1], mu)
+        ft, fb, press, sigma = load[i, 0], load[i, 1], load[i, 2], float(mode[i])
+        held = mode[i] == HELD
+        grip = sigma * mu[0] if press > 0.0 else 0.0
+        for a in range(2):
+            for side in range(3):
+                other = p if side == 0 else (i if side == 1 else q)
+                weight = gp if side == 0 else (-gp - gq if side == 1 else gq)
+                turn = -gp if side == 0 else (gp - gq if side == 1 else gq)
+                column = basis[other, a]
+                df_t, df_b, df_n = weight * dot(column, t[i]), weight * dot(column, b[i]), weight * dot(column, n_i)
+                dn_t = dn_b = slope = 0.0
+                if side == 1:
+                    dn_t = -second_form(frames[i], n_i, t_uv, ways[i, a])
+                    dn_b = -second_form(frames[i], n_i, b_uv, ways[i, a])
+                    slope = mu[1] * ways[i, a, 0] + mu[2] * ways[i, a, 1]
+                angle = (turn * dot(column, b[i]) - lean * dn_b) / flat
+                if held:
+                    along = weight * dot(column, basis[i, 0])
+                    if side == 1 and a == 0:
+                        along += dot(force, frames[i, SUU]) * ways[i, 0, 0] ** 2
+                    row_t, row_b = along, 0.0
+                else:
+                    row_t = df_t + fb * angle + press * dn_t
+                    row_b = df_b - ft * angle + press * dn_b - grip * (df_n + ft * dn_t + fb * dn_b)
+                    row_b += sigma * press * slope
+                if mode[i] == STUCK or held:
+                    row_b = -1.0 if (side == 1 and a == 1) else 0.0
+                if side == 0:
+                    lower[count, 0, a], lower[count, 1, a] = -row_t, -row_b
+                elif side == 1:
+                    diagonal[count, 0, a], diagonal[count, 1, a] = -row_t, -row_b
+                else:
+                    upper[count, 0, a], upper[count, 1, a] = -row_t, -row_b
+        right[count, 0], right[count, 1] = rest[i, 0], rest[i, 1]
+        count += 1
+        i = q
+    return count

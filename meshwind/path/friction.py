@@ -1,0 +1,63 @@
+"""Friction of fibre on part: a number, a function of position, or a field."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshwind.cast import Floats, floats, frozen
+from meshwind.errors import BadInputError
+from meshwind.surface.surface import Surface
+
+ROWS = COLUMNS = 256
+"""Samples of a friction field over u and over v; between them it is bilinear."""
+LARGEST = 10.0
+"""No pair of materials has a coefficient above this: a larger one is a mistake of units."""
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Coefficients on an even grid, table (rows, columns) over u and v; (1, 1) where the same all over.
+
+    Rows run once around a surface that closes in u, without repeating the first; otherwise from edge to edge.
+    """
+
+    table: Floats
+
+    @property
+    def none(self) -> bool:
+        """Whether there is no friction at all."""
+        return not self.table.any()
+
+    @property
+    def largest(self) -> float:
+        """The largest coefficient anywhere."""
+        return float(self.table.max())
+
+    @property
+    def smallest(self) -> float:
+        """The smallest coefficient anywhere."""
+        return float(self.table.min())
+
+
+def friction_of(
+    surface: Surface, given: "float | Friction | Callable[[Floats], Floats] | Floats", grid: int = ROWS
+) -> Friction:
+    """Take friction as a number, a table (rows, columns), or a function of points (n, 3) that returns (n,)."""
+    if isinstance(given, Friction):
+        return given
+    if callable(given):
+        u = np.arange(grid) / grid if surface.periodic else np.linspace(0.0, 1.0, grid)
+        places = np.stack(np.meshgrid(u, np.linspace(0.0, 1.0, grid), indexing="ij"), axis=-1).reshape(-1, 2)
+        values = np.asarray(given(surface.points(places)), dtype=np.float64)
+        if values.shape != (len(places),):
+            raise BadInputError(f"the friction function returned shape {values.shape}; return one number a point")
+        table = values.reshape(grid, grid)
+    else:
+        table = np.asarray(given, dtype=np.float64)
+        table = table.reshape(1, 1) if table.ndim == 0 else floats(given, "friction", -1, -1)
+        if table.shape != (1, 1) and min(table.shape) < 2:
+            raise BadInputError(f"friction has shape {table.shape}; give a number or a table of at least 2 by 2")
+    if not np.isfinite(table).all() or table.min() < 0.0 or table.max() > LARGEST:
+        raise BadInputError(f"friction goes from {table.min():g} to {table.max():g}; give coefficients from 0 to 10")
+    return Friction(frozen(table))

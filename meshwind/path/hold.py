@@ -1,0 +1,299 @@
+"""The taut path under friction: Newton on Coulomb's law over sets of stuck and slipping particles, with contact.
+
+At rest the fibre minimises E + sum mu N_i |d_i|, where d_i is the lateral distance from the starting curve and N_i
+the contact force of the answer itself.  Each step is Newton's on the exact balance, N and the fibre's turning
+included; it counts only if E + sum mu N_i |d_i| falls with N_i held at the step's start, and is shifted towards the
+force until it does.  A particle that would cross the starting curve sticks there.  Contact comes first: friction
+holds only where the surface presses.
+"""
+
+import numpy as np
+from numba import njit
+
+from meshwind.path.block_tridiagonal import solve_general
+from meshwind.path.contact import lift, link
+from meshwind.path.coulomb import HELD, STUCK, curve_at, differentiate, dot, nearest_on, weigh
+from meshwind.path.newton import EVALUATIONS, ITERATIONS, SOLVES, carry_lifted, sag
+from meshwind.path.relax import (
+    CONVERGED, DESCENT, LIFTED, LONGEST_MOVE, SLID_END, SLID_START, SMALLEST_STEP, STALLED, certify, take_up,
+)  # fmt: skip
+from meshwind.path.state import blank, copy, copy_particle, energy, touch_down
+
+SETTLE = 1e-9
+"""Round-off of a lateral distance over the part's size: nearer to the starting curve counts as on it."""
+
+
+@njit(cache=True)
+def slide(net, periodic, step, move, contacts, count, curve, balance, state, grip, trial, after_grip, size, tally):
+    """Write into `trial` the touching particles moved by step * move: along the curve if stuck, freely if slipping."""
+    X, uv, frames = state[0], state[1], state[2]
+    place, offset, mode = grip
+    place_t, offset_t, mode_t = after_grip
+    b, ways = balance[1], balance[3]
+    point, tangent = np.empty(2), np.empty(2)
+    last = len(uv) - 1
+    copy_particle(state, trial, 0)
+    copy_particle(state, trial, last)
+    for i in range(last + 1):
+        place_t[i], offset_t[i], mode_t[i] = place[i], offset[i], mode[i]
+    for c in range(count):
+        i = contacts[c]
+        if mode[i] == STUCK:
+            curve_at(curve, place[i], point, tangent)
+            rate = np.sqrt((tangent[0] ** 2 + tangent[1] ** 2) / max(ways[i, 0, 0] ** 2 + ways[i, 0, 1] ** 2, 1e-300))
+            place_t[i] = min(max(place[i] + step * move[c, 0] / max(rate, 1e-300), 0.0), len(curve) - 1.0)
+            curve_at(curve, place_t[i], point, tangent)
+            touch_down(net, periodic, trial, i, point[0], point[1])
+            continue
+        u = uv[i, 0] + step * (move[c, 0] * ways[i, 0, 0] + move[c, 1] * ways[i, 1, 0])
+        v = uv[i, 1] + step * (move[c, 0] * ways[i, 0, 1] + move[c, 1] * ways[i, 1, 1])
+        v = min(max(v, 0.0), 1.0)
+        if not periodic:
+            u = min(max(u, 0.0), 1.0)
+        touch_down(net, periodic, trial, i, u, v)
+        locate(net, periodic, curve, b[i], i, trial, after_grip, size, tally)
+        if mode[i] != HELD and offset_t[i] * mode[i] >= 0.0:  # back on the curve, or across it
+            mode_t[i] = np.int8(STUCK)
+            curve_at(curve, place_t[i], point, tangent)
+            touch_down(net, periodic, trial, i, point[0], point[1])
+            offset_t[i] = 0.0
+            tally[EVALUATIONS] += 1
+    tally[EVALUATIONS] += count
+
+
+@njit(cache=True)
+def locate(net, periodic, curve, side, i, state, grip, size, tally):
+    """Place of particle i along the starting curve, and its signed distance from it towards `side`."""
+    uv, frames = state[1], state[2]
+    place, offset, mode = grip
+    point, tangent = np.empty(2), np.empty(2)
+    place[i] = nearest_on(curve, place[i], uv[i, 0], uv[i, 1], frames[i], point, tangent)
+    away = 0.0
+    for k in range(3):
+        away += side[k] * (frames[i, 1, k] * (uv[i, 0] - point[0]) + frames[i, 2, k] * (uv[i, 1] - point[1]))
+    offset[i] = away if abs(away) > SETTLE * size else 0.0
+
+
+@njit(cache=True)
+def blank_balance(n):
+    """Work space of `weigh`."""
+    return (
+        np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 2, 3)), np.zeros((n, 2, 2)), np.zeros((n, 4)), np.zeros((n, 2))
+    )  # fmt: skip
+
+
+@njit(cache=True)
+def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, curve, state, grip, tally):
+    """Bring a path that touches as `state` and `grip` say to rest under friction, in place.
+
+    Returns (residual, status) as `relax` does.
+    """
+    X, uv, frames, normal, touching, clear = state
+    place, offset, mode = grip
+    n = len(X)
+    trial = blank(n)
+    after_grip = np.zeros(n), np.zeros(n), np.zeros(n, np.int8)
+    spare = np.zeros(n), np.zeros(n), np.zeros(n, np.int8)
+    before_t, after_t = np.zeros(n, np.int64), np.zeros(n, np.int64)
+    balance, balance_t = blank_balance(n), blank_balance(n)
+    t, b, basis, ways, load, rest = balance
+    contacts = np.empty(n, np.int64)
+    before, after = np.zeros(n, np.int64), np.zeros(n, np.int64)
+    lower, diagonal, upper = np.empty((n, 2, 2)), np.empty((n, 2, 2)), np.empty((n, 2, 2))
+    right, move, work = np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 2, 2))
+    kept = np.empty(n, np.bool_)
+    least = 0.1 * (np.pi / n) ** 2
+    shift = 0.0
+    now, length = energy(X)
+    residual = best = np.inf
+    caution = 0
+    for _ in range(limit):
+        tally[ITERATIONS] += 1
+        spacing = length / (n - 1)
+        for i in range(n):
+            kept[i] = touching[i]
+        released = 0
+        if caution < 2:
+            released = lift(X, normal, touching, pull_off * spacing, caution == 0, before, after)
+        else:
+            link(touching, before, after)
+        if released > 0 and len(levels) == 0:
+            return residual, LIFTED
+        changed, force = weigh(state, periodic, before, after, table, curve, grip, balance)
+        residual = max(force, sag(X, after)) / spacing
+        if released == 0 and changed == 0 and residual <= tolerance:
+            if caution == 2 and lift(X, normal, touching, pull_off * spacing, False, before, after) > 0:
+                break
+            return residual, resting(uv, mode, after)
+        count = differentiate(
+            state, periodic, before, after, table, mode, balance, contacts, lower, diagonal, upper, right
+        )
+        best = min(best, force / length)
+        cost = now
+        for c in range(count):
+            i = contacts[c]
+            if mode[i] == 1 or mode[i] == -1:
+                cost += load[i, 2] * load[i, 3] * abs(offset[i])
+        accepted = False
+        trials = 0
+        while not accepted and shift < 1e6:
+            tally[SOLVES] += 1
+            if not solve_general(lower, diagonal, upper, shift, right, count, move, work):
+                shift = max(4.0 * shift, least)
+                continue
+            slope, square, reach = 0.0, 0.0, 0.0
+            for c in range(count):
+                i = contacts[c]
+                slope += right[c, 0] * move[c, 0] + right[c, 1] * move[c, 1]
+                for a in range(2):
+                    square += move[c, a] ** 2
+                    way = move[c, 0] * ways[i, 0, a] + move[c, 1] * ways[i, 1, a]
+                    reach = max(reach, abs(way))
+            if slope <= 1e-3 * least * square:  # no descent: shift towards the force
+                shift = max(4.0 * shift, least)
+                continue
+            step = min(1.0, LONGEST_MOVE / max(reach, 1e-300))
+            while step > SMALLEST_STEP:
+                slide(
+                    net, periodic, step, move, contacts, count, curve, balance, state, grip, trial, after_grip, size,
+                    tally,
+                )  # fmt: skip
+                carry_lifted(net, periodic, boxes, levels, size, step, contacts, count, state, trial, tally)
+                then, length_then = energy(trial[0])
+                price = then
+                for c in range(count):
+                    i = contacts[c]
+                    if (mode[i] == 1 or mode[i] == -1) and after_grip[2][i] != STUCK:
+                        price += load[i, 2] * load[i, 3] * abs(offset[i] + step * move[c, 1])
+                blind = slope <= 1e-13 * now and price <= cost * (1.0 + 1e-12)
+                if price <= cost - DESCENT * step * slope or blind:
+                    accepted = True
+                    break
+                if shift == 0.0:
+                    # near the answer the held N misjudges; there Newton's step is known by the balance it leaves
+                    for i in range(n):
+                        spare[0][i], spare[1][i], spare[2][i] = after_grip[0][i], after_grip[1][i], after_grip[2][i]
+                    link(trial[4], before_t, after_t)
+                    _, left = weigh(trial, periodic, before_t, after_t, table, curve, spare, balance_t)
+                    if left < 0.5 * best * length_then:
+                        accepted = True
+                        break
+                step *= 0.5
+            if not accepted:
+                trials += 1
+                if trials > 3:
+                    break
+                shift = max(16.0 * shift, least)
+        if accepted:
+            for i in range(1, n - 1):
+                if trial[4][i] and not touching[i]:  # landed: where on the starting curve, and on which side of it
+                    after_grip[0][i] = min(max(0.5 * (after_grip[0][i - 1] + after_grip[0][i + 1]), 0.0), len(curve) - 1)
+                    locate(net, periodic, curve, lateral(trial, i), i, trial, after_grip, size, tally)
+                    d = after_grip[1][i]
+                    after_grip[2][i] = np.int8(STUCK if d == 0.0 else (-1 if d > 0.0 else 1))
+            copy(trial, state)
+            for i in range(n):
+                place[i], offset[i], mode[i] = after_grip[0][i], after_grip[1][i], after_grip[2][i]
+            now, length = then, length_then
+            caution = 0
+            shift = 0.25 * shift if shift > least else 0.0
+        else:
+            for i in range(n):
+                touching[i] = kept[i]
+            shift = 0.0
+            if caution == 2:
+                break
+            caution += 1
+    return residual, STALLED
+
+
+@njit(nogil=True, cache=True)
+def hold_all(
+    first, last, net, periodic, boxes, levels, size, pull_off, tolerance, limit, resume, table, starts, place, mode,
+    X, uv, normal, touching, gap, slip, residual, status, tallies,
+):  # fmt: skip
+    """Bring paths first to last to rest under friction: from their starting curves, or with `resume` as they are."""
+    n = uv.shape[1]
+    frames, offset = np.zeros((n, 6, 3)), np.zeros(n)
+    for p in range(first, last):
+        state = (X[p], uv[p], frames, normal[p], touching[p], gap[p])
+        grip = place[p], offset, mode[p]
+        curve, tally = starts[p], tallies[p]
+        if resume:
+            take_up(net, periodic, boxes, levels, size, state, tally)
+            take_hold(net, periodic, curve, state, grip, size, tally)
+        else:
+            mode[p, :] = STUCK
+            offset[:] = 0.0
+            space_along(net, periodic, curve, state, place[p])
+            tally[EVALUATIONS] += 3 * n
+        residual[p], status[p] = hold(
+            net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, curve, state, grip, tally
+        )
+        if status[p] != LIFTED:
+            certify(net, periodic, boxes, levels, state, slip[p], tally)
+
+
+@njit(cache=True)
+def take_hold(net, periodic, curve, state, grip, size, tally):
+    """Complete the grip of a state: stuck particles go to their place, slipping ones measure their way from it."""
+    X, uv, frames, normal, touching, clear = state
+    place, offset, mode = grip
+    point, tangent = np.empty(2), np.empty(2)
+    offset[0] = offset[-1] = 0.0
+    for i in range(1, len(X) - 1):
+        offset[i] = 0.0
+        if not touching[i]:
+            mode[i] = STUCK
+            continue
+        if mode[i] != STUCK:
+            locate(net, periodic, curve, lateral(state, i), i, state, grip, size, tally)
+            if mode[i] != HELD and offset[i] * mode[i] >= 0.0:
+                mode[i] = STUCK
+        if mode[i] == STUCK:
+            curve_at(curve, place[i], point, tangent)
+            touch_down(net, periodic, state, i, point[0], point[1])
+            tally[EVALUATIONS] += 1
+            offset[i] = 0.0
+
+
+@njit(cache=True)
+def lateral(state, i):
+    """The direction n x t at particle i, t from its two neighbours."""
+    X, normal = state[0], state[3]
+    t = X[i + 1] - X[i - 1]
+    t = t - dot(t, normal[i]) * normal[i]
+    t /= max(np.sqrt(dot(t, t)), 1e-300)
+    return np.cross(normal[i], t)
+
+
+@njit(cache=True)
+def resting(uv, mode, after):
+    """Which rim a path at rest leans on, if any."""
+    i = after[0]
+    while i < len(uv) - 1:
+        if mode[i] == HELD:
+            return SLID_START if uv[i, 1] <= 0.5 else SLID_END
+        i = after[i]
+    return CONVERGED
+
+
+@njit(cache=True)
+def space_along(net, periodic, curve, state, place):
+    """Put the particles on the starting curve, evenly by length in space."""
+    X = state[0]
+    n = len(X)
+    point, tangent = np.empty(2), np.empty(2)
+    for i in range(n):
+        place[i] = (len(curve) - 1.0) * i / (n - 1)
+    for _ in range(2):
+        for i in range(n):
+            curve_at(curve, place[i], point, tangent)
+            touch_down(net, periodic, state, i, point[0], point[1])
+        s = np.zeros(n)
+        for i in range(1, n):
+            s[i] = s[i - 1] + np.sqrt(((X[i] - X[i - 1]) ** 2).sum())
+        place[:] = np.interp(np.linspace(0.0, s[n - 1], n), s, place)
+    for i in range(n):
+        curve_at(curve, place[i], point, tangent)
+        touch_down(net, periodic, state, i, point[0], point[1])

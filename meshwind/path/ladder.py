@@ -1,0 +1,166 @@
+"""From coarse to fine: a path is found with few particles, then refined; what fails is tried in other ways.
+
+On every rung the answer of the one below is the start, so that the many particles of the last rung take a few steps
+only.  Which equilibrium a path takes, and whether there is one, is settled on the lowest rung.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from meshwind.cast import Bools, Floats
+from meshwind.path.batch import Batch, Setting, fresh
+from meshwind.path.friction import Friction
+from meshwind.path.paths import Status
+
+FEWEST = 48
+"""Particles of the lowest rung, at least; and as many a turn."""
+COARSE = 1e-6
+"""Unbalanced force that is left on the rungs below the last."""
+MOST = 6401
+"""Particles of the highest rung where their number is left open."""
+TRIES = (0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0)
+"""Coefficients of friction that are tried on a path that slides off."""
+SHARES = 8
+"""Steps in which the turn of a path that slides off is built up."""
+
+
+def climb(setting: Setting, curves: Floats, particles: int | None, accuracy: float) -> tuple[Batch, tuple[Floats, Floats]]:
+    """Bring paths to rest from their starting curves (p, k, 2), with `particles` or as many as `accuracy` needs.
+
+    Returns the batch, and for the paths that do not hold the change of u, and the friction, that would hold them (0
+    where none does).
+    """
+    turn = np.abs(np.diff(curves[:, :, 0], axis=1)).sum(axis=1).max(initial=0.0)
+    fewest = int(FEWEST * max(1.0, turn))
+    rungs = [particles] if particles is not None else [fewest + 1]
+    while particles is not None and (rungs[0] - 1) // 2 >= fewest:
+        rungs.insert(0, (rungs[0] - 1) // 2 + 1)
+    below = replace(setting, tolerance=max(setting.tolerance, COARSE))
+    batch = fresh(curves, rungs[0])
+    alone = len(rungs) == 1 and particles is not None
+    (setting if alone else below).run(batch, resume=False)
+    holds = rescue(setting if alone else below, batch)
+    length = lengths(batch)
+    for n in rungs[1:]:
+        batch = ascend(setting if n == particles else below, batch, n)
+    while particles is None and batch.X.shape[1] < MOST:
+        batch = ascend(setting, batch, 2 * batch.X.shape[1] - 1)
+        before, length = length, lengths(batch)
+        done = batch.status == Status.CONVERGED
+        # second order: a third of the last change is what is left
+        if np.all(np.abs(length - before)[done] <= 3.0 * accuracy * length[done]):
+            break
+    return batch, holds
+
+
+def lengths(batch: Batch) -> Floats:
+    """Length of each path."""
+    return np.asarray(np.linalg.norm(np.diff(batch.X, axis=1), axis=2).sum(axis=1))
+
+
+def ascend(setting: Setting, batch: Batch, particles: int) -> Batch:
+    """The batch with more particles; a path at rest that does not settle anew from below starts from its curve.
+
+    A path that is not at rest is only drawn with more particles: it has no answer to refine.
+    """
+    fine = batch.refined(particles)
+    held, loose = np.flatnonzero(~failing(batch)), np.flatnonzero(failing(batch))
+    taut = fine.rows(held)
+    setting.run(taut, resume=True)
+    fine.put(held, taut)
+    if len(loose):
+        drawn = fine.rows(loose)
+        replace(setting, iterations=0).run(drawn, resume=True)
+        drawn.status[:], drawn.residual[:] = batch.status[loose], batch.residual[loose]
+        fine.put(loose, drawn)
+    lost = held[failing(taut)]
+    if len(lost):
+        anew = fresh(fine.starts[lost], particles)
+        anew.tallies[:] = fine.tallies[lost]
+        setting.run(anew, resume=False)
+        better = anew.status == Status.CONVERGED
+        fine.tallies[lost] = anew.tallies
+        fine.put(lost[better], anew.rows(np.flatnonzero(better)))
+    return fine
+
+
+def failing(batch: Batch) -> Bools:
+    """Which paths are not at rest."""
+    return np.asarray(batch.status != Status.CONVERGED)
+
+
+def rescue(setting: Setting, batch: Batch) -> tuple[Floats, Floats]:
+    """Look for the equilibria that a direct start missed, and for what would hold the paths that have none."""
+    turns, coefficients = np.zeros(len(batch)), np.zeros(len(batch))
+    index = np.flatnonzero(failing(batch))
+    if not len(index):
+        return turns, coefficients
+    part = batch.rows(index)
+    turn = part.starts[:, -1, 0] - part.starts[:, 0, 0]
+    if setting.friction.none:
+        found, share = wind_up(setting, part)
+        turns[index] = share * np.abs(turn)
+        done = np.flatnonzero(~failing(found))
+        part.tallies[:] = found.tallies
+        part.put(done, found.rows(done))
+        batch.put(index, part)
+    else:
+        turns[index] = 0.0
+    index = np.flatnonzero(failing(batch))
+    for mu in TRIES:
+        rest = index[coefficients[index] == 0.0]
+        if mu <= setting.friction.largest or not len(rest):
+            continue
+        rougher = replace(setting, friction=Friction(np.full((1, 1), mu)))
+        probe = fresh(batch.starts[rest], batch.X.shape[1])
+        rougher.run(probe, resume=False)
+        batch.tallies[rest] += probe.tallies
+        coefficients[rest[~failing(probe)]] = mu
+    return turns, coefficients
+
+
+def wind_up(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
+    """Build up the paths' turn in steps, each from the answer of the one before, as far as they hold.
+
+    Returns the batch at full turn, in which those that do not hold have no CONVERGED status, and the largest share
+    of the turn that held.
+    """
+    n = part.X.shape[1]
+    count = len(part)
+    turn = part.starts[:, -1, 0] - part.starts[:, 0, 0]
+    ramp = np.linspace(0.0, 1.0, n)[None, :]
+    share = np.zeros(count)
+    goal = np.full(count, 1.0 / SHARES)
+    work = fresh(part.starts, n)
+    work.uv[:, :, 0] -= turn[:, None] * ramp * (1.0 - goal)[:, None]
+    work.tallies[:] = part.tallies
+    best = work.rows(np.arange(count))
+    best.status[:] = Status.STALLED
+    step = np.full(count, 1.0 / SHARES)
+    first = np.ones(count, np.bool_)
+    for _ in range(3 * SHARES):
+        open_ = np.flatnonzero((share < 1.0) & (step >= 1.0 / (8 * SHARES)))
+        if not len(open_):
+            break
+        trial = best.rows(open_)
+        change = (goal - share)[open_] if not first.any() else (goal - 1.0 / SHARES)[open_]
+        shift = turn[open_, None] * ramp * change[:, None]
+        trial.uv[:, :, 0] += shift
+        trial.touching[:] = True  # from the surface again: a lifted part may not carry over
+        trial.tallies[:] = work.tallies[open_]
+        setting.run(trial, resume=True)
+        work.tallies[open_] = trial.tallies
+        held = trial.status == Status.CONVERGED
+        kept = open_[held]
+        best.put(kept, trial.rows(np.flatnonzero(held)))
+        share[kept] = goal[kept]
+        lost = open_[~held]
+        step[lost] *= 0.5
+        first[:] = False
+        never = lost[share[lost] == 0.0]
+        step[never] = 0.0  # not even the first step holds
+        goal = np.minimum(share + step, 1.0)
+    best.status[share < 1.0] = part.status[share < 1.0]
+    best.tallies[:] = work.tallies
+    return best, share
