@@ -6,6 +6,9 @@ from numba import njit
 XX, XY, XZ, YY, YZ, ZZ = range(6)
 """Places of a symmetric block's entries."""
 
+SINGULAR = 1e-14
+"""A pivot whose determinant is below this share of its diagonal's product has no digits left."""
+
 
 @njit(inline="always", cache=True)
 def project(n, out):
@@ -40,13 +43,17 @@ def sandwich(n, s, y):
 
 @njit(inline="always", cache=True)
 def invert(s, out):
-    """Inverse of a symmetric block."""
+    """Write the inverse of a symmetric block; returns whether its determinant is positive to working precision."""
     a, b, c = s[YY] * s[ZZ] - s[YZ] * s[YZ], s[XZ] * s[YZ] - s[XY] * s[ZZ], s[XY] * s[YZ] - s[XZ] * s[YY]
-    scale = 1.0 / (s[XX] * a + s[XY] * b + s[XZ] * c)
+    det = s[XX] * a + s[XY] * b + s[XZ] * c
+    if not det > SINGULAR * abs(s[XX] * s[YY] * s[ZZ]):
+        return False
+    scale = 1.0 / det
     out[XX], out[XY], out[XZ] = scale * a, scale * b, scale * c
     out[YY] = scale * (s[XX] * s[ZZ] - s[XZ] * s[XZ])
     out[YZ] = scale * (s[XY] * s[XZ] - s[XX] * s[YZ])
     out[ZZ] = scale * (s[XX] * s[YY] - s[XY] * s[XY])
+    return True
 
 
 @njit(cache=True)
@@ -54,8 +61,8 @@ def solve(diagonal, coupling, normal, pinned, x, inverse, work):
     """Solve for particles 1 to n - 2, in place of the right sides x (n, 3).
 
     diagonal (n, 6); neighbours are joined by -coupling P_i P_{i+1}, where P = I - n n' at a pinned particle and I
-    elsewhere.  The matrix must dominate its couplings, and then needs no pivoting.  inverse (n, 6) and work (2, 6)
-    are work space.
+    elsewhere.  inverse (n, 6) and work (2, 6) are work space.  Returns False at a singular pivot, where x is lost: a
+    matrix that dominates its couplings has none, but stiffness of 1e14 across a normal leaves no digits along it.
     """
     n = len(x)
     s, y = work[0], work[1]
@@ -80,7 +87,8 @@ def solve(diagonal, coupling, normal, pinned, x, inverse, work):
                 sandwich(normal[j], t, y)
             for k in range(6):
                 s[k] -= coupling * coupling * t[k]
-        invert(s, inverse[j])
+        if not invert(s, inverse[j]):
+            return False
     for j in range(n - 2, 0, -1):
         if j < n - 2:
             for k in range(3):
@@ -94,6 +102,7 @@ def solve(diagonal, coupling, normal, pinned, x, inverse, work):
         for k in range(3):
             y[k] = x[j, k]
         times(inverse[j], y, x[j])
+    return True
 
 
 @njit(cache=True)

@@ -22,6 +22,10 @@ GROWTH = 100.0
 """A run diverges once its energy exceeds this times the initial one: no true motion of springs gains any."""
 
 
+TINY = 1e-300
+"""Stands for no length: a closed fibre that shrinks to its fixed point."""
+
+
 class Physics(NamedTuple):
     """Time step h, spring constant over mass K/m, damping over mass beta/m, and friction mu."""
 

@@ -71,6 +71,10 @@ def run(
     scheme = _method(method)
     if scheme.in_space and friction != 0.0:
         raise BadInputError(f"method {scheme} has no friction; set friction=0 or choose a scheme on the surface")
+    if inertial and scheme is Method.BACKWARD_EULER:
+        raise BadInputError("(4.13) drops the velocity term: set inertial=False or choose an explicit scheme")
+    if stabilisation > 1.0:
+        raise BadInputError(f"stabilisation is {stabilisation}; give a number from 0 to 1")
     _whole(steps=steps, reuse=reuse)
     _positive(step_size=step_size, stiffness=stiffness, mass=mass, width=width, push=push)
     _not_negative(damping=damping, friction=friction, tolerance=tolerance, stabilisation=stabilisation)

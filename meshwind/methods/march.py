@@ -13,6 +13,7 @@ from meshwind.methods.chain import (
     GROWTH,
     STEPS,
     STOPPED,
+    TINY,
     carry,
     gather,
     link,
@@ -78,7 +79,7 @@ def march(net, periodic, rules, physics, chain, history, tally):
     for k in range(steps + 1):
         energy, length = stretch(X)
         count, worst = gather(chain, periodic, friction, contacts, before, after, forces)
-        residual = max(worst, sag(X, after) if lifting else 0.0) * (n - 1) / length
+        residual = max(worst, sag(X, after) if lifting else 0.0) * (n - 1) / max(length, TINY)
         if len(history) > 0:
             history[k, 0], history[k, 1], history[k, 2] = length, residual, mean_angle(X, normal, touching)
         if not changed and (resting or (friction == 0.0 and residual <= tolerance)):

@@ -7,7 +7,7 @@ from numba import njit
 
 from meshwind.methods import kkt, penalty
 from meshwind.methods.blocks import factor, room
-from meshwind.methods.chain import CONVERGED, DIVERGED, GROWTH, STEPS, STOPPED, link, mean_angle, sag, stretch
+from meshwind.methods.chain import CONVERGED, DIVERGED, GROWTH, STEPS, STOPPED, TINY, link, mean_angle, sag, stretch
 from meshwind.methods.collide import drift, feel, kinetic_energy, unbalanced
 
 PENALTY, KKT = range(2)
@@ -44,18 +44,19 @@ def march(net, periodic, boxes, levels, rules, physics, strand, history, tally):
         for i in range(n):
             pressed[i] = touching[i] and not loose[i]
         link(pressed, before, after)
-        residual = max(unbalanced(X, normal, before, after), sag(X, after)) * (n - 1) / length
+        residual = max(unbalanced(X, normal, before, after), sag(X, after)) * (n - 1) / max(length, TINY)
         if len(history) > 0:
             history[k, 0], history[k, 1], history[k, 2] = length, residual, mean_angle(X, normal, pressed)
         if residual <= tolerance and longest <= tolerance * length:
             status = CONVERGED
         if status == CONVERGED or k == steps:
             break
+        well = True
         if scheme == KKT:
             kkt.step(strand, physics, stabilisation, system, pivots, force, right, loose, tally)
         else:
-            penalty.step(strand, physics, width, push, none, system, force, tally)
-        if not kinetic_energy(W) + physics.stiff * energy <= bound:
+            well = penalty.step(strand, physics, width, push, none, system, force, tally)
+        if not well or not kinetic_energy(W) + physics.stiff * energy <= bound:
             status = DIVERGED
             break
         longest = drift(X, W, h)

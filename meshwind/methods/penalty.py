@@ -12,7 +12,10 @@ from meshwind.methods.collide import pulls
 
 @njit(cache=True)
 def step(strand, physics, width, push, pinned, system, force, tally):
-    """New velocities of the strand; width is epsilon_PF, push is k_PF over the mass; pinned (n,) must be False."""
+    """New velocities of the strand; width is epsilon_PF, push is k_PF over the mass; pinned (n,) must be False.
+
+    Returns whether the matrix kept its digits; the velocities are lost where not.
+    """
     X, W, uv, frames, normal, touching, gap = strand
     diagonal, inverse, work = system
     h = physics.step
@@ -38,4 +41,4 @@ def step(strand, physics, width, push, pinned, system, force, tally):
         for k in range(3):
             W[i, k] += h * (physics.stiff * force[i, k] + press * normal[i, k])
     tally[SOLVES] += 1
-    solve(diagonal, coupling, normal, pinned, W, inverse, work)
+    return solve(diagonal, coupling, normal, pinned, W, inverse, work)
