@@ -166,3 +166,9 @@ def test_bad_arguments_are_refused(change: dict[str, object], why: str) -> None:
 
 def test_every_stop_has_advice() -> None:
     assert all(stop.advice for stop in Stop)
+
+
+def test_a_piece_of_the_surface_costs_two_steps() -> None:
+    """One to see where the path leaves it and one that ends there, of 12 evaluations each, and two for the pressure."""
+    path = trace(fine_barrel(), (0, 0.3), 1.2, 3.2)
+    assert path.evaluations < 28 * len(path)
