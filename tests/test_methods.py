@@ -181,6 +181,22 @@ def test_only_stiffness_over_mass_counts() -> None:
     np.testing.assert_allclose(scaled.points, plain.points, atol=1e-12)
 
 
+@pytest.mark.parametrize("method", ["backward-euler", "kkt"])
+def test_a_part_far_from_the_origin_winds_alike(method: str) -> None:
+    problem = TABLE["vase"]
+    setting: dict[str, Any] = dict(SETTLES[method][1], tolerance=1e-8)
+    here = problem.surface()
+    far = Surface(here.control_points + 1e3 * np.array([1.0, -2.0, 3.0]))
+    near, away = (
+        run(method, s, problem.start, problem.end, particles=N, weighted=True, **setting) for s in (here, far)
+    )
+    assert away.status == Ending.CONVERGED
+    assert away.length == pytest.approx(near.length, rel=1e-9)
+    np.testing.assert_allclose(
+        away.points - far.control_points[0, 0] + here.control_points[0, 0], near.points, atol=1e-6
+    )
+
+
 def test_the_penalty_error_shrinks_with_its_width() -> None:
     truth, size = ours("sphere"), sphere().size
     errors = []

@@ -11,6 +11,7 @@ from meshwind.methods import march, march_space
 from meshwind.methods.chain import Physics
 from meshwind.methods.run import Ending, History, Method, Run
 from meshwind.path.paths import Counters
+from meshwind.surface.evaluate import S
 from meshwind.surface.surface import Surface
 
 SCHEMES = {
@@ -23,8 +24,8 @@ SCHEMES = {
 }
 WIDTHS = {Method.PENALTY: 1e-3, Method.KKT: 1e-5}
 """Default contact width over the surface's size."""
-CLOSEST = 1e-12
-"""Ends nearer than this times the surface's size leave no fibre between them."""
+FAR = 10.0
+"""A part this many times its size from the origin is moved there and back."""
 
 
 def run(
@@ -78,22 +79,18 @@ def run(
     _whole(steps=steps, reuse=reuse)
     _positive(step_size=step_size, stiffness=stiffness, mass=mass, width=width, push=push)
     _not_negative(damping=damping, friction=friction, tolerance=tolerance, stabilisation=stabilisation)
-    curve = _curve(surface, start, end, particles, initial)
+    curve = _curve(start, end, particles, initial)
     physics = Physics(float(step_size), stiffness / mass, damping / mass, float(friction))
     tally, record = np.zeros(4, np.int64), np.empty((steps + 1 if history else 0, 3))
-    if scheme.in_space:
-        tension = stiffness * np.linalg.norm(np.diff(surface.points(curve), axis=0), axis=1).mean()
-        contact = march_space.Contact(
-            SCHEMES[scheme],
-            int(steps),
-            float(tolerance),
-            float(WIDTHS[scheme] * surface.size if width is None else width),
-            float((tension if push is None else push) / mass),
-            float(stabilisation),
-        )
-        return _in_space(scheme, surface, contact, physics, curve, record, tally)
-    rules = march.Rules(SCHEMES[scheme], int(steps), float(tolerance), int(reuse), inertial, lifting, weighted)
-    return _on_surface(scheme, surface, rules, physics, curve, record, tally)
+    if not scheme.in_space:
+        rules = march.Rules(SCHEMES[scheme], int(steps), float(tolerance), int(reuse), inertial, lifting, weighted)
+        return _on_surface(scheme, surface, rules, physics, curve, record, tally)
+    reach = WIDTHS[scheme] * surface.size if width is None else width
+    force = stiffness * _spacing(surface, curve) if push is None else push
+    contact = march_space.Contact(
+        SCHEMES[scheme], int(steps), float(tolerance), float(reach), float(force / mass), float(stabilisation)
+    )
+    return _in_space(scheme, surface, contact, physics, curve, record, tally)
 
 
 def _method(name: str) -> Method:
@@ -121,7 +118,7 @@ def _not_negative(**values: float) -> None:
             raise BadInputError(f"{name} is {value}; give a number that is not negative")
 
 
-def _curve(surface: Surface, start: ArrayLike, end: ArrayLike, particles: int, initial: ArrayLike | None) -> Floats:
+def _curve(start: ArrayLike, end: ArrayLike, particles: int, initial: ArrayLike | None) -> Floats:
     """The starting curve (particles, 2), checked: a straight line (6.2) unless one is given."""
     if not isinstance(particles, int | np.integer) or particles < 3:
         raise BadInputError(f"particles is {particles}; give a whole number, at least 3")
@@ -134,14 +131,24 @@ def _curve(surface: Surface, start: ArrayLike, end: ArrayLike, particles: int, i
         curve[0], curve[-1] = ends
     if np.any((curve[:, 1] < 0) | (curve[:, 1] > 1)):
         raise BadInputError("the starting curve has v outside [0, 1]; v runs from rim to rim")
-    if np.ptp(surface.points(curve), axis=0).max() <= CLOSEST * surface.size:
+    if np.ptp(curve, axis=0).max() == 0.0:
         raise BadInputError("the starting curve has no length; give two different ends")
     return curve
 
 
-def _middle(surface: Surface) -> Floats:
-    """Where the origin is put while solving, as in `path.solve`: a part far from it loses no digits."""
-    return np.asarray(surface.control_points.reshape(-1, 3).mean(axis=0))
+def _spacing(surface: Surface, uv: Floats) -> float:
+    """Mean distance of neighbours, in the surface's units."""
+    return float(np.linalg.norm(np.diff(surface.points(uv), axis=0), axis=1).mean())
+
+
+def _origin(surface: Surface) -> Floats:
+    """Where the origin is put while solving: on a part that is far from its own, so that no digits are lost."""
+    point = surface.control_points[0, 0]
+    return point if np.linalg.norm(point) > FAR * surface.size else np.zeros(3)
+
+
+def _net(surface: Surface, origin: Floats) -> Floats:
+    return frozen(surface.net - origin) if origin.any() else surface.net
 
 
 def _on_surface(
@@ -153,12 +160,12 @@ def _on_surface(
     record: Floats,
     tally: Ints,
 ) -> Run:
-    n, middle = len(uv), _middle(surface)
+    n, origin = len(uv), _origin(surface)
     X, V, frames, normal = np.empty((n, 3)), np.zeros((n, 2)), np.empty((n, 6, 3)), np.empty((n, 3))
     touching = np.ones(n, np.bool_)
     chain = X, uv, V, frames, normal, touching, np.zeros(n)
-    ending = march.march(frozen(surface.net - middle), surface.periodic, rules, physics, chain, record, tally)
-    return _result(method, surface, X + middle, uv, touching, ending, record, tally)
+    ending = march.march(_net(surface, origin), surface.periodic, rules, physics, chain, record, tally)
+    return _result(method, surface, X + origin, uv, touching, ending, record, tally)
 
 
 def _in_space(
@@ -170,15 +177,16 @@ def _in_space(
     record: Floats,
     tally: Ints,
 ) -> Run:
-    n, middle = len(uv), _middle(surface)
-    X, W, frames, normal = surface.points(uv) - middle, np.zeros((n, 3)), surface.frames(uv), surface.normals(uv)
+    n, origin = len(uv), _origin(surface)
+    frames = surface.frames(uv)
+    X, W, normal = frames[:, S] - origin, np.zeros((n, 3)), np.empty((n, 3))
     touching = np.ones(n, np.bool_)
     boxes, levels = surface.tree
     strand = X, W, uv, frames, normal, touching, np.zeros(n)
     ending = march_space.march(
-        frozen(surface.net - middle),
+        _net(surface, origin),
         surface.periodic,
-        frozen(boxes - np.tile(middle, 2)),
+        frozen(boxes - np.tile(origin, 2)) if origin.any() else boxes,
         levels,
         contact,
         physics,
@@ -186,7 +194,7 @@ def _in_space(
         record,
         tally,
     )
-    return _result(method, surface, X + middle, uv, touching, ending, record, tally)
+    return _result(method, surface, X + origin, uv, touching, ending, record, tally)
 
 
 def _result(
@@ -200,15 +208,19 @@ def _result(
     tally: Ints,
 ) -> Run:
     residual, length, status = ending
-    offset = points - surface.points(uv)
-    gap = np.copysign(np.linalg.norm(offset, axis=1), np.einsum("ik,ik->i", offset, surface.normals(uv)))
+    gap = np.zeros(len(uv))
+    apart = np.ones(len(uv), bool) if method.in_space else ~touching
+    if apart.any():
+        offset = points[apart] - surface.points(uv[apart])
+        height = np.einsum("ik,ik->i", offset, surface.normals(uv[apart]))
+        gap[apart] = np.copysign(np.linalg.norm(offset, axis=1), height)
     lengths, residuals, angles = record[: tally[3] + 1].T
     return Run(
         method=method,
         points=frozen(points),
         uv=frozen(uv),
         on_surface=frozen(touching),
-        gap=frozen(np.where(np.abs(gap) > CLOSEST * surface.size, gap, 0.0)),
+        gap=frozen(gap),
         length=float(length),
         residual=float(residual),
         status=Ending(status),
