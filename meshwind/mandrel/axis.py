@@ -8,6 +8,7 @@ from meshwind.mandrel.measure import areas
 _ALIKE = 0.05  # moments closer than this are equal
 _ROUND = 1e-4  # moments closer than this are equal to the accuracy of a mesh
 _LEVEL = 1e-6  # a skewness below this is round-off, of single precision too
+_ORDER = np.array([1.0, np.sqrt(2.0), np.sqrt(3.0)])
 
 
 def moments(vertices: Floats, faces: Ints) -> tuple[Floats, Floats]:
@@ -42,20 +43,29 @@ def longest_axis(vertices: Floats, faces: Ints) -> tuple[Floats, str]:
 def forward(vertices: Floats, faces: Ints, direction: Floats) -> Floats:
     """The unit vector along or against `direction` that leads from the fuller end of the part to the slimmer.
 
-    Fuller is the end with more of the surface near it, or else the one with the surface further from the axis.  A
-    part with neither is told from its mirror image by its coordinates: towards the larger ones.
+    Fuller is the end with more of the surface near it, or else the one with the surface further from the axis, or
+    else what higher moments tell.  A part with none of these is told from its mirror image by its coordinates:
+    towards the larger ones.
     """
     unit = direction / np.linalg.norm(direction)
     centroid, second = moments(vertices, faces)
     middle = vertices[faces].mean(axis=1) - centroid
     along = middle @ unit
-    away = np.linalg.norm(middle - along[:, None] * unit, axis=1)
+    away = np.linalg.norm(middle - along[:, None] * unit, axis=1) / float(np.sqrt(np.trace(second)))
     share = areas(vertices, faces)
     share = share / share.sum()
     along = along - share @ along
-    spread = float(np.sqrt(share @ along**2)) + 1e-300
-    radius = float(np.sqrt(np.trace(second)))
-    skewness = float(share @ along**3) / spread**3
-    flare = -float(share @ (along * away**2)) / (spread * radius**2)
-    clue = next((value for value in (skewness, flare) if abs(value) > _LEVEL), float(unit[np.argmax(np.abs(unit))]))
+    along = along / (float(np.sqrt(share @ along**2)) + 1e-300)
+    # odd in `along`, so that they change sign with the part turned end for end; the skewness first
+    told = (along**3, -along * away**2, along**5, -(along**3) * away**2, -along * away**4)
+    clues = (float(share @ clue) for clue in told)
+    clue = next((value for value in clues if abs(value) > _LEVEL), float(rank(unit)))
     return np.asarray(unit if clue > 0 else -unit)
+
+
+def rank(places: Floats) -> Floats:
+    """Numbers (...) by which places (..., 3) about the origin are ordered where nothing else tells them apart.
+
+    No place with whole or equal coordinates but the origin has 0, so that round-off decides nothing.
+    """
+    return np.asarray(places @ _ORDER)

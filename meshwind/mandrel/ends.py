@@ -7,13 +7,14 @@ import numpy as np
 
 from meshwind.cast import Floats, Ints, floats
 from meshwind.errors import BadInputError
-from meshwind.mandrel.axis import forward, longest_axis
+from meshwind.mandrel.axis import forward, longest_axis, rank
 from meshwind.mandrel.holes import loop_size
 from meshwind.mandrel.measure import loop_area_vector, loop_centroid, perimeter
 from meshwind.mandrel.poles import Lip, extreme, nearest
 
 _ALIKE = 1e9  # lengths are equal that agree to this many parts
 _AXES = {"x": 0, "y": 1, "z": 2}
+_ALIKE_SIZE = 1e-3  # sizes and distances that differ by less than this part are equal
 _NEAR_EXTREME = 0.05  # rims within this part of the extent are equally far out
 
 
@@ -115,10 +116,9 @@ def _two_rims(vertices: Floats, faces: Ints, ends: list[End], wish: Wish) -> tup
         return [ends[first], ends[second]], "the open rims nearest to the given points"
     if wish.axis is not None:
         return _rims_along(vertices, ends, wish.axis), f"the open rims furthest out along {wish.text}"
-    sizes = [loop_size(vertices, end.loop) for end in ends if end.loop is not None]
-    a, b = (ends[k] for k in np.argsort(sizes, kind="stable")[:-3:-1])
+    a, b = _largest_two(vertices, ends)
     long, short = (perimeter(vertices, end.loop) for end in (a, b) if end.loop is not None)
-    if abs(long - short) > 1e-3 * max(long, short):
+    if abs(long - short) > _ALIKE_SIZE * max(long, short):
         pair = [a, b] if long > short else [b, a]
         return pair, "the two largest open rims, from the longer to the shorter"
     if forward(vertices, faces, b.centre - a.centre) @ (b.centre - a.centre) < 0:
@@ -132,15 +132,42 @@ def _distance(vertices: Floats, end: End, point: Floats) -> float:
     return float(np.linalg.norm(ring - point, axis=1).min())
 
 
+def _largest_two(vertices: Floats, ends: list[End]) -> tuple[End, End]:
+    """The two ends of the largest rims; of rims alike in size those furthest apart."""
+    sizes = _sizes(vertices, ends)
+    second = float(np.sort(sizes)[-2])
+    larger = np.flatnonzero(sizes > second * (1.0 + _ALIKE_SIZE))
+    alike = np.flatnonzero(np.abs(sizes - second) <= second * _ALIKE_SIZE)
+    i, j = np.triu_indices(len(alike), 1)
+    first, last = (np.full(len(alike), larger[0]), alike) if len(larger) else (alike[i], alike[j])
+    centre = np.array([end.centre for end in ends])
+    apart = np.linalg.norm(centre[first] - centre[last], axis=1)
+    pair = _best(apart, centre[first] + centre[last])
+    return ends[first[pair]], ends[last[pair]]
+
+
+def _sizes(vertices: Floats, ends: list[End]) -> Floats:
+    """Area that each end's rim encloses."""
+    return np.array([loop_size(vertices, end.loop) for end in ends if end.loop is not None])
+
+
+def _best(values: Floats, places: Floats) -> int:
+    """Number of the largest value; of those about as large, the one whose place (3,) comes first in rank."""
+    alike = np.flatnonzero(values >= values.max() * (1.0 - _ALIKE_SIZE))
+    return int(alike[np.argmin(rank(places[alike] - places.mean(axis=0)))])
+
+
 def _rims_along(vertices: Floats, ends: list[End], axis: Floats) -> list[End]:
     """The rims at the lower and at the upper extreme of an axis, the larger one where several are that far out."""
     height = np.array([end.centre @ axis for end in ends])
-    size = np.array([loop_size(vertices, end.loop) for end in ends if end.loop is not None])
+    size, places = _sizes(vertices, ends), np.array([end.centre for end in ends])
     slack = _NEAR_EXTREME * np.ptp(vertices @ axis)
-    low = int(np.argmax(np.where(height <= height.min() + slack, size, -1.0)))
+    low = _best(np.where(height <= height.min() + slack, size, -1.0), places)
     rest = np.arange(len(ends)) != low
-    high = int(np.argmax(np.where(rest & (height >= height[rest].max() - slack), size, -1.0)))
-    return [ends[low], ends[high]] if height[low] <= height[high] else [ends[high], ends[low]]
+    high = _best(np.where(rest & (height >= height[rest].max() - slack), size, -1.0), places)
+    level = abs(height[low] - height[high]) <= _ALIKE_SIZE * slack
+    upward = float(rank(places[high] - places[low])) > 0 if level else height[high] > height[low]
+    return [ends[low], ends[high]] if upward else [ends[high], ends[low]]
 
 
 def _one_rim(vertices: Floats, faces: Ints, loop: Ints, wish: Wish) -> tuple[list[End], str]:

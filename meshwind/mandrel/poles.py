@@ -11,6 +11,8 @@ from meshwind.mandrel.subdivide import crossing, subdivide
 from meshwind.mandrel.topology import euler, patches
 
 _CAPS = (0.01, 0.03)  # heights of the cap over the part's extent along the axis
+_SLIM = 2.0  # height of a cap over its width from which on it is a needle's
+_LOWEST = 1e-5  # lowest cap over the part's extent
 
 
 @dataclass(frozen=True)
@@ -21,23 +23,43 @@ class Lip:
     height: float
 
 
+@dataclass(frozen=True)
+class _Cap:
+    """The piece of a part above a level: its faces (m, 3) of points (n, 3), and the middle (3,) of its surface."""
+
+    level: float
+    points: Floats
+    faces: Ints
+    centre: Floats
+    width: float
+    """How far its surface lies from its middle, square to the direction, root mean square."""
+
+
 def extreme(vertices: Floats, faces: Ints, direction: Floats) -> tuple[Floats, Lip | None]:
     """Middle (3,) of the part's end in `direction`, on the surface, and its lip if it is the mouth of a cup.
 
     The centroid of the cap goes back onto the surface along the direction, so that a dome gives its apex, a
     flat end its centre and a dished one its bottom.  Deeper than wide is a cup: its lining is no place to wind.
     """
-    for share in _CAPS:
-        level, points, cap = _cap(vertices, faces, direction, share)
-        area = areas(points, cap)
-        centre = (area[:, None] * points[cap].mean(axis=1)).sum(axis=0) / area.sum()
-        hit = _shoot(vertices, faces, centre, direction) if euler(cap) == 0 or share == _CAPS[-1] else None
-        if hit is not None and euler(cap) == 0:
-            out = points[cap].mean(axis=1) - centre
-            width = np.sqrt((area * (out**2).sum(axis=1)).sum() / area.sum())
-            if (centre - hit) @ direction > width:
-                return centre, Lip(direction, level)
-    return (nearest(vertices, faces, centre) if hit is None else hit), None
+    usual = _blunt(vertices, faces, direction)
+    for share in (usual, usual * _CAPS[1] / _CAPS[0]):
+        cap = _cap(vertices, faces, direction, share)
+        ring = euler(cap.faces) == 0
+        hit = _shoot(vertices, faces, cap.centre, direction) if ring or share > usual else None
+        if hit is not None and ring and (cap.centre - hit) @ direction > cap.width:
+            return cap.centre, Lip(direction, cap.level)
+    return (nearest(vertices, faces, cap.centre) if hit is None else hit), None
+
+
+def _blunt(vertices: Floats, faces: Ints, direction: Floats) -> float:
+    """Height of the lower cap over the part's extent: less than usual on an end like a needle's.
+
+    The middle of a cap that is far higher than wide would go back onto the needle's flank, well below its tip.
+    """
+    share, extent = _CAPS[0], float(np.ptp(vertices @ direction))
+    while share > _LOWEST and share * extent > _SLIM * _cap(vertices, faces, direction, share).width:
+        share *= 0.25
+    return share
 
 
 def nearest(vertices: Floats, faces: Ints, point: Floats) -> Floats:
@@ -45,8 +67,8 @@ def nearest(vertices: Floats, faces: Ints, point: Floats) -> Floats:
     return np.asarray(igl.point_mesh_squared_distance(point[None], vertices, faces)[2][0], dtype=np.float64)
 
 
-def _cap(vertices: Floats, faces: Ints, direction: Floats, share: float) -> tuple[float, Floats, Ints]:
-    """Level of the cap, its vertices and the faces of its largest patch, cut exactly at the level."""
+def _cap(vertices: Floats, faces: Ints, direction: Floats, share: float) -> _Cap:
+    """The largest patch above the level at a share of the part's extent below its top, cut exactly there."""
     height = vertices @ direction
     level = float(height.max() - share * np.ptp(height))
     side = np.sign(height - level).astype(np.int64)
@@ -59,7 +81,12 @@ def _cap(vertices: Floats, faces: Ints, direction: Floats, share: float) -> tupl
     side = np.concatenate([side, np.zeros(len(cut), dtype=np.int64)])
     faces = faces[side[faces].sum(axis=1) > 0]
     label = patches(faces)
-    return level, points, faces[label == np.argmax(np.bincount(label, areas(points, faces)))]
+    faces = faces[label == np.argmax(np.bincount(label, areas(points, faces)))]
+    area, middle = areas(points, faces), points[faces].mean(axis=1)
+    centre = (area[:, None] * middle).sum(axis=0) / area.sum()
+    out = middle - centre
+    out -= (out @ direction)[:, None] * direction
+    return _Cap(level, points, faces, centre, float(np.sqrt((area * (out**2).sum(axis=1)).sum() / area.sum())))
 
 
 def _shoot(vertices: Floats, faces: Ints, point: Floats, direction: Floats) -> Floats | None:

@@ -83,7 +83,8 @@ def _open(surface: Skin, end: End, other: End, wanted: float | None, limits: _Li
         return result, radius
     good = limits.least
     if attempt(good) is None:
-        raise BadInputError(f"{name}: no opening fits at {end.place}; choose other ends: x, y, z or two points")
+        remedy = "cut the part open there, or choose other ends: x, y, z or two points"
+        raise BadInputError(f"{name}: no opening fits at {end.place}; {remedy}")
     bad = float(np.linalg.norm(np.ptp(surface.vertices, axis=0)))
     while bad > 1.02 * good:
         middle = float(np.sqrt(good * bad))
