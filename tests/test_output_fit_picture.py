@@ -211,3 +211,13 @@ def test_measures_have_the_shapes_that_they_say() -> None:
     assert found.to_surface.shape == (len(opened.vertices),)
     assert found.to_mesh.shape == (len(found.surface.points),) == (found.grid.shape[0] * found.grid.shape[1],)
     assert not found.to_mesh.flags.writeable
+
+
+def test_without_a_driver_one_line_is_told_for_both_pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    driver.stop()
+    monkeypatch.setenv("__EGL_VENDOR_LIBRARY_DIRS", str(tmp_path))
+    monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+    result = mw.wind(horned(), paths=3, revolutions=0.2, worst_fit=0.5, out=tmp_path / "out")
+    assert [note.text for note in result.notes].count(driver.NO_DRIVER) == 1
+    assert not list((tmp_path / "out").glob("[wf]*.png"))
+    assert not any("fit_error.png" in note.text for note in result.notes)

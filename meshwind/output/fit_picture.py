@@ -58,9 +58,9 @@ def draw(window: Any, scene: dict[str, Any]) -> Any:
     for k, (name, bodies, target, scale, side) in enumerate(views):
         view(window, image, scene, boxes[k], bodies, target, scale)
         pen.text(boxes[k][:2], name, INK, font=face(25))
-        for number in range(len(scene["places"]) if k < 2 else 1):
-            if scene["seen"][number, side] or number == 0:
-                ring(pen, scene, boxes[k], target, scale, scene["places"][number, side], str(number + 1))
+        seen = scene["seen"][:, side] | (np.arange(len(scene["places"])) == 0)
+        shown = np.flatnonzero(seen) if k < 2 else np.array([0])
+        rings(pen, boxes[k], spots(scene, boxes[k], target, scale, scene["places"][shown, side]), shown + 1)
     legend(image, pen, scene)
     units = str(scene["units"])
     ruler(pen, whole, units)
@@ -113,16 +113,22 @@ def add(window: Any, scene: Any, body: str, scale: float) -> None:
         window.add_mesh(part, ambient=0.4, diffuse=0.7, render=False, **look)
 
 
-def ring(pen: Any, scene: Any, box: Any, target: Any, scale: float, point: Any, word: str) -> None:
-    """A ring about a place, with its number beside it."""
-    x, y = middle_of(box)
-    x += float((point - target) @ scene["right"]) / scale
-    y -= float((point - target) @ scene["up"]) / scale
-    for width, colour in ((7, PAPER), (3, MARK)):
-        reach = RING + width / 2
-        pen.ellipse((x - reach, y - reach, x + reach, y + reach), outline=colour, width=width)
-    look = {"font": face(28), "anchor": "mm", "stroke_width": 4, "stroke_fill": PAPER}
-    pen.text((x + RING + 16, y - RING - 8), word, MARK, **look)
+def spots(scene: Any, box: Box, target: Any, scale: float, points: Any) -> Any:
+    """Where points (k, 3) come to lie in a view, in pixels (k, 2)."""
+    flat = (points - target) @ np.stack([scene["right"], -scene["up"]], axis=1) / scale
+    return flat + np.array(middle_of(box))
+
+
+def rings(pen: Any, box: Box, at: Any, numbers: Any) -> None:
+    """A ring about each place in a view, then the numbers beside them: to the left where the view ends."""
+    for x, y in at:
+        for width, colour in ((7, PAPER), (3, MARK)):
+            reach = RING + width / 2
+            pen.ellipse((x - reach, y - reach, x + reach, y + reach), outline=colour, width=width)
+    look: dict[str, Any] = {"font": face(28), "anchor": "mm", "stroke_width": 4, "stroke_fill": PAPER}
+    for (x, y), number in zip(at, numbers, strict=True):
+        side = -1 if x + 2 * RING + 16 > box[0] + box[2] else 1
+        pen.text((x + side * (RING + 16), y - RING - 8), str(number), MARK, **look)
 
 
 def legend(image: Any, pen: Any, scene: Any) -> None:
