@@ -76,11 +76,14 @@ def _joined(vertices: Floats, faces: Ints, reach: float) -> tuple[Floats, Ints, 
     if len(rim) == 0:
         return vertices, faces, 0, 0.0
     away = _at_vertices(len(vertices), low, high, _outward(vertices, low, high, apex))
-    length = edge_lengths(vertices, faces)
+    at_rim = np.zeros(len(vertices), dtype=bool)
+    at_rim[rim] = True
+    around = faces[at_rim[faces].any(axis=1)]
+    length = edge_lengths(vertices, around)
     shortest = np.full(len(vertices), np.inf)
     for k in range(3):
-        np.minimum.at(shortest, faces[:, k], length[:, k])
-        np.minimum.at(shortest, faces[:, (k + 1) % 3], length[:, k])
+        np.minimum.at(shortest, around[:, k], length[:, k])
+        np.minimum.at(shortest, around[:, (k + 1) % 3], length[:, k])
     gap, near = cKDTree(vertices[rim]).query(vertices[rim], k=min(_NEIGHBOURS, len(rim)), distance_upper_bound=reach)
     first, column = np.nonzero(np.isfinite(gap) & (near != np.arange(len(rim))[:, None]))
     a, b, gap = rim[first], rim[near[first, column]], gap[first, column]

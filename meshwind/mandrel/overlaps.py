@@ -1,9 +1,9 @@
 """Notice where a surface runs through itself or lies double: no repair mends that, but the user should know."""
 
-import igl
 import numpy as np
 
 from meshwind.cast import Bools, Floats, Ints
+from meshwind.mandrel.facet_tree import FacetTree
 from meshwind.mandrel.measure import area_vectors
 from meshwind.mandrel.topology import edges
 
@@ -20,8 +20,7 @@ def overlaps(vertices: Floats, faces: Ints) -> list[str]:
     """Sentences about self-intersections and double walls, none where there are none among those tested."""
     if len(faces) > _MOST:
         return [f"did not look for self-intersections and double walls, for there are more than {_MOST} faces"]
-    tree = igl.AABB()
-    tree.init(vertices, faces)
+    tree = FacetTree.of(vertices, faces)
     notes = []
     ends = edges(faces).ends
     ends = ends[:: -(-len(ends) // _MOST_EDGES)]
@@ -37,27 +36,27 @@ def overlaps(vertices: Floats, faces: Ints) -> list[str]:
     return notes
 
 
-def _pierced(tree: igl.AABB, vertices: Floats, faces: Ints, ends: Ints) -> Bools:
+def _pierced(tree: FacetTree, vertices: Floats, faces: Ints, ends: Ints) -> Bools:
     """Edges (k,) that pierce a face which does not hold either of their ends."""
     start, along = vertices[ends[:, 0]], vertices[ends[:, 1]] - vertices[ends[:, 0]]
-    return _hits(tree, vertices, faces, ends, start + _INNER * along, (1 - 2 * _INNER) * along)
+    return _hits(tree, faces, ends, start + _INNER * along, (1 - 2 * _INNER) * along)
 
 
-def _double(tree: igl.AABB, vertices: Floats, faces: Ints, tested: Ints, diagonal: float) -> Bools:
+def _double(tree: FacetTree, vertices: Floats, faces: Ints, tested: Ints, diagonal: float) -> Bools:
     """Faces (k,) above or below which another layer lies."""
     normals = area_vectors(vertices, tested)
     size = np.linalg.norm(normals, axis=1, keepdims=True)
     normals = np.divide(normals, size, out=np.zeros_like(normals), where=size > 0)
     middle, reach = vertices[tested].mean(axis=1), _DOUBLE * diagonal
     above, below = (
-        _hits(tree, vertices, faces, tested, middle + sign * _OFF * diagonal * normals, sign * reach * normals)
+        _hits(tree, faces, tested, middle + sign * _OFF * diagonal * normals, sign * reach * normals)
         for sign in (1.0, -1.0)
     )
     return np.asarray(above | below)
 
 
-def _hits(tree: igl.AABB, vertices: Floats, faces: Ints, own: Ints, start: Floats, ray: Floats) -> Bools:
+def _hits(tree: FacetTree, faces: Ints, own: Ints, start: Floats, ray: Floats) -> Bools:
     """Whether each ray, as long as it is, first meets a face that shares no vertex with its own ones (k, any)."""
-    face = tree.intersect_ray_first(vertices, faces, start, ray, 1.0)[0]
+    face = tree.first_hits(start, ray)
     shared = (faces[face][:, :, None] == own[:, None, :]).any(axis=(1, 2))
     return np.asarray((face >= 0) & ~shared)

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import igl
 import numpy as np
@@ -10,6 +9,7 @@ from numba import njit
 
 from meshwind.cast import Bools, Floats, Ints
 from meshwind.chart.chart import Chart
+from meshwind.mandrel.facet_tree import FacetTree
 from meshwind.surface.foot import approach
 from meshwind.surface.infill import ANGLE, Int8s, infill, spans_across
 from meshwind.surface.surface import Surface
@@ -26,7 +26,7 @@ vertices, where its own error (second order next to a rim, whose normals are one
 
 @dataclass(frozen=True)
 class Facets:
-    """The triangles (m, 3) between points (n, 3), with a search tree made on first use: a second at 1M triangles."""
+    """The triangles (m, 3) between points (n, 3), with a search tree and normals made on first use."""
 
     points: Floats
     faces: Ints
@@ -38,14 +38,11 @@ class Facets:
 
     def distances(self, points: Floats) -> Floats:
         """Distances (k,) of points (k, 3) to the nearest triangle."""
-        squared, _, _ = self._tree.squared_distance(self.points, self.faces, points)
-        return np.asarray(np.sqrt(squared))
+        return self._tree.distances(points)
 
     @cached_property
-    def _tree(self) -> Any:
-        tree = igl.AABB()
-        tree.init(self.points, self.faces)
-        return tree
+    def _tree(self) -> FacetTree:
+        return FacetTree.of(self.points, self.faces)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,68 @@
+"""The search tree over triangles against trying every triangle."""
+
+import numpy as np
+import pytest
+from mandrel_shapes import ball, box, cone, joined
+
+from meshwind.cast import Floats, Ints
+from meshwind.mandrel.facet_tree import FacetTree
+from meshwind.mandrel.overlaps import overlaps
+
+
+def brute_distance(vertices: Floats, faces: Ints, point: Floats) -> float:
+    """The least distance to the triangles' planes where the foot is inside, and to all their edges."""
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    normal = np.cross(b - a, c - a)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    height = np.einsum("ij,ij->i", point - a, normal)
+    foot = point - height[:, None] * normal
+    inside = np.ones(len(faces), dtype=bool)
+    least = np.inf
+    for start, end in ((a, b), (b, c), (c, a)):
+        along = end - start
+        inside &= np.einsum("ij,ij->i", np.cross(along, foot - start), normal) >= 0
+        t = np.clip(np.einsum("ij,ij->i", point - start, along) / np.einsum("ij,ij->i", along, along), 0, 1)
+        least = min(least, float(np.linalg.norm(start + t[:, None] * along - point, axis=1).min()))
+    return min(least, float(np.abs(height[inside]).min(initial=np.inf)))
+
+
+@pytest.mark.parametrize("part", [ball(2), cone(around=9, along=40), (np.eye(3), np.array([[0, 1, 2]]))])
+def test_distances_are_the_least_of_all(part: tuple[Floats, Ints]) -> None:
+    points = np.random.default_rng(0).normal(size=(300, 3)) * 2
+    found = FacetTree.of(*part).distances(points)
+    assert np.allclose(found, [brute_distance(*part, point) for point in points], rtol=1e-12, atol=1e-14)
+
+
+def test_vertices_lie_on_their_faces() -> None:
+    vertices, faces = ball(3)
+    assert FacetTree.of(vertices, faces).distances(vertices).max() < 1e-15
+
+
+def test_faces_without_area_are_points_and_lines() -> None:
+    vertices = np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0]])
+    points = np.array([[0.5, 3, 0], [5, 0, 4], [1, 0, 0]])
+    assert FacetTree.of(vertices, np.array([[0, 1, 2]])).distances(points).tolist() == [3.0, 5.0, 0.0]
+    assert FacetTree.of(vertices, np.array([[0, 0, 0], [1, 1, 0]])).distances(points).tolist() == [3.0, 4 * 2**0.5, 0.0]
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
+def test_segments_meet_the_first_face_of_a_box(scale: float) -> None:
+    vertices, faces = box()
+    y, z = np.random.default_rng(1).uniform(0.05, 0.95, (2, 100))
+    start = np.column_stack([np.full(100, -1.0), y, z])
+    ray = np.tile([3.0, 0.0, 0.0], (100, 1))
+    tree = FacetTree.of(scale * vertices, faces)
+    near = tree.first_hits(scale * start, scale * ray)
+    assert (vertices[faces[near]][:, :, 0] == 0).all()
+    far = tree.first_hits(scale * (start + ray), -scale * ray)
+    assert (vertices[faces[far]][:, :, 0] == 1).all()
+    assert (tree.first_hits(scale * start, 0.3 * scale * ray) == -1).all()
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1e-3, 1e6])
+def test_overlaps_do_not_depend_on_the_unit(scale: float) -> None:
+    vertices, faces = ball(3)
+    twice, both = joined((vertices, faces), (vertices + [1.0, 0.013, 0.02], faces))
+    notes = overlaps(twice, both)
+    assert notes[0].startswith("noticed that the surface runs through itself: 160 of 3840 edges")
+    assert overlaps(scale * twice, both) == notes
