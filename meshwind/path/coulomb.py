@@ -23,8 +23,8 @@ def dot(a, b):
 
 
 @njit(cache=True)
-def curve_at(curve, s, point, tangent):
-    """Point and derivative by s of the Catmull-Rom spline through curve (m, 2), s in samples: third order."""
+def curve_at(curve, s, point, tangent, bend):
+    """Point and derivatives by s of the Catmull-Rom spline through curve (m, 2), s in samples: third order."""
     m = len(curve)
     k = min(max(int(np.floor(s)), 0), m - 2)
     x = s - k
@@ -38,13 +38,14 @@ def curve_at(curve, s, point, tangent):
         y, z = x * x, x * x * x
         point[a] = (2 * z - 3 * y + 1) * p0 + (z - 2 * y + x) * d0 + (3 * y - 2 * z) * p1 + (z - y) * d1
         tangent[a] = (6 * y - 6 * x) * (p0 - p1) + (3 * y - 4 * x + 1) * d0 + (3 * y - 2 * x) * d1
+        bend[a] = (12 * x - 6) * (p0 - p1) + (6 * x - 4) * d0 + (6 * x - 2) * d1
 
 
 @njit(cache=True)
-def nearest_on(curve, s, u, v, frame, point, tangent):
+def nearest_on(curve, s, u, v, frame, point, tangent, bend):
     """The s whose point of the curve is nearest (u, v) in the metric of `frame`, from a guess; leaves that point."""
     for _ in range(12):
-        curve_at(curve, s, point, tangent)
+        curve_at(curve, s, point, tangent, bend)
         along = square = 0.0
         for k in range(3):
             c = frame[SU, k] * tangent[0] + frame[SV, k] * tangent[1]
@@ -56,7 +57,7 @@ def nearest_on(curve, s, u, v, frame, point, tangent):
         s = then
         if done:
             break
-    curve_at(curve, s, point, tangent)
+    curve_at(curve, s, point, tangent, bend)
     return s
 
 
@@ -100,20 +101,52 @@ def second_form(frame, n, a, b):
 
 
 @njit(cache=True)
-def weigh(state, periodic, before, after, table, curve, grip, balance):
+def along_curve(curve, s, frame, n, t, b, way, turn):
+    """At place s of the starting curve: its unit tangent t, b = n x t, t in (u, v), and its curvature vector."""
+    point, tangent, bend = np.empty(2), np.empty(2), np.empty(2)
+    curve_at(curve, s, point, tangent, bend)
+    u, v = tangent[0], tangent[1]
+    square = along = 0.0
+    for k in range(3):
+        t[k] = frame[SU, k] * u + frame[SV, k] * v
+        turn[k] = frame[SUU, k] * u * u + 2.0 * frame[SUV, k] * u * v + frame[SVV, k] * v * v
+        turn[k] += frame[SU, k] * bend[0] + frame[SV, k] * bend[1]
+        square += t[k] * t[k]
+        along += t[k] * turn[k]
+    square = max(square, 1e-300)
+    for k in range(3):
+        turn[k] = (turn[k] - along / square * t[k]) / square
+    size = np.sqrt(square)
+    for k in range(3):
+        t[k] /= size
+    way[0], way[1] = u / size, v / size
+    across(n, t, b)
+
+
+@njit(inline="always", cache=True)
+def across(n, t, b):
+    """b = n x t."""
+    b[0] = n[1] * t[2] - n[2] * t[1]
+    b[1] = n[2] * t[0] - n[0] * t[2]
+    b[2] = n[0] * t[1] - n[1] * t[0]
+
+
+@njit(cache=True)
+def weigh(state, periodic, before, after, table, curve, grip, barred, balance):
     """Force balance of every touching particle, and the directions in which it may move.
 
     grip is (s, offset, mode): place on the starting curve, signed lateral distance from it, and mode.  Fills
-    balance: t, b (n, 3); basis (n, 2, 3) in space and ways (n, 2, 2) in (u, v) of the unknowns; load (n, 4) as
-    F . t, F . b, N, mu; rest (n, 2) the residual R.  Releases stuck particles that slip and holds those pressed
-    against a rim.  Returns the number of modes changed and the largest unbalanced force.
+    balance: t, b, turn (n, 3), of the fibre where it slips and of the starting curve, with its curvature, where it is
+    stuck; ways (n, 2, 2), t and b in (u, v); load (n, 4) as F . t, F . b, N, mu; rest (n, 2) the residual R.
+    b points to the same side of the starting curve everywhere.  Releases stuck particles that slip, unless `barred`
+    (n,), and holds those pressed against a rim.  Returns the number of modes changed and the largest unbalanced
+    force.
     """
     X, uv, frames, normal, touching, clear = state
     place, offset, mode = grip
-    t, b, basis, ways, load, rest = balance
+    t, b, turn, ways, load, rest = balance
     n = len(X)
     force, m, mu = np.empty(3), np.empty(3), np.empty(3)
-    point, tangent = np.empty(2), np.empty(2)
     changed, worst = 0, 0.0
     i = after[0]
     while i < n - 1:
@@ -123,54 +156,43 @@ def weigh(state, periodic, before, after, table, curve, grip, balance):
         for k in range(3):
             m[k] = (X[q, k] - X[i, k]) / (q - i) + (X[i, k] - X[p, k]) / (i - p)
         lean = dot(m, normal_i)
-        for k in range(3):
-            t[i, k] = m[k] - lean * normal_i[k]
-        size = np.sqrt(max(dot(t[i], t[i]), 1e-300))
-        for k in range(3):
-            t[i, k] /= size
-        b[i, 0] = normal_i[1] * t[i, 2] - normal_i[2] * t[i, 1]
-        b[i, 1] = normal_i[2] * t[i, 0] - normal_i[0] * t[i, 2]
-        b[i, 2] = normal_i[0] * t[i, 1] - normal_i[1] * t[i, 0]
-        coefficient(table, periodic, uv[i, 0], uv[i, 1], mu)
+        span = np.sqrt(max(dot(m, m) - lean * lean, 1e-300))
         press = max(-dot(force, normal_i), 0.0)
-        load[i, 0], load[i, 1], load[i, 2], load[i, 3] = dot(force, t[i]), dot(force, b[i]), press, mu[0]
-        before_mode = mode[i]
-        if mode[i] == HELD:
+        coefficient(table, periodic, uv[i, 0], uv[i, 1], mu)
+        was = mode[i]
+        if was == HELD:
             mode[i] = np.int8(-1 if offset[i] > 0.0 else 1)
-        if mode[i] == STUCK and abs(load[i, 1]) > mu[0] * press + 1e-12 * size:
-            mode[i] = np.int8(-1 if load[i, 1] > 0.0 else 1)
-        rest[i, 0] = load[i, 0]
-        rest[i, 1] = load[i, 1] + mode[i] * mu[0] * press if mode[i] != STUCK else 0.0
+        along_curve(curve, place[i], frames[i], normal_i, t[i], b[i], ways[i, 0], turn[i])
+        back = dot(m, t[i]) < 0.0  # the fibre runs the other way along its starting curve
+        if was == STUCK and not barred[i]:
+            side = dot(force, b[i])
+            if abs(side) > mu[0] * press + 1e-12 * span:
+                mode[i] = np.int8(-1 if side > 0.0 else 1)
         if mode[i] != STUCK:
-            out_v = rest[i, 0] * dot(t[i], frames[i, SV]) + rest[i, 1] * dot(b[i], frames[i, SV])
-            if (uv[i, 1] <= 0.0 and out_v < 0.0) or (uv[i, 1] >= 1.0 and out_v > 0.0):
-                mode[i] = np.int8(HELD)
-        ways[i, :, :] = 0.0
-        if mode[i] == STUCK:
-            curve_at(curve, place[i], point, tangent)
-            square = 0.0
             for k in range(3):
-                basis[i, 0, k] = frames[i, SU, k] * tangent[0] + frames[i, SV, k] * tangent[1]
-                square += basis[i, 0, k] ** 2
-            square = np.sqrt(max(square, 1e-300))
-            for k in range(3):
-                basis[i, 0, k] /= square
-                basis[i, 1, k] = 0.0
-            ways[i, 0, 0], ways[i, 0, 1] = tangent[0] / square, tangent[1] / square
-        elif mode[i] == HELD:
-            square = np.sqrt(dot(frames[i, SU], frames[i, SU]))
-            for k in range(3):
-                basis[i, 0, k] = frames[i, SU, k] / square
-                basis[i, 1, k] = 0.0
-            ways[i, 0, 0] = 1.0 / square
-            rest[i, 0] = dot(force, basis[i, 0])
-            rest[i, 1] = 0.0
-        else:
-            for k in range(3):
-                basis[i, 0, k], basis[i, 1, k] = t[i, k], b[i, k]
+                t[i, k] = (m[k] - lean * normal_i[k]) / span
+            across(normal_i, t[i], b[i])
+            if back:
+                for k in range(3):
+                    b[i, k] = -b[i, k]
             to_parameters(frames[i], t[i], ways[i, 0])
             to_parameters(frames[i], b[i], ways[i, 1])
-        if mode[i] != before_mode:
+            out = dot(force, frames[i, SV]) + mode[i] * mu[0] * press * dot(b[i], frames[i, SV])
+            if (uv[i, 1] <= 0.0 and out < 0.0) or (uv[i, 1] >= 1.0 and out > 0.0):
+                mode[i] = np.int8(HELD)
+                size = np.sqrt(dot(frames[i, SU], frames[i, SU]))
+                for k in range(3):
+                    t[i, k] = frames[i, SU, k] / size
+                    turn[i, k] = frames[i, SUU, k] / size**2
+                across(normal_i, t[i], b[i])
+                ways[i, 0, 0], ways[i, 0, 1] = 1.0 / size, 0.0
+        load[i, 0], load[i, 1], load[i, 2], load[i, 3] = dot(force, t[i]), dot(force, b[i]), press, mu[0]
+        rest[i, 0], rest[i, 1] = load[i, 0], 0.0
+        if mode[i] == STUCK or mode[i] == HELD:
+            ways[i, 1, 0] = ways[i, 1, 1] = 0.0
+        else:
+            rest[i, 1] = load[i, 1] + mode[i] * mu[0] * press
+        if mode[i] != was:
             changed += 1
         worst = max(worst, np.sqrt(rest[i, 0] ** 2 + rest[i, 1] ** 2))
         i = q
@@ -179,12 +201,14 @@ def weigh(state, periodic, before, after, table, curve, grip, balance):
 
 @njit(cache=True)
 def differentiate(state, periodic, before, after, table, mode, balance, contacts, lower, diagonal, upper, right):
-    """Blocks of -dR/dx over the touching particles, exact, so that the step is Newton's; returns their number."""
+    """Blocks of -dR/dx over the touching particles, exact, so that the step is Newton's; returns their number.
+
+    The unknowns of a particle are its moves along t and b; a stuck or held one moves along t only.
+    """
     X, uv, frames, normal = state[0], state[1], state[2], state[3]
-    t, b, basis, ways, load, rest = balance
+    t, b, turn, ways, load, rest = balance
     n = len(X)
     force, m, mu = np.empty(3), np.empty(3), np.empty(3)
-    t_uv, b_uv = np.empty(2), np.empty(2)
     count = 0
     i = after[0]
     while i < n - 1:
@@ -197,36 +221,35 @@ def differentiate(state, periodic, before, after, table, mode, balance, contacts
             m[k] = gq * (X[q, k] - X[i, k]) + gp * (X[i, k] - X[p, k])
         lean = dot(m, n_i)
         flat = max(np.sqrt(max(dot(m, m) - lean * lean, 0.0)), 1e-300)
-        to_parameters(frames[i], t[i], t_uv)
-        to_parameters(frames[i], b[i], b_uv)
         coefficient(table, periodic, uv[i, 0], uv[i, 1], mu)
         ft, fb, press, sigma = load[i, 0], load[i, 1], load[i, 2], float(mode[i])
-        held = mode[i] == HELD
+        bound = mode[i] == STUCK or mode[i] == HELD
         grip = sigma * mu[0] if press > 0.0 else 0.0
         for a in range(2):
             for side in range(3):
                 other = p if side == 0 else (i if side == 1 else q)
-                weight = gp if side == 0 else (-gp - gq if side == 1 else gq)
-                turn = -gp if side == 0 else (gp - gq if side == 1 else gq)
-                column = basis[other, a]
-                df_t, df_b, df_n = weight * dot(column, t[i]), weight * dot(column, b[i]), weight * dot(column, n_i)
-                dn_t = dn_b = slope = 0.0
-                if side == 1:
-                    dn_t = -second_form(frames[i], n_i, t_uv, ways[i, a])
-                    dn_b = -second_form(frames[i], n_i, b_uv, ways[i, a])
-                    slope = mu[1] * ways[i, a, 0] + mu[2] * ways[i, a, 1]
-                angle = (turn * dot(column, b[i]) - lean * dn_b) / flat
-                if held:
-                    along = weight * dot(column, basis[i, 0])
-                    if side == 1 and a == 0:
-                        along += dot(force, frames[i, SUU]) * ways[i, 0, 0] ** 2
-                    row_t, row_b = along, 0.0
-                else:
-                    row_t = df_t + fb * angle + press * dn_t
-                    row_b = df_b - ft * angle + press * dn_b - grip * (df_n + ft * dn_t + fb * dn_b)
-                    row_b += sigma * press * slope
-                if mode[i] == STUCK or held:
-                    row_b = -1.0 if (side == 1 and a == 1) else 0.0
+                free = a == 0 or (mode[other] != STUCK and mode[other] != HELD and other > 0 and other < n - 1)
+                row_t = row_b = 0.0
+                if free and 0 < other < n - 1:
+                    column = t[other] if a == 0 else b[other]
+                    weight = gp if side == 0 else (-gp - gq if side == 1 else gq)
+                    row_t = weight * dot(column, t[i])
+                    if bound:
+                        if side == 1:
+                            row_t += dot(force, turn[i])
+                    else:
+                        spin = -gp if side == 0 else (gp - gq if side == 1 else gq)
+                        dn_t = dn_b = slope = 0.0
+                        if side == 1:
+                            dn_t = -second_form(frames[i], n_i, ways[i, 0], ways[i, a])
+                            dn_b = -second_form(frames[i], n_i, ways[i, 1], ways[i, a])
+                            slope = mu[1] * ways[i, a, 0] + mu[2] * ways[i, a, 1]
+                        angle = (spin * dot(column, b[i]) - lean * dn_b) / flat
+                        row_t += fb * angle + press * dn_t
+                        row_b = weight * dot(column, b[i]) - ft * angle + press * dn_b + sigma * press * slope
+                        row_b -= grip * (weight * dot(column, n_i) + ft * dn_t + fb * dn_b)
+                if bound and side == 1 and a == 1:
+                    row_b = -1.0
                 if side == 0:
                     lower[count, 0, a], lower[count, 1, a] = -row_t, -row_b
                 elif side == 1:

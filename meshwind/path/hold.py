@@ -12,12 +12,13 @@ from numba import njit
 
 from meshwind.path.block_tridiagonal import solve_general
 from meshwind.path.contact import lift, link
-from meshwind.path.coulomb import HELD, STUCK, curve_at, differentiate, dot, nearest_on, weigh
+from meshwind.path.coulomb import HELD, STUCK, across, curve_at, differentiate, dot, nearest_on, weigh
 from meshwind.path.newton import EVALUATIONS, ITERATIONS, SOLVES, carry_lifted, sag
 from meshwind.path.relax import (
     CONVERGED, DESCENT, LIFTED, LONGEST_MOVE, SLID_END, SLID_START, SMALLEST_STEP, STALLED, certify, take_up,
 )  # fmt: skip
 from meshwind.path.state import blank, copy, copy_particle, energy, touch_down
+from meshwind.surface.evaluate import SU, SV
 
 SETTLE = 1e-9
 """Round-off of a lateral distance over the part's size: nearer to the starting curve counts as on it."""
@@ -29,8 +30,8 @@ def slide(net, periodic, step, move, contacts, count, curve, balance, state, gri
     X, uv, frames = state[0], state[1], state[2]
     place, offset, mode = grip
     place_t, offset_t, mode_t = after_grip
-    b, ways = balance[1], balance[3]
-    point, tangent = np.empty(2), np.empty(2)
+    ways = balance[3]
+    point, tangent, bend = np.empty(2), np.empty(2), np.empty(2)
     last = len(uv) - 1
     copy_particle(state, trial, 0)
     copy_particle(state, trial, last)
@@ -39,10 +40,10 @@ def slide(net, periodic, step, move, contacts, count, curve, balance, state, gri
     for c in range(count):
         i = contacts[c]
         if mode[i] == STUCK:
-            curve_at(curve, place[i], point, tangent)
+            curve_at(curve, place[i], point, tangent, bend)
             rate = np.sqrt((tangent[0] ** 2 + tangent[1] ** 2) / max(ways[i, 0, 0] ** 2 + ways[i, 0, 1] ** 2, 1e-300))
             place_t[i] = min(max(place[i] + step * move[c, 0] / max(rate, 1e-300), 0.0), len(curve) - 1.0)
-            curve_at(curve, place_t[i], point, tangent)
+            curve_at(curve, place_t[i], point, tangent, bend)
             touch_down(net, periodic, trial, i, point[0], point[1])
             continue
         u = uv[i, 0] + step * (move[c, 0] * ways[i, 0, 0] + move[c, 1] * ways[i, 1, 0])
@@ -51,10 +52,10 @@ def slide(net, periodic, step, move, contacts, count, curve, balance, state, gri
         if not periodic:
             u = min(max(u, 0.0), 1.0)
         touch_down(net, periodic, trial, i, u, v)
-        locate(net, periodic, curve, b[i], i, trial, after_grip, size, tally)
+        locate(curve, i, trial, after_grip, size)
         if mode[i] != HELD and offset_t[i] * mode[i] >= 0.0:  # back on the curve, or across it
             mode_t[i] = np.int8(STUCK)
-            curve_at(curve, place_t[i], point, tangent)
+            curve_at(curve, place_t[i], point, tangent, bend)
             touch_down(net, periodic, trial, i, point[0], point[1])
             offset_t[i] = 0.0
             tally[EVALUATIONS] += 1
@@ -62,23 +63,26 @@ def slide(net, periodic, step, move, contacts, count, curve, balance, state, gri
 
 
 @njit(cache=True)
-def locate(net, periodic, curve, side, i, state, grip, size, tally):
-    """Place of particle i along the starting curve, and its signed distance from it towards `side`."""
-    uv, frames = state[1], state[2]
+def locate(curve, i, state, grip, size):
+    """Place of particle i along the starting curve, and its signed distance from it, positive to the left."""
+    uv, frames, normal = state[1], state[2], state[3]
     place, offset, mode = grip
-    point, tangent = np.empty(2), np.empty(2)
-    place[i] = nearest_on(curve, place[i], uv[i, 0], uv[i, 1], frames[i], point, tangent)
-    away = 0.0
+    point, tangent, bend = np.empty(2), np.empty(2), np.empty(2)
+    place[i] = nearest_on(curve, place[i], uv[i, 0], uv[i, 1], frames[i], point, tangent, bend)
+    way, side, away = np.empty(3), np.empty(3), np.empty(3)
     for k in range(3):
-        away += side[k] * (frames[i, 1, k] * (uv[i, 0] - point[0]) + frames[i, 2, k] * (uv[i, 1] - point[1]))
-    offset[i] = away if abs(away) > SETTLE * size else 0.0
+        way[k] = frames[i, SU, k] * tangent[0] + frames[i, SV, k] * tangent[1]
+        away[k] = frames[i, SU, k] * (uv[i, 0] - point[0]) + frames[i, SV, k] * (uv[i, 1] - point[1])
+    across(normal[i], way, side)
+    d = dot(away, side) / np.sqrt(max(dot(side, side), 1e-300))
+    offset[i] = d if abs(d) > SETTLE * size else 0.0
 
 
 @njit(cache=True)
 def blank_balance(n):
     """Work space of `weigh`."""
     return (
-        np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 2, 3)), np.zeros((n, 2, 2)), np.zeros((n, 4)), np.zeros((n, 2))
+        np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 2, 2)), np.zeros((n, 4)), np.zeros((n, 2))
     )  # fmt: skip
 
 
@@ -96,12 +100,12 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
     spare = np.zeros(n), np.zeros(n), np.zeros(n, np.int8)
     before_t, after_t = np.zeros(n, np.int64), np.zeros(n, np.int64)
     balance, balance_t = blank_balance(n), blank_balance(n)
-    t, b, basis, ways, load, rest = balance
+    ways, load = balance[3], balance[4]
     contacts = np.empty(n, np.int64)
     before, after = np.zeros(n, np.int64), np.zeros(n, np.int64)
     lower, diagonal, upper = np.empty((n, 2, 2)), np.empty((n, 2, 2)), np.empty((n, 2, 2))
     right, move, work = np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 2, 2))
-    kept = np.empty(n, np.bool_)
+    kept, barred = np.empty(n, np.bool_), np.zeros(n, np.bool_)
     least = 0.1 * (np.pi / n) ** 2
     shift = 0.0
     now, length = energy(X)
@@ -119,7 +123,8 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
             link(touching, before, after)
         if released > 0 and len(levels) == 0:
             return residual, LIFTED
-        changed, force = weigh(state, periodic, before, after, table, curve, grip, balance)
+        barred[:] = False
+        changed, force = weigh(state, periodic, before, after, table, curve, grip, barred, balance)
         residual = max(force, sag(X, after)) / spacing
         if released == 0 and changed == 0 and residual <= tolerance:
             if caution == 2 and lift(X, normal, touching, pull_off * spacing, False, before, after) > 0:
@@ -129,6 +134,7 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
             state, periodic, before, after, table, mode, balance, contacts, lower, diagonal, upper, right
         )
         best = min(best, force / length)
+        firm = False
         cost = now
         for c in range(count):
             i = contacts[c]
@@ -141,6 +147,24 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
             if not solve_general(lower, diagonal, upper, shift, right, count, move, work):
                 shift = max(4.0 * shift, least)
                 continue
+            wrong = 0
+            for c in range(count):
+                i = contacts[c]
+                # a particle just released must leave to the side that it is pulled to
+                if not firm and (mode[i] == 1 or mode[i] == -1) and offset[i] == 0.0 and move[c, 1] * mode[i] >= 0.0:
+                    mode[i], barred[i] = np.int8(STUCK), True
+                    wrong += 1
+            if wrong > 0:
+                _, left = weigh(state, periodic, before, after, table, curve, grip, barred, balance)
+                if left <= 10.0 * tolerance * spacing:  # nothing else moves: let them go, but by a small step
+                    firm = True
+                    barred[:] = False
+                    shift = max(16.0 * shift, least)
+                    weigh(state, periodic, before, after, table, curve, grip, barred, balance)
+                count = differentiate(
+                    state, periodic, before, after, table, mode, balance, contacts, lower, diagonal, upper, right
+                )
+                continue
             slope, square, reach = 0.0, 0.0, 0.0
             for c in range(count):
                 i = contacts[c]
@@ -149,7 +173,7 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
                     square += move[c, a] ** 2
                     way = move[c, 0] * ways[i, 0, a] + move[c, 1] * ways[i, 1, a]
                     reach = max(reach, abs(way))
-            if slope <= 1e-3 * least * square:  # no descent: shift towards the force
+            if slope < 1e-3 * least * square:  # no descent: shift towards the force
                 shift = max(4.0 * shift, least)
                 continue
             step = min(1.0, LONGEST_MOVE / max(reach, 1e-300))
@@ -174,7 +198,7 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
                     for i in range(n):
                         spare[0][i], spare[1][i], spare[2][i] = after_grip[0][i], after_grip[1][i], after_grip[2][i]
                     link(trial[4], before_t, after_t)
-                    _, left = weigh(trial, periodic, before_t, after_t, table, curve, spare, balance_t)
+                    _, left = weigh(trial, periodic, before_t, after_t, table, curve, spare, barred, balance_t)
                     if left < 0.5 * best * length_then:
                         accepted = True
                         break
@@ -188,7 +212,7 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
             for i in range(1, n - 1):
                 if trial[4][i] and not touching[i]:  # landed: where on the starting curve, and on which side of it
                     after_grip[0][i] = min(max(0.5 * (after_grip[0][i - 1] + after_grip[0][i + 1]), 0.0), len(curve) - 1)
-                    locate(net, periodic, curve, lateral(trial, i), i, trial, after_grip, size, tally)
+                    locate(curve, i, trial, after_grip, size)
                     d = after_grip[1][i]
                     after_grip[2][i] = np.int8(STUCK if d == 0.0 else (-1 if d > 0.0 else 1))
             copy(trial, state)
@@ -239,7 +263,7 @@ def take_hold(net, periodic, curve, state, grip, size, tally):
     """Complete the grip of a state: stuck particles go to their place, slipping ones measure their way from it."""
     X, uv, frames, normal, touching, clear = state
     place, offset, mode = grip
-    point, tangent = np.empty(2), np.empty(2)
+    point, tangent, bend = np.empty(2), np.empty(2), np.empty(2)
     offset[0] = offset[-1] = 0.0
     for i in range(1, len(X) - 1):
         offset[i] = 0.0
@@ -247,24 +271,14 @@ def take_hold(net, periodic, curve, state, grip, size, tally):
             mode[i] = STUCK
             continue
         if mode[i] != STUCK:
-            locate(net, periodic, curve, lateral(state, i), i, state, grip, size, tally)
+            locate(curve, i, state, grip, size)
             if mode[i] != HELD and offset[i] * mode[i] >= 0.0:
                 mode[i] = STUCK
         if mode[i] == STUCK:
-            curve_at(curve, place[i], point, tangent)
+            curve_at(curve, place[i], point, tangent, bend)
             touch_down(net, periodic, state, i, point[0], point[1])
             tally[EVALUATIONS] += 1
             offset[i] = 0.0
-
-
-@njit(cache=True)
-def lateral(state, i):
-    """The direction n x t at particle i, t from its two neighbours."""
-    X, normal = state[0], state[3]
-    t = X[i + 1] - X[i - 1]
-    t = t - dot(t, normal[i]) * normal[i]
-    t /= max(np.sqrt(dot(t, t)), 1e-300)
-    return np.cross(normal[i], t)
 
 
 @njit(cache=True)
@@ -283,17 +297,17 @@ def space_along(net, periodic, curve, state, place):
     """Put the particles on the starting curve, evenly by length in space."""
     X = state[0]
     n = len(X)
-    point, tangent = np.empty(2), np.empty(2)
+    point, tangent, bend = np.empty(2), np.empty(2), np.empty(2)
     for i in range(n):
         place[i] = (len(curve) - 1.0) * i / (n - 1)
     for _ in range(2):
         for i in range(n):
-            curve_at(curve, place[i], point, tangent)
+            curve_at(curve, place[i], point, tangent, bend)
             touch_down(net, periodic, state, i, point[0], point[1])
         s = np.zeros(n)
         for i in range(1, n):
             s[i] = s[i - 1] + np.sqrt(((X[i] - X[i - 1]) ** 2).sum())
         place[:] = np.interp(np.linspace(0.0, s[n - 1], n), s, place)
     for i in range(n):
-        curve_at(curve, place[i], point, tangent)
+        curve_at(curve, place[i], point, tangent, bend)
         touch_down(net, periodic, state, i, point[0], point[1])
