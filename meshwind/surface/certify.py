@@ -1,10 +1,13 @@
 """The fit's certificate: distances both ways between the surface and the mesh."""
 
 import numpy as np
+from numba import njit
 
 from meshwind.cast import Floats
+from meshwind.surface.evaluate import position
 from meshwind.surface.samples import Samples
 from meshwind.surface.surface import FitError, Surface
+from meshwind.threads import spread
 
 DENSITY, MOST = 4, 256
 """Samples a span, and at most, in each direction."""
@@ -35,10 +38,23 @@ def to_mesh(surface: Surface, samples: Samples) -> tuple[Floats, float]:
     counts = np.minimum(DENSITY * np.array(surface.spans), MOST)
     u, v = np.meshgrid(np.arange(counts[0]) / counts[0], np.linspace(0, 1, counts[1] + 1), indexing="ij")
     uv = np.stack([u.ravel(), v.ravel()], axis=1)
-    distance = samples.facets.distances(surface.points(uv))
+    distance = samples.facets.distances(_points(surface, uv))
     worst = uv[np.argsort(-distance, kind="stable")[:WORST]]
     step = np.linspace(-0.5, 0.5, FINER)
     offset = np.stack(np.meshgrid(step, step), axis=-1).reshape(-1, 2) / counts
     closer = (worst[:, None] + offset).reshape(-1, 2)
     closer[:, 1] = np.clip(closer[:, 1], 0.0, 1.0)
-    return distance, max(float(distance.max()), float(samples.facets.distances(surface.points(closer)).max()))
+    return distance, max(float(distance.max()), float(samples.facets.distances(_points(surface, closer)).max()))
+
+
+def _points(surface: Surface, uv: Floats) -> Floats:
+    """Positions (n, 3) at uv (n, 2), without the derivatives: a third of the time."""
+    out = np.empty((len(uv), 3))
+    spread(_positions, len(uv), 10_000, surface.net, surface.periodic, uv, out)
+    return out
+
+
+@njit(nogil=True, cache=True)
+def _positions(first: int, last: int, net: Floats, periodic: bool, uv: Floats, out: Floats) -> None:
+    for i in range(first, last):
+        position(net, periodic, uv[i, 0], uv[i, 1], out[i])
