@@ -5,12 +5,11 @@ from functools import cached_property
 
 import igl
 import numpy as np
-from numba import njit
 
 from meshwind.cast import Bools, Floats, Ints
 from meshwind.chart.chart import Chart
 from meshwind.mandrel.facet_tree import FacetTree
-from meshwind.surface.foot import approach
+from meshwind.surface.foot import near_feet
 from meshwind.surface.infill import ANGLE, Int8s, infill, spans_across
 from meshwind.surface.surface import Surface
 from meshwind.threads import spread
@@ -106,7 +105,7 @@ class Samples:
     def corrected(self, surface: Surface) -> tuple["Samples", Floats]:
         """Every vertex moved to its foot in the plane, on a rim along the rim; and the distances (n,)."""
         moved, distance = self.uv.copy(), np.empty(len(self.uv))
-        spread(_foot_distances, len(moved), 2000, surface.net, surface.periodic, self.points, moved, distance)
+        spread(near_feet, len(moved), 6000, surface.net, self.points, CLOSE, moved, distance)
         rim = np.flatnonzero(self.rim)
         moved[rim, 1] = self.uv[rim, 1]
         at = surface.frames(self.uv[rim])
@@ -114,16 +113,6 @@ class Samples:
         moved[rim, 0] = self.uv[rim, 0] + (miss * at[:, 1]).sum(axis=1) / (at[:, 1] ** 2).sum(axis=1)
         distance[rim] = np.linalg.norm(self.points[rim] - surface.points(moved[rim]), axis=1)
         return replace(self, uv=moved), distance
-
-
-@njit(nogil=True, cache=True)
-def _foot_distances(
-    first: int, last: int, net: Floats, periodic: bool, points: Floats, guesses: Floats, distance: Floats
-) -> None:
-    """Move guesses (n, 2) first to last to the feet of their points (n, 3); write the distances (n,)."""
-    frame, trial = np.empty((6, 3)), np.empty(3)
-    for i in range(first, last):
-        distance[i] = np.sqrt(approach(net, periodic, points[i], guesses[i], frame, trial, CLOSE)[1])
 
 
 def _span(uv: Floats, spans: tuple[int, int]) -> tuple[Ints, Ints]:
