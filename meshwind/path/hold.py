@@ -15,11 +15,13 @@ from meshwind.path.contact import lift, link
 from meshwind.path.coulomb import HELD, STUCK, across, curve_at, differentiate, dot, nearest_on, weigh
 from meshwind.path.newton import EVALUATIONS, ITERATIONS, SOLVES, carry_lifted, sag
 from meshwind.path.relax import (
-    CONVERGED, DESCENT, LIFTED, LONGEST_MOVE, SLID_END, SLID_START, SMALLEST_STEP, STALLED, certify, take_up,
+    CONVERGED, DESCENT, LIFTED, LONGEST_MOVE, SLID_END, SLID_START, certify, failure, take_up,
 )  # fmt: skip
 from meshwind.path.state import blank, copy, copy_particle, energy, touch_down
 from meshwind.surface.evaluate import SU, SV
 
+SHORTEST = 1e-3
+"""Share of a step below which a shift towards the force serves better."""
 SETTLE = 1e-9
 """Round-off of a lateral distance over the part's size: nearer to the starting curve counts as on it."""
 
@@ -151,12 +153,16 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
             for c in range(count):
                 i = contacts[c]
                 # a particle just released must leave to the side that it is pulled to
-                if not firm and (mode[i] == 1 or mode[i] == -1) and offset[i] == 0.0 and move[c, 1] * mode[i] >= 0.0:
-                    mode[i], barred[i] = np.int8(STUCK), True
+                if (mode[i] == 1 or mode[i] == -1) and offset[i] == 0.0 and move[c, 1] * mode[i] >= 0.0:
                     wrong += 1
+                    if not firm:
+                        mode[i], barred[i] = np.int8(STUCK), True
+            if wrong > 0 and firm:
+                shift = max(4.0 * shift, least)
+                continue
             if wrong > 0:
                 _, left = weigh(state, periodic, before, after, table, curve, grip, barred, balance)
-                if left <= 10.0 * tolerance * spacing:  # nothing else moves: let them go, but by a small step
+                if left <= 1e-3 * force:  # nothing else moves: let them go, but by a small step
                     firm = True
                     barred[:] = False
                     shift = max(16.0 * shift, least)
@@ -177,7 +183,7 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
                 shift = max(4.0 * shift, least)
                 continue
             step = min(1.0, LONGEST_MOVE / max(reach, 1e-300))
-            while step > SMALLEST_STEP:
+            while step > SHORTEST:
                 slide(
                     net, periodic, step, move, contacts, count, curve, balance, state, grip, trial, after_grip, size,
                     tally,
@@ -205,7 +211,7 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
                 step *= 0.5
             if not accepted:
                 trials += 1
-                if trials > 3:
+                if trials > 6:
                     break
                 shift = max(16.0 * shift, least)
         if accepted:
@@ -228,7 +234,7 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
             if caution == 2:
                 break
             caution += 1
-    return residual, STALLED
+    return residual, failure(uv, periodic)
 
 
 @njit(nogil=True, cache=True)
@@ -272,8 +278,7 @@ def take_hold(net, periodic, curve, state, grip, size, tally):
             continue
         if mode[i] != STUCK:
             locate(curve, i, state, grip, size)
-            if mode[i] != HELD and offset[i] * mode[i] >= 0.0:
-                mode[i] = STUCK
+            mode[i] = np.int8(STUCK if offset[i] == 0.0 else (-1 if offset[i] > 0.0 else 1))
         if mode[i] == STUCK:
             curve_at(curve, place[i], point, tangent, bend)
             touch_down(net, periodic, state, i, point[0], point[1])

@@ -21,6 +21,8 @@ MOST = 6401
 """Particles of the highest rung where their number is left open."""
 TRIES = (0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0)
 """Coefficients of friction that are tried on a path that slides off."""
+RAMP = (6.0, 4.0, 3.0, 2.2, 1.7, 1.4, 1.2, 1.08, 1.0)
+"""Factors of friction through which a path is lowered that does not settle directly."""
 SHARES = 8
 """Steps in which the turn of a path that slides off is built up."""
 
@@ -106,7 +108,12 @@ def rescue(setting: Setting, batch: Batch) -> tuple[Floats, Floats]:
         part.put(done, found.rows(done))
         batch.put(index, part)
     else:
-        turns[index] = 0.0
+        for start in (from_smooth, from_rough):
+            rest = index[failing(batch)[index]]
+            part = start(setting, batch.rows(rest)) if len(rest) else batch.rows(rest)
+            done = np.flatnonzero(~failing(part))
+            batch.tallies[rest] = part.tallies
+            batch.put(rest[done], part.rows(done))
     index = np.flatnonzero(failing(batch))
     for mu in TRIES:
         rest = index[coefficients[index] == 0.0]
@@ -118,6 +125,27 @@ def rescue(setting: Setting, batch: Batch) -> tuple[Floats, Floats]:
         batch.tallies[rest] += probe.tallies
         coefficients[rest[~failing(probe)]] = mu
     return turns, coefficients
+
+
+def from_smooth(setting: Setting, part: Batch) -> Batch:
+    """Try again from where the fibres would rest without friction."""
+    work = fresh(part.starts, part.X.shape[1])
+    work.tallies[:] = part.tallies
+    replace(setting, friction=Friction(np.zeros((1, 1)))).run(work, resume=False)
+    ramp = np.linspace(0.0, part.starts.shape[1] - 1.0, part.X.shape[1])
+    work.place[:] = ramp
+    work.mode[:] = 1
+    setting.run(work, resume=True)
+    return work
+
+
+def from_rough(setting: Setting, part: Batch) -> Batch:
+    """Try again from higher friction, lowered step by step, so that few particles let go at a time."""
+    work = fresh(part.starts, part.X.shape[1])
+    work.tallies[:] = part.tallies
+    for k, factor in enumerate(RAMP):
+        replace(setting, friction=Friction(setting.friction.table * factor)).run(work, resume=k > 0)
+    return work
 
 
 def wind_up(setting: Setting, part: Batch) -> tuple[Batch, Floats]:

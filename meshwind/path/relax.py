@@ -124,7 +124,7 @@ def relax(net, periodic, boxes, levels, size, pull_off, tolerance, limit, state,
             if caution == 2:
                 break
             caution += 1
-    return residual, leaving_by(uv, leaning) if leaning > 0 else STALLED
+    return residual, failure(uv, periodic)
 
 
 @njit(cache=True)
@@ -165,6 +165,15 @@ def fall(net, periodic, boxes, levels, size, state, trial, contacts, count, diag
         move_touching(net, periodic, chosen, mode, contacts, count, state, trial, tally)
         carry_lifted(net, periodic, boxes, levels, size, 0.0, contacts, count, state, trial, tally)
     return chosen != 0.0
+
+
+@njit(cache=True)
+def failure(uv, periodic):
+    """Why a path did not come to rest: it lies on a rim or hangs over it, or else nobody knows."""
+    for i in range(1, len(uv) - 1):
+        if uv[i, 1] <= 0.0 or uv[i, 1] >= 1.0 or (not periodic and (uv[i, 0] <= 0.0 or uv[i, 0] >= 1.0)):
+            return leaving_by(uv, i)
+    return STALLED
 
 
 @njit(cache=True)
