@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from irregular import annulus, tube
-from problems import barrel_radius
 
 import meshwind as mw
 from meshwind.cast import Floats
 from meshwind.chart import Chart, flatten
 from meshwind.mandrel import Annulus
+from meshwind.methods.problems import barrel_radius
 
 DATA = sorted((Path(__file__).parents[1] / "data").iterdir())
 

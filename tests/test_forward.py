@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from forward_shapes import fine_barrel, gutter, parabola, tube
-from problems import PROBLEMS, TURN, Problem, barrel_clairaut, barrel_length, hyperboloid
 from scipy.optimize import brentq
 
 from meshwind.cast import Floats
+from meshwind.methods.problems import PROBLEMS, TURN, Problem, barrel_clairaut, barrel_length, hyperboloid
 from meshwind.path import Stop, trace
 from meshwind.surface import shapes
 

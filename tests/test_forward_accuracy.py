@@ -6,11 +6,11 @@ import pytest
 from forward_shapes import apart, coarse_barrel, dome, fine_barrel, tube
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from problems import ellipsoid
 from scipy.integrate import DOP853, solve_ivp
 
 from meshwind.cast import Floats
 from meshwind.errors import BadInputError
+from meshwind.methods.problems import ellipsoid
 from meshwind.path import Stop, trace, traces
 from meshwind.surface import Surface, shapes
 

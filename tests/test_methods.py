@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from problems import PROBLEMS, Problem, barrel, sphere
 
 from meshwind.errors import BadInputError
 from meshwind.methods import Ending, Method, Run, largest_frequency, run, stable_step
+from meshwind.methods.problems import PROBLEMS, Problem, barrel, sphere
 from meshwind.path import solve
 from meshwind.surface import Surface, shapes
 

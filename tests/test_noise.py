@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 from irregular import annulus
-from problems import TURN, vase_radius
 
 from meshwind.cast import Floats
 from meshwind.chart import flatten
 from meshwind.mandrel import annulus as opened
 from meshwind.mandrel import mesh_from
+from meshwind.methods.problems import TURN, vase_radius
 from meshwind.surface import fit
 from meshwind.surface.interpolate import Formula
 from meshwind.surface.noise import roughness

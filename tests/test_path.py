@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from problems import PROBLEMS, RULING, TURN, Problem, barrel, barrel_clairaut, hyperboloid, vase_radius
 
 from meshwind.errors import BadInputError
+from meshwind.methods.problems import PROBLEMS, RULING, TURN, Problem, barrel, barrel_clairaut, hyperboloid, vase_radius
 from meshwind.path import Paths, Status, solve
 from meshwind.surface import shapes
 

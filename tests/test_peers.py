@@ -15,13 +15,13 @@ import potpourri3d
 import pygeodesic.geodesic
 import pytest
 from irregular import annulus
-from problems import TURN, barrel_radius, vase_radius
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.spatial import cKDTree
 
 import meshwind as mw
 from meshwind.cast import Floats, Ints
+from meshwind.methods.problems import TURN, barrel_radius, vase_radius
 from meshwind.surface.foot import feet
 
 
