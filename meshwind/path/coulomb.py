@@ -16,6 +16,10 @@ STUCK, HELD = 0, 2
 """Modes of a touching particle beside sigma = +1 and -1: on the starting curve; pressed against a rim."""
 
 
+MARGIN, FAINT = 1e-6, 1e-10
+"""A stuck particle lets go above this share over mu N, and this angle: below them it would creep by round-off."""
+
+
 @njit(inline="always", cache=True)
 def dot(a, b):
     """Scalar product of two vectors in space."""
@@ -166,7 +170,7 @@ def weigh(state, periodic, before, after, table, curve, grip, barred, balance):
         back = dot(m, t[i]) < 0.0  # the fibre runs the other way along its starting curve
         if was == STUCK and not barred[i]:
             side = dot(force, b[i])
-            if abs(side) > mu[0] * press + 1e-12 * span:
+            if abs(side) > mu[0] * press * (1.0 + MARGIN) + FAINT * span:
                 mode[i] = np.int8(-1 if side > 0.0 else 1)
         if mode[i] != STUCK:
             for k in range(3):

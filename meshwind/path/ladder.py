@@ -81,9 +81,10 @@ def ascend(setting: Setting, batch: Batch, particles: int) -> Batch:
         anew = fresh(fine.starts[lost], particles)
         anew.tallies[:] = fine.tallies[lost]
         setting.run(anew, resume=False)
-        better = anew.status == Status.CONVERGED
+        search(setting, anew)
+        done = np.flatnonzero(~failing(anew))
         fine.tallies[lost] = anew.tallies
-        fine.put(lost[better], anew.rows(np.flatnonzero(better)))
+        fine.put(lost[done], anew.rows(done))
     return fine
 
 
@@ -94,26 +95,8 @@ def failing(batch: Batch) -> Bools:
 
 def rescue(setting: Setting, batch: Batch) -> tuple[Floats, Floats]:
     """Look for the equilibria that a direct start missed, and for what would hold the paths that have none."""
-    turns, coefficients = np.zeros(len(batch)), np.zeros(len(batch))
-    index = np.flatnonzero(failing(batch))
-    if not len(index):
-        return turns, coefficients
-    part = batch.rows(index)
-    turn = part.starts[:, -1, 0] - part.starts[:, 0, 0]
-    if setting.friction.none:
-        found, share = wind_up(setting, part)
-        turns[index] = share * np.abs(turn)
-        done = np.flatnonzero(~failing(found))
-        part.tallies[:] = found.tallies
-        part.put(done, found.rows(done))
-        batch.put(index, part)
-    else:
-        for start in (from_smooth, from_rough):
-            rest = index[failing(batch)[index]]
-            part = start(setting, batch.rows(rest)) if len(rest) else batch.rows(rest)
-            done = np.flatnonzero(~failing(part))
-            batch.tallies[rest] = part.tallies
-            batch.put(rest[done], part.rows(done))
+    coefficients = np.zeros(len(batch))
+    turns = search(setting, batch)
     index = np.flatnonzero(failing(batch))
     for mu in TRIES:
         rest = index[coefficients[index] == 0.0]
@@ -127,7 +110,21 @@ def rescue(setting: Setting, batch: Batch) -> tuple[Floats, Floats]:
     return turns, coefficients
 
 
-def from_smooth(setting: Setting, part: Batch) -> Batch:
+def search(setting: Setting, batch: Batch) -> Floats:
+    """Try the paths that are not at rest in other ways, in place; returns the change of u that holds, 0 if unknown."""
+    turns = np.zeros(len(batch))
+    for start in (wind_up,) if setting.friction.none else (from_smooth, from_rough):
+        index = np.flatnonzero(failing(batch))
+        if len(index):
+            work, held = start(setting, batch.rows(index))
+            turns[index] = held
+            batch.tallies[index] = work.tallies
+            done = np.flatnonzero(~failing(work))
+            batch.put(index[done], work.rows(done))
+    return turns
+
+
+def from_smooth(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
     """Try again from where the fibres would rest without friction."""
     work = fresh(part.starts, part.X.shape[1])
     work.tallies[:] = part.tallies
@@ -136,23 +133,23 @@ def from_smooth(setting: Setting, part: Batch) -> Batch:
     work.place[:] = ramp
     work.mode[:] = 1
     setting.run(work, resume=True)
-    return work
+    return work, np.zeros(len(work))
 
 
-def from_rough(setting: Setting, part: Batch) -> Batch:
+def from_rough(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
     """Try again from higher friction, lowered step by step, so that few particles let go at a time."""
     work = fresh(part.starts, part.X.shape[1])
     work.tallies[:] = part.tallies
     for k, factor in enumerate(RAMP):
         replace(setting, friction=Friction(setting.friction.table * factor)).run(work, resume=k > 0)
-    return work
+    return work, np.zeros(len(work))
 
 
 def wind_up(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
     """Build up the paths' turn in steps, each from the answer of the one before, as far as they hold.
 
-    Returns the batch at full turn, in which those that do not hold have no CONVERGED status, and the largest share
-    of the turn that held.
+    Returns the batch at full turn, in which those that do not hold have no CONVERGED status, and the largest turn
+    that held.
     """
     n = part.X.shape[1]
     count = len(part)
@@ -191,4 +188,4 @@ def wind_up(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
         goal = np.minimum(share + step, 1.0)
     best.status[share < 1.0] = part.status[share < 1.0]
     best.tallies[:] = work.tallies
-    return best, share
+    return best, share * np.abs(turn)
