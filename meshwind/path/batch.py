@@ -50,8 +50,8 @@ class Batch:
         """The same paths with more particles, those between on the old ones' curve; counters go on."""
         fine = fresh(self.starts, particles)
         fine.tallies[:] = self.tallies
-        spread(refine_all, len(self), 64, self.X, self.uv, self.touching, self.place, self.mode,
-               fine.X, fine.uv, fine.touching, fine.place, fine.mode)  # fmt: skip
+        spread(refine_all, len(self), 64, self.X, self.uv, self.touching, self.gap, self.place, self.mode,
+               fine.X, fine.uv, fine.touching, fine.gap, fine.place, fine.mode)  # fmt: skip
         return fine
 
 
@@ -82,20 +82,24 @@ class Setting:
     bridging: bool
     tolerance: float
     iterations: int
+    final: bool = True
 
     @property
     def middle(self) -> Floats:
         """The point that kernels take as the origin."""
         return np.asarray(self.surface.control_points.reshape(-1, 3).mean(axis=0))
 
-    def run(self, batch: Batch, resume: bool) -> None:
+    def run(self, batch: Batch, resume: bool, tree: bool = True) -> None:
         """Bring the batch to rest, from its starting curves or, with `resume`, from where it is.
 
         A part that presses everywhere never pays for the search tree, and a frictionless one none for friction.
+        Without `tree` a path that lifts is left with the status LIFTED.
         """
         aloft = ~batch.touching.all(axis=1) if resume else np.zeros(len(batch), np.bool_)
         low = np.flatnonzero(~aloft)
         self._run(batch, low, resume, tree=False)
+        if not tree:
+            return
         lifted = low[batch.status[low] == LIFTED]
         self._run(batch, np.sort(np.concatenate([np.flatnonzero(aloft), lifted])), resume, tree=True)
 
@@ -109,7 +113,7 @@ class Setting:
             boxes, levels = frozen(surface.tree[0] - np.tile(middle, 2)), surface.tree[1]
         pull_off = PULL if self.bridging else np.inf
         part = batch.rows(index)
-        general = net, surface.periodic, boxes, levels, surface.size, pull_off, self.tolerance, self.iterations, resume
+        general = net, surface.periodic, boxes, levels, surface.size, pull_off, self.tolerance, self.iterations, resume, self.final
         places = part.X, part.uv, part.normal, part.touching, part.gap, part.slip
         results = part.residual, part.status, part.tallies
         if self.friction.none:

@@ -239,7 +239,7 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
 
 @njit(nogil=True, cache=True)
 def hold_all(
-    first, last, net, periodic, boxes, levels, size, pull_off, tolerance, limit, resume, table, starts, place, mode,
+    first, last, net, periodic, boxes, levels, size, pull_off, tolerance, limit, resume, final, table, starts, place, mode,
     X, uv, normal, touching, gap, slip, residual, status, tallies,
 ):  # fmt: skip
     """Bring paths first to last to rest under friction: from their starting curves, or with `resume` as they are."""
@@ -260,7 +260,7 @@ def hold_all(
         residual[p], status[p] = hold(
             net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, curve, state, grip, tally
         )
-        if status[p] != LIFTED:
+        if final and status[p] != LIFTED:
             certify(net, periodic, boxes, levels, state, slip[p], tally)
 
 

@@ -15,6 +15,8 @@ from meshwind.path.paths import Status
 
 FEWEST = 48
 """Particles of the lowest rung, at least; and as many a turn."""
+QUICK = 12
+"""Steps that a direct start with all particles may take."""
 COARSE = 1e-6
 """Unbalanced force that is left on the rungs below the last."""
 MOST = 6401
@@ -27,33 +29,63 @@ SHARES = 8
 """Steps in which the turn of a path that slides off is built up."""
 
 
-def climb(setting: Setting, curves: Floats, particles: int | None, accuracy: float) -> tuple[Batch, tuple[Floats, Floats]]:
+def climb(
+    setting: Setting, curves: Floats, particles: int | None, accuracy: float
+) -> tuple[Batch, tuple[Floats, Floats]]:
     """Bring paths to rest from their starting curves (p, k, 2), with `particles` or as many as `accuracy` needs.
 
     Returns the batch, and for the paths that do not hold the change of u, and the friction, that would hold them (0
     where none does).
     """
-    turn = np.abs(np.diff(curves[:, :, 0], axis=1)).sum(axis=1).max(initial=0.0)
-    fewest = int(FEWEST * max(1.0, turn))
-    rungs = [particles] if particles is not None else [fewest + 1]
-    while particles is not None and (rungs[0] - 1) // 2 >= fewest:
-        rungs.insert(0, (rungs[0] - 1) // 2 + 1)
-    below = replace(setting, tolerance=max(setting.tolerance, COARSE))
-    batch = fresh(curves, rungs[0])
-    alone = len(rungs) == 1 and particles is not None
-    (setting if alone else below).run(batch, resume=False)
-    holds = rescue(setting if alone else below, batch)
+    if particles is None:
+        return choose(setting, curves, accuracy)
+    holds = np.zeros(len(curves)), np.zeros(len(curves))
+    batch = fresh(curves, particles)
+    if setting.friction.none:  # most paths that stay on the surface settle at once
+        replace(setting, iterations=QUICK).run(batch, resume=False, tree=False)
+        rest = np.flatnonzero(failing(batch))
+    else:
+        rest = np.arange(len(curves))
+    if len(rest):
+        rungs = [particles]
+        while (rungs[0] - 1) // 2 >= fewest(curves):
+            rungs.insert(0, (rungs[0] - 1) // 2 + 1)
+        work = fresh(curves[rest], rungs[0])
+        work.tallies[:] = batch.tallies[rest]
+        (setting if len(rungs) == 1 else rough(setting)).run(work, resume=False)
+        for which, found in zip(holds, rescue(setting if len(rungs) == 1 else rough(setting), work), strict=True):
+            which[rest] = found
+        for n in rungs[1:]:
+            work = ascend(setting if n == particles else rough(setting), work, n)
+        batch.put(rest, work)
+    return batch, holds
+
+
+def choose(setting: Setting, curves: Floats, accuracy: float) -> tuple[Batch, tuple[Floats, Floats]]:
+    """As `climb`, with particles doubled until the lengths' relative error falls below `accuracy`, by its estimate."""
+    batch = fresh(curves, fewest(curves) + 1)
+    setting.run(batch, resume=False)
+    holds = rescue(setting, batch)
     length = lengths(batch)
-    for n in rungs[1:]:
-        batch = ascend(setting if n == particles else below, batch, n)
-    while particles is None and batch.X.shape[1] < MOST:
+    while batch.X.shape[1] < MOST:
         batch = ascend(setting, batch, 2 * batch.X.shape[1] - 1)
         before, length = length, lengths(batch)
-        done = batch.status == Status.CONVERGED
+        done = ~failing(batch)
         # second order: a third of the last change is what is left
         if np.all(np.abs(length - before)[done] <= 3.0 * accuracy * length[done]):
             break
     return batch, holds
+
+
+def fewest(curves: Floats) -> int:
+    """Segments of the lowest rung: enough for the largest turn."""
+    turn = np.abs(np.diff(curves[:, :, 0], axis=1)).sum(axis=1).max(initial=0.0)
+    return int(FEWEST * max(1.0, turn))
+
+
+def rough(setting: Setting) -> Setting:
+    """The setting for a rung below the last: a looser balance, no certificate."""
+    return replace(setting, tolerance=max(setting.tolerance, COARSE), final=False)
 
 
 def lengths(batch: Batch) -> Floats:

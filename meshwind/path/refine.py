@@ -5,11 +5,11 @@ from numba import njit
 
 
 @njit(nogil=True, cache=True)
-def refine_all(first, last, X, uv, touching, place, mode, X2, uv2, touching2, place2, mode2):
+def refine_all(first, last, X, uv, touching, gap, place, mode, X2, uv2, touching2, gap2, place2, mode2):
     """Resample paths first to last evenly by index.
 
     Parameters are cubic where four neighbours touch and linear elsewhere; a particle between a touching and a lifted
-    one is lifted, on their chord; places on the starting curve are linear, modes those of the nearest particle.
+    one is lifted, on their chord, its gap bounded by theirs, which no gap can differ from by more than the way; places on the starting curve are linear, modes those of the nearest particle.
     """
     m, n = X.shape[1], X2.shape[1]
     for p in range(first, last):
@@ -24,6 +24,11 @@ def refine_all(first, last, X, uv, touching, place, mode, X2, uv2, touching2, pl
             near = k if x < 0.5 else k + 1
             low, high = touching[p, k] or x == 1.0, touching[p, k + 1] or x == 0.0
             touching2[p, i] = low and high
+            way = 0.0
+            for a in range(3):
+                way += (X[p, k + 1, a] - X[p, k, a]) ** 2
+            way = np.sqrt(way)
+            gap2[p, i] = 0.0 if touching2[p, i] else max(gap[p, k] - x * way, gap[p, k + 1] - (1.0 - x) * way)
             place2[p, i] = (1.0 - x) * place[p, k] + x * place[p, k + 1]
             mode2[p, i] = mode[p, near]
             if x > 0.0 and x < 1.0 and mode[p, k] != mode[p, k + 1]:

@@ -186,10 +186,13 @@ def leaving_by(uv, i):
 
 @njit(nogil=True, cache=True)
 def relax_all(
-    first, last, net, periodic, boxes, levels, size, pull_off, tolerance, limit, resume,
+    first, last, net, periodic, boxes, levels, size, pull_off, tolerance, limit, resume, final,
     X, uv, normal, touching, gap, slip, residual, status, tallies,
 ):  # fmt: skip
-    """Relax paths first to last: from the curves uv (p, n, 2), or with `resume` from what the arrays hold."""
+    """Relax paths first to last: from the curves uv (p, n, 2), or with `resume` from what the arrays hold.
+
+    Only a `final` answer pays for its certificate; others leave lower bounds of the gaps.
+    """
     n = uv.shape[1]
     frames = np.empty((n, 6, 3))
     for p in range(first, last):
@@ -204,19 +207,19 @@ def relax_all(
         residual[p], status[p] = relax(
             net, periodic, boxes, levels, size, pull_off, tolerance, limit, state, tallies[p]
         )
-        if status[p] != LIFTED:
+        if final and status[p] != LIFTED:
             certify(net, periodic, boxes, levels, state, slip[p], tallies[p])
 
 
 @njit(cache=True)
 def take_up(net, periodic, boxes, levels, size, state, tally):
     """Complete a state of which positions, parameters and contacts are known; what is inside the body lands."""
-    touching, uv = state[4], state[1]
+    touching, uv, clear = state[4], state[1], state[5]
     for i in range(len(touching)):
         if touching[i]:
             touch_down(net, periodic, state, i, uv[i, 0], uv[i, 1])
             tally[EVALUATIONS] += 1
-        else:
+        elif clear[i] <= 0.0:
             land(net, periodic, boxes, levels, size, state, i, tally)
 
 
