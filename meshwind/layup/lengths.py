@@ -6,6 +6,7 @@ import numpy as np
 
 from meshwind.cast import Floats, Ints, frozen
 from meshwind.path.paths import Paths
+from meshwind.path.touchdown import touchdowns
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,8 @@ class Lengths:
 class Bridges:
     """The b spans off the surface: of `path` (b,), from particle `first` to `last` (b,), both included.
 
-    Both lie on the surface, unless the span reaches an end of its path.
+    Both lie on the surface, unless the span reaches an end of its path.  ends (b, 2, 3) are the places, between
+    particles, where the fibre truly leaves the surface and comes back: tangent to it, to second order.
     """
 
     path: Ints
@@ -34,6 +36,7 @@ class Bridges:
     last: Ints
     length: Floats
     max_gap: Floats
+    ends: Floats
 
     def __len__(self) -> int:
         return len(self.path)
@@ -69,4 +72,5 @@ def bridges(paths: Paths) -> Bridges:
     padded = np.pad(paths.gap, ((0, 0), (0, 1)), constant_values=0.0).ravel()
     gap = np.maximum.reduceat(padded, bounds)[::2] if len(bounds) else np.zeros(0)
     length = arc[path, last] - arc[path, first]
-    return Bridges(frozen(path), frozen(first), frozen(last), frozen(length), frozen(gap))
+    ends, _ = touchdowns(paths, path, first, last)
+    return Bridges(frozen(path), frozen(first), frozen(last), frozen(length), frozen(gap), frozen(ends))

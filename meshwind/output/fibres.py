@@ -42,7 +42,9 @@ def write_bridges(path: Path, paths: Paths) -> None:
     row = np.repeat(spans.path, sizes)
     column = np.arange(starts[-1]) - np.repeat(starts[:-1] - spans.first, sizes)
     cell_data = {"path": spans.path, "length": spans.length, "max_gap": spans.max_gap}
-    write_lines(path, paths.points[row, column], starts, {"gap": paths.gap[row, column]}, cell_data)
+    points = paths.points[row, column]
+    points[starts[:-1]], points[starts[1:] - 1] = spans.ends[:, 0], spans.ends[:, 1]
+    write_lines(path, points, starts, {"gap": paths.gap[row, column]}, cell_data)
 
 
 def write_crossings(path: Path, crossings: Crossings) -> None:

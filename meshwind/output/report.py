@@ -129,7 +129,7 @@ def _paths(paths: Paths) -> dict[str, Any]:
     loose = np.flatnonzero(paths.status != Status.CONVERGED)
     return {
         "converged": figures.at_rest,
-        "not_converged": [_failure(int(k), Status(int(paths.status[k]))) for k in loose],
+        "not_converged": [_failure(paths, int(k)) for k in loose],
         "figures_over": figures.over,
         "length_total": figures.length,
         "bridged_fraction": figures.bridged_fraction,
@@ -141,8 +141,9 @@ def _paths(paths: Paths) -> dict[str, Any]:
     }
 
 
-def _failure(path: int, status: Status) -> dict[str, Any]:
-    return {"path": path, "status": int(status), "name": status.name.lower(), "why": status.advice}
+def _failure(paths: Paths, path: int) -> dict[str, Any]:
+    status = Status(int(paths.status[path]))
+    return {"path": path, "status": int(status), "name": status.name.lower(), "why": paths.advice(path)}
 
 
 def _spread(values: Floats) -> dict[str, float | None]:

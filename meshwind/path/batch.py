@@ -13,6 +13,10 @@ from meshwind.surface.surface import Surface
 from meshwind.threads import spread
 
 
+NO_TREE = frozen(np.empty((0, 6))), frozen(np.empty((0, 3), np.int64))
+"""Read-only as the tree itself, so that kernels compile once."""
+
+
 @dataclass
 class Batch:
     """Arrays of p paths of n particles; X, uv, touching and grip are both where a solver starts and its answer.
@@ -84,11 +88,6 @@ class Setting:
     iterations: int
     final: bool = True
 
-    @property
-    def middle(self) -> Floats:
-        """The point that kernels take as the origin."""
-        return np.asarray(self.surface.control_points.reshape(-1, 3).mean(axis=0))
-
     def run(self, batch: Batch, resume: bool, tree: bool = True) -> None:
         """Bring the batch to rest, from its starting curves or, with `resume`, from where it is.
 
@@ -106,14 +105,12 @@ class Setting:
     def _run(self, batch: Batch, index: Ints, resume: bool, tree: bool) -> None:
         if not len(index):
             return
-        surface, middle = self.surface, self.middle
-        net = frozen(surface.net - middle)  # read-only as everywhere: kernels compile once
-        boxes, levels = frozen(np.empty((0, 6))), frozen(np.empty((0, 3), np.int64))
-        if tree:
-            boxes, levels = frozen(surface.tree[0] - np.tile(middle, 2)), surface.tree[1]
+        surface = self.surface.centred
+        boxes, levels = surface.tree if tree else NO_TREE
         pull_off = PULL if self.bridging else np.inf
-        part = batch.rows(index)
-        general = net, surface.periodic, boxes, levels, surface.size, pull_off, self.tolerance, self.iterations, resume, self.final
+        part = batch if len(index) == len(batch) else batch.rows(index)
+        before = None if tree else (part.X.copy(), part.uv.copy(), part.touching.copy(), part.place.copy(), part.mode.copy())
+        general = surface.net, surface.periodic, boxes, levels, surface.size, pull_off, self.tolerance, self.iterations, resume, self.final
         places = part.X, part.uv, part.normal, part.touching, part.gap, part.slip
         results = part.residual, part.status, part.tallies
         if self.friction.none:
@@ -121,8 +118,8 @@ class Setting:
         else:
             spread(hold_all, len(part), 1, *general, self.friction.table, part.starts, part.place, part.mode, *places,
                    *results)  # fmt: skip
-        rerun = part.status == LIFTED
-        part.X[rerun], part.uv[rerun] = batch.X[index][rerun], batch.uv[index][rerun]
-        part.touching[rerun], part.place[rerun] = batch.touching[index][rerun], batch.place[index][rerun]
-        part.mode[rerun] = batch.mode[index][rerun]
-        batch.put(index, part)
+        if before is not None and (rerun := part.status == LIFTED).any():
+            for array, old in zip((part.X, part.uv, part.touching, part.place, part.mode), before, strict=True):
+                array[rerun] = old[rerun]
+        if part is not batch:
+            batch.put(index, part)

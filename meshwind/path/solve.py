@@ -73,7 +73,7 @@ def as_paths(setting: Setting, batch: Batch, sense: ArrayLike, holds: tuple[Floa
     turns, coefficients = holds if holds is not None else (np.zeros(len(batch)), np.zeros(len(batch)))
     return Paths(
         surface=setting.surface,
-        points=frozen(batch.X + setting.middle),
+        points=frozen(batch.X + setting.surface.middle),
         uv=frozen(batch.uv),
         on_surface=frozen(batch.touching),
         gap=frozen(batch.gap),

@@ -89,6 +89,16 @@ class Surface:
         return frozen(boxes), frozen(levels)
 
     @cached_property
+    def middle(self) -> Floats:
+        """Mean of the control points (3,)."""
+        return frozen(self.control_points.reshape(-1, 3).mean(axis=0))
+
+    @cached_property
+    def centred(self) -> "Surface":
+        """The surface about its own middle: kernels that work there lose no digits far from the origin."""
+        return Surface(self.control_points - self.middle, self.periodic)
+
+    @cached_property
     def size(self) -> float:
         """Diagonal of the control net's bounding box: the length that tolerances are relative to."""
         return float(np.linalg.norm(np.ptp(self.control_points.reshape(-1, 3), axis=0)))
