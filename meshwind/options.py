@@ -9,18 +9,24 @@ from meshwind.mandrel.ends import parse
 
 STEPS_A_TURN = 8
 """Fewest steps of a path in a turn: with fewer a polyline is no picture of the fibre."""
+FIELD = "field:"
+"""Before the name of a scalar field in a mesh file."""
 MEMORY = 4e9
 """Most bytes that a run may take."""
 _BYTES_A_PARTICLE, _BYTES_A_CROSSING = 350, 1500
 """Peak memory of a run, measured from 3e5 to 1.6e6 particles and 2e4 to 5e5 crossings."""
 _LONGEST_UNIT = 12
+_MOST_CHOSEN = 1601
+"""Particles a path that memory is checked for where their number is left open."""
 
 
 @dataclass(frozen=True)
 class Options:
     """Options of a run; one that cannot be used raises BadInputError with its value and what it may be.
 
-    paths: a family; revolutions: turns from end to end; particles: a path; friction: coefficient; component: the
+    paths: a family; revolutions: turns from end to end; particles: a path,
+    None to have them chosen; friction: coefficient, or
+    "field:NAME" for a scalar of the mesh file; component: the
     piece of the mesh by its rank of area; ends: "auto", "x", "y", "z", two points "x,y,z x,y,z" or two rims "loops
     0 1"; opening: radius at a closed end in the mesh's units; tolerance:
     largest distance of a vertex from the surface over the mesh's diagonal; worst_fit: largest distance between
@@ -29,8 +35,8 @@ class Options:
 
     paths: int = 12
     revolutions: float = 0.5
-    particles: int = 401
-    friction: float = 0.0
+    particles: int | None = 401
+    friction: float | str = 0.0
     component: int = 0
     ends: str = "auto"
     opening: float | None = None
@@ -41,17 +47,16 @@ class Options:
     def __post_init__(self) -> None:
         set_ = object.__setattr__
         set_(self, "paths", _whole(self.paths, "paths", 1))
-        set_(self, "particles", _whole(self.particles, "particles", 3))
-        most = (self.particles - 1) / STEPS_A_TURN
+        if self.particles is not None:
+            set_(self, "particles", _whole(self.particles, "particles", 3))
+        most = ((self.particles or _MOST_CHOSEN) - 1) / STEPS_A_TURN
         set_(self, "revolutions", _number(self.revolutions, "revolutions", 0.0))
         if self.revolutions > most:
             raise BadInputError(
                 f"revolutions is {_told(self.revolutions)}; give a number from 0 to {most:g}, which is as many as "
-                f"{self.particles} particles a path can follow, or more particles"
+                f"{self.particles or _MOST_CHOSEN} particles a path can follow, or more particles"
             )
-        if _number(self.friction, "friction", 0.0) != 0.0:
-            raise BadInputError(f"friction {self.friction:g} is not supported yet; use 0")
-        set_(self, "friction", 0.0)
+        set_(self, "friction", _friction(self.friction))
         set_(self, "component", _whole(self.component, "component", 0))
         parse(self.ends)
         if self.opening is not None:
@@ -59,7 +64,22 @@ class Options:
         set_(self, "tolerance", _number(self.tolerance, "tolerance", 1e-12, 1.0))
         set_(self, "worst_fit", _number(self.worst_fit, "worst_fit", 0.0, above=True))
         _check_units(self.units)
-        _check_memory(self.paths, self.particles, self.revolutions)
+        _check_memory(self.paths, self.particles or _MOST_CHOSEN, self.revolutions)
+
+
+def _friction(value: object) -> float | str:
+    """A coefficient, or the name of a field."""
+    if not isinstance(value, str):
+        return _number(value, "friction", 0.0, 10.0)
+    if value.startswith(FIELD) and value.removeprefix(FIELD).strip():
+        return value
+    try:
+        number = float(value)
+    except ValueError:
+        raise BadInputError(
+            f"friction is {value!r}; give a coefficient such as 0.2, or {FIELD}NAME for a scalar of the mesh file"
+        ) from None
+    return _number(number, "friction", 0.0, 10.0)
 
 
 def _whole(value: object, name: str, least: int) -> int:

@@ -13,14 +13,16 @@ from meshwind.errors import BadInputError
 from meshwind.layup.families import families
 from meshwind.layup.layup import Layup, assess
 from meshwind.mandrel import Mesh, annulus, read
+from meshwind.mandrel.scalars import Scalars, read_scalars
 from meshwind.notes import FIT_ERROR, Note, about_fit
-from meshwind.options import Options
+from meshwind.options import FIELD, Options
 from meshwind.output import driver, folder
 from meshwind.output.fit_scene import fit_scene
 from meshwind.output.report import report, write_report
 from meshwind.output.scene import scene
 from meshwind.output.write import write_files
 from meshwind.path import Paths, Status, solve
+from meshwind.path.friction import friction_from
 from meshwind.surface import Surface, fit
 
 Tell = Callable[[str], None]
@@ -107,14 +109,14 @@ def wind(
     *,
     paths: int = 12,
     revolutions: float = 0.5,
-    friction: float = 0.0,
+    friction: float | str = 0.0,
     component: int = 0,
     ends: str = "auto",
     opening: float | None = None,
     tolerance: float = 1e-5,
     worst_fit: float = 0.1,
     units: str = "",
-    particles: int = 401,
+    particles: int | None = 401,
     out: str | PathLike[str] | None = None,
     render: bool = True,
     command: str = "",
@@ -122,12 +124,12 @@ def wind(
 ) -> Result:
     """Lay two families of taut paths on a triangle mesh.
 
-    mesh: a file or a `Mesh`; paths: a family; revolutions: turns from end to end; friction: coefficient (0 for
-    now); component: which piece of a file, by its rank of area; ends: "auto", "x", "y", "z", two points "x,y,z
+    mesh: a file or a `Mesh`; paths: a family; revolutions: turns from end to end; friction: coefficient, or
+    "field:NAME" for a scalar of the mesh file; component: which piece of a file, by its rank of area; ends: "auto", "x", "y", "z", two points "x,y,z
     x,y,z" or two rims "loops 0 1"; opening: radius at a closed end in the mesh's units; tolerance: largest distance
     of a vertex from the surface over the mesh's diagonal; worst_fit: largest distance between surface and mesh,
-    over the diagonal, that is wound at all; units: the name of the mesh's unit, "" if unknown; particles: a path;
-    out: folder for the files; render: draw the pictures as well.  Raises BadInputError, in one line, for whatever
+    over the diagonal, that is wound at all; units: the name of the mesh's unit, "" if unknown; particles: a path,
+    None for as many as lengths right to 1e-5 need; out: folder for the files; render: draw the pictures as well.  Raises BadInputError, in one line, for whatever
     the caller can mend.
     """
     options = Options(paths, revolutions, particles, friction, component, ends, opening, tolerance, worst_fit, units)
@@ -141,6 +143,7 @@ def wind(
             driver.start_probe()
     with clock.stage("read"):
         part = mesh if isinstance(mesh, Mesh) else read(mesh, options.component)
+    field = _field(mesh, options.friction)
     with clock.stage("ends"):
         opened = annulus(part, ends=options.ends, opening=options.opening)
     with clock.stage("flatten"):
@@ -148,13 +151,30 @@ def wind(
     with clock.stage("fit"):
         surface = fit(chart, options.tolerance)
         notes = about_fit(surface, chart, options.tolerance, options.worst_fit, options.units)
+        rough = None if field is None else friction_from(surface, field.points, field.values)
     with clock.stage("wind"):
         rims = families(surface, options.paths, options.revolutions)
-        laid = solve(surface, rims.start, rims.end, family=rims.family, particles=options.particles)
+        laid = solve(
+            surface,
+            rims.start,
+            rims.end,
+            family=rims.family,
+            particles=options.particles,
+            friction=rough if rough is not None else options.friction,
+        )
     with clock.stage("assess"):
         layup = assess(laid)
     result = Result(part, chart, layup, options, command, clock.seconds, notes)
     return result if target is None else _write(result, target, render, clock)
+
+
+def _field(mesh: str | PathLike[str] | Mesh, friction: float | str) -> Scalars | None:
+    """The friction field of the mesh's file, if one is asked for."""
+    if not isinstance(friction, str):
+        return None
+    if isinstance(mesh, Mesh):
+        raise BadInputError(f"friction is {friction!r} but the mesh is no file; solve(..., friction=...) takes a table")
+    return read_scalars(fspath(mesh), friction.removeprefix(FIELD).strip())
 
 
 def _folder(out: str | PathLike[str]) -> Path:

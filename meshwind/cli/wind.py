@@ -24,6 +24,16 @@ def turns(text: str) -> float:
         raise BadInputError(f"revolutions is {text!r}; give a number as in 0.5 or 5/12") from error
 
 
+def count(text: str) -> int | None:
+    """A whole number, or None for auto."""
+    if text.strip().lower() == "auto":
+        return None
+    try:
+        return int(text)
+    except ValueError as error:
+        raise BadInputError(f"particles is {text!r}; give a whole number, or auto") from error
+
+
 def wind(
     mesh: MeshFile,
     out: Annotated[str | None, typer.Option(help="Folder for the results.  [default: MESH's name + -wound]")] = None,
@@ -31,7 +41,9 @@ def wind(
     revolutions: Annotated[
         str, typer.Option(metavar="TURNS", help="Turns of a path from end to end, as in 0.5 or 5/12.")
     ] = "0.5",
-    friction: Annotated[float, typer.Option(help="Coefficient of friction of fibre on part; only 0 for now.")] = 0.0,
+    friction: Annotated[
+        str, typer.Option(metavar="MU", help="Friction of fibre on part, or field:NAME for a scalar of MESH.")
+    ] = "0",
     component: Annotated[int, typer.Option(help="Which piece of MESH, by its rank of area; 0 is the largest.")] = 0,
     ends: Ends = "auto",
     opening: Opening = None,
@@ -42,7 +54,9 @@ def wind(
         float, typer.Option(help="Largest distance between surface and mesh, over the diagonal, to wind at all.")
     ] = 0.1,
     units: Annotated[str, typer.Option(help="Name of the mesh's unit, as in mm, for report and picture.")] = "",
-    particles: Annotated[int, typer.Option(help="Particles a path; more for many turns.")] = 401,
+    particles: Annotated[
+        str, typer.Option(metavar="COUNT", help="Particles a path, or auto: as many as lengths right to 1e-5 need.")
+    ] = "401",
     render: Annotated[bool, typer.Option("--render/--no-render", help="Draw winding.png.")] = True,
 ) -> int:
     """Lay two families of taut fibres on MESH and write paths, bridges, crossings, quads, maps and a report.
@@ -68,7 +82,7 @@ def wind(
             tolerance=tolerance,
             worst_fit=worst_fit,
             units=units,
-            particles=particles,
+            particles=count(particles),
             out=folder,
             render=render,
             command=shlex.join(["meshwind", *sys.argv[1:]]),

@@ -40,6 +40,22 @@ class Friction:
         return float(self.table.min())
 
 
+def friction_from(surface: Surface, points: Floats, values: Floats, grid: int = ROWS) -> Friction:
+    """Friction from values (n,) at points (n, 3) on or near the part: weighted by distance among the nearest four."""
+    from scipy.spatial import cKDTree
+
+    tree = cKDTree(floats(points, "points", -1, 3))
+    given = floats(values, "values", len(points))
+
+    def nearby(places: Floats) -> Floats:
+        far, index = tree.query(places, k=min(4, len(given)))
+        far, index = far.reshape(len(places), -1), index.reshape(len(places), -1)
+        weight = 1.0 / (far + 1e-9 * surface.size)
+        return np.asarray((weight * given[index]).sum(axis=1) / weight.sum(axis=1))
+
+    return friction_of(surface, nearby, grid)
+
+
 def friction_of(
     surface: Surface, given: "float | Friction | Callable[[Floats], Floats] | Floats", grid: int = ROWS
 ) -> Friction:

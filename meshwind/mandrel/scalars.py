@@ -1,0 +1,87 @@
+"""Scalars of a mesh file, at its own vertices or at the middles of its cells, as the file holds them.
+
+Repair and trimming renumber vertices, so scalars keep the places they were given at.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from meshwind.cast import Floats, frozen
+from meshwind.errors import BadInputError
+
+_BY_VTK = (".vtk", ".vtp", ".vtu")
+_BY_MESHIO = (".ply", ".msh", ".inp")
+
+
+@dataclass(frozen=True)
+class Scalars:
+    """One number at each of n places: points (n, 3), values (n,)."""
+
+    points: Floats
+    values: Floats
+
+
+def read_scalars(path: str | Path, name: str) -> Scalars:
+    """Read the scalar `name` from a VTK, VTP, VTU, PLY, MSH or INP file, of its points or else of its cells.
+
+    Raises BadInputError where the format cannot hold scalars or the file has none of that name.
+    """
+    path = Path(path)
+    kind = path.suffix.lower()
+    if kind not in _BY_VTK + _BY_MESHIO:
+        known = ", ".join(end[1:].upper() for end in _BY_VTK + _BY_MESHIO)
+        raise BadInputError(f"{path.name}: this format holds no scalars; save the part with {name!r} as {known}")
+    points, fields = _by_vtk(path) if kind in _BY_VTK else _by_meshio(path)
+    if name not in fields:
+        there = ", ".join(sorted(fields)) or "none"
+        raise BadInputError(f"{path.name}: has no scalar {name!r}; it holds: {there}")
+    on_cells, values = fields[name]
+    places = on_cells if on_cells is not None else points
+    if len(values) != len(places) or not np.isfinite(values).all() or not np.isfinite(places).all():
+        raise BadInputError(f"{path.name}: scalar {name!r} is not one finite number a vertex or cell; mend it first")
+    return Scalars(frozen(places), frozen(values))
+
+
+_Fields = dict[str, tuple[Floats | None, Floats]]
+"""Per name the cells' middles, None for scalars of the points, and the values."""
+
+
+def _by_vtk(path: Path) -> tuple[Floats, _Fields]:
+    import pyvista
+
+    data = pyvista.read(path)
+    points = np.asarray(data.points, dtype=np.float64)
+    fields: _Fields = {}
+    middles = np.asarray(data.cell_centers().points, dtype=np.float64)
+    for name in data.cell_data:
+        _keep(fields, name, data.cell_data[name], middles)
+    for name in data.point_data:
+        _keep(fields, name, data.point_data[name], None)
+    return points, fields
+
+
+def _by_meshio(path: Path) -> tuple[Floats, _Fields]:
+    import meshio
+
+    mesh = meshio.read(path)
+    points = np.asarray(mesh.points, dtype=np.float64)
+    if points.shape[1] == 2:
+        points = np.column_stack([points, np.zeros(len(points))])
+    fields: _Fields = {}
+    if mesh.cells and all(isinstance(block.data, np.ndarray) and block.data.ndim == 2 for block in mesh.cells):
+        middles = np.concatenate([points[block.data].mean(axis=1) for block in mesh.cells])
+        for name, blocks in mesh.cell_data.items():
+            if all(np.ndim(values) == 1 for values in blocks):
+                _keep(fields, name, np.concatenate(blocks), middles)
+    for name, values in mesh.point_data.items():
+        _keep(fields, name, values, None)
+    return points, fields
+
+
+def _keep(fields: _Fields, name: str, values: object, places: Floats | None) -> None:
+    """Note a field if it is of single numbers."""
+    array = np.asarray(values)
+    if array.ndim == 1 and array.dtype.kind in "fiub":
+        fields[str(name)] = places, array.astype(np.float64)
