@@ -1,0 +1,68 @@
+"""Windings with few coarse paths: whether so many revolutions hold, and how much of the fibre bridges."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshwind.layup.families import families
+from meshwind.layup.lengths import lengths
+from meshwind.path import Paths, Status, solve
+from meshwind.path.batch import Setting, fresh
+from meshwind.path.friction import friction_of
+from meshwind.path.ladder import fewest, search
+from meshwind.path.solve import as_paths, straight
+from meshwind.surface.surface import Surface
+
+PATHS = 8
+"""Paths a family; the part turns by an eighth from one to the next."""
+_PARTICLES = 72
+"""Segments of a path at least: on a barrel the bound of revolutions comes out to 1e-3."""
+_TOLERANCE, _ITERATIONS = 1e-6, 150
+"""A path that is not all but at rest by then slides: waiting longer only costs."""
+_HOPELESS = 0.5
+"""Where more than this share of the paths does not settle at once, the others are not looked for either."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What became of a winding: shares of the paths at rest, and of their length that bridges; slid off each end."""
+
+    revolutions: float
+    at_rest: float
+    bridged: float
+    slid: tuple[int, int]
+
+    @property
+    def holds(self) -> bool:
+        """Whether every path is at rest."""
+        return self.at_rest == 1.0
+
+
+def trial(surface: Surface, revolutions: float, friction: float = 0.0, paths: int = PATHS) -> Trial:
+    """Wind both families with `paths` paths each, coarse ones, as the first rung of `solve` does."""
+    rims = families(surface, paths, revolutions)
+    setting = Setting(surface, friction_of(surface, friction), True, _TOLERANCE, _ITERATIONS)
+    curves = straight(rims.start, rims.end, 2)
+    batch = fresh(curves, max(_PARTICLES, fewest(curves)) + 1)
+    setting.run(batch, resume=False)
+    lost = float((batch.status != Status.CONVERGED).mean())
+    if 0.0 < lost <= _HOPELESS:
+        search(setting, batch)
+    return told(as_paths(setting, batch, rims.family), revolutions)
+
+
+def full_trial(surface: Surface, revolutions: float, friction: float, paths: int, particles: int) -> Trial:
+    """Wind both families as they are wound in earnest."""
+    rims = families(surface, paths, revolutions)
+    laid = solve(surface, rims.start, rims.end, particles=particles, family=rims.family, friction=friction)
+    return told(laid, revolutions)
+
+
+def told(laid: Paths, revolutions: float) -> Trial:
+    """The figures of paths that were wound by so many revolutions."""
+    figures = lengths(laid)
+    rest = laid.status == Status.CONVERGED
+    measured = rest if rest.any() else np.ones(len(laid), dtype=bool)
+    bridged = float(figures.bridged[measured].sum() / max(float(figures.length[measured].sum()), 1e-300))
+    slid = tuple(int((laid.status == end).sum()) for end in (Status.SLID_OFF_START, Status.SLID_OFF_END))
+    return Trial(float(revolutions), float(rest.mean()), bridged, (slid[0], slid[1]))
