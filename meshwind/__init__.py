@@ -27,7 +27,14 @@ if TYPE_CHECKING:
     from meshwind.output.image_files import read_image as read_image
     from meshwind.path import Paths as Paths
     from meshwind.path import Status as Status
+    from meshwind.path import Stop as Stop
+    from meshwind.path import Trace as Trace
+    from meshwind.path import drag as drag
     from meshwind.path import solve as solve
+    from meshwind.path import trace as trace
+    from meshwind.path import traces as traces
+    from meshwind.path.friction import Friction as Friction
+    from meshwind.path.friction import friction_from as friction_from
     from meshwind.pipeline import Result as Result
     from meshwind.pipeline import wind as wind
     from meshwind.surface import FitError as FitError
@@ -43,7 +50,9 @@ _HOME = {
     "Chart": "chart", "flatten": "chart",
     "Surface": "surface", "FitError": "surface", "fit": "surface", "shapes": "surface",
     "surface_image": "surface", "from_image": "surface", "read_image": "output.image_files",
-    "Paths": "path", "Status": "path", "solve": "path",
+    "Paths": "path", "Status": "path", "solve": "path", "drag": "path",
+    "trace": "path", "traces": "path", "Trace": "path", "Stop": "path",
+    "Friction": "path.friction", "friction_from": "path.friction",
     "Families": "layup", "Layup": "layup", "families": "layup", "assess": "layup",
     "Result": "pipeline", "wind": "pipeline",
 }  # fmt: skip

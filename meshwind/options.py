@@ -24,13 +24,12 @@ _MOST_CHOSEN = 1601
 class Options:
     """Options of a run; one that cannot be used raises BadInputError with its value and what it may be.
 
-    paths: a family; revolutions: turns from end to end; particles: a path,
-    None to have them chosen; friction: coefficient, or
-    "field:NAME" for a scalar of the mesh file; component: the
-    piece of the mesh by its rank of area; ends: "auto", "x", "y", "z", two points "x,y,z x,y,z" or two rims "loops
-    0 1"; opening: radius at a closed end in the mesh's units; tolerance:
-    largest distance of a vertex from the surface over the mesh's diagonal; worst_fit: largest distance between
-    surface and mesh over the diagonal that is wound at all; units: the name of the mesh's unit, "" if unknown.
+    paths: a family; revolutions: turns from end to end; particles: a path, None to have them chosen; friction:
+    coefficient, or "field:NAME" for a scalar of the mesh file; component: the piece of the mesh by its rank of
+    area; ends: "auto", "x", "y", "z", two points "x,y,z x,y,z" or two rims "loops 0 1"; opening: radius at a closed
+    end in the mesh's units; tolerance: largest distance of a vertex from the surface over the mesh's diagonal;
+    worst_fit: largest distance between surface and mesh over the diagonal that is wound at all; units: the name of
+    the mesh's unit, "" if unknown.
     """
 
     paths: int = 12

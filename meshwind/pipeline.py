@@ -125,12 +125,12 @@ def wind(
     """Lay two families of taut paths on a triangle mesh.
 
     mesh: a file or a `Mesh`; paths: a family; revolutions: turns from end to end; friction: coefficient, or
-    "field:NAME" for a scalar of the mesh file; component: which piece of a file, by its rank of area; ends: "auto", "x", "y", "z", two points "x,y,z
-    x,y,z" or two rims "loops 0 1"; opening: radius at a closed end in the mesh's units; tolerance: largest distance
-    of a vertex from the surface over the mesh's diagonal; worst_fit: largest distance between surface and mesh,
-    over the diagonal, that is wound at all; units: the name of the mesh's unit, "" if unknown; particles: a path,
-    None for as many as lengths right to 1e-5 need; out: folder for the files; render: draw the pictures as well.  Raises BadInputError, in one line, for whatever
-    the caller can mend.
+    "field:NAME" for a scalar of the mesh file; component: which piece of a file, by its rank of area; ends: "auto",
+    "x", "y", "z", two points "x,y,z x,y,z" or two rims "loops 0 1"; opening: radius at a closed end in the mesh's
+    units; tolerance: largest distance of a vertex from the surface over the mesh's diagonal; worst_fit: largest
+    distance between surface and mesh, over the diagonal, that is wound at all; units: the name of the mesh's unit,
+    "" if unknown; particles: a path, None for as many as lengths right to 1e-5 need; out: folder for the files;
+    render: draw the pictures as well. Raises BadInputError, in one line, for whatever the caller can mend.
     """
     options = Options(paths, revolutions, particles, friction, component, ends, opening, tolerance, worst_fit, units)
     if not isinstance(mesh, str | PathLike | Mesh):
@@ -160,7 +160,7 @@ def wind(
             rims.end,
             family=rims.family,
             particles=options.particles,
-            friction=rough if rough is not None else options.friction,
+            friction=rough if rough is not None else float(options.friction),
         )
     with clock.stage("assess"):
         layup = assess(laid)

@@ -12,7 +12,6 @@ from meshwind.path.relax import LIFTED, PULL, relax_all
 from meshwind.surface.surface import Surface
 from meshwind.threads import spread
 
-
 NO_TREE = frozen(np.empty((0, 6))), frozen(np.empty((0, 3), np.int64))
 """Read-only as the tree itself, so that kernels compile once."""
 
@@ -109,8 +108,21 @@ class Setting:
         boxes, levels = surface.tree if tree else NO_TREE
         pull_off = PULL if self.bridging else np.inf
         part = batch if len(index) == len(batch) else batch.rows(index)
-        before = None if tree else (part.X.copy(), part.uv.copy(), part.touching.copy(), part.place.copy(), part.mode.copy())
-        general = surface.net, surface.periodic, boxes, levels, surface.size, pull_off, self.tolerance, self.iterations, resume, self.final
+        before = (
+            None if tree else (part.X.copy(), part.uv.copy(), part.touching.copy(), part.place.copy(), part.mode.copy())
+        )
+        general = (
+            surface.net,
+            surface.periodic,
+            boxes,
+            levels,
+            surface.size,
+            pull_off,
+            self.tolerance,
+            self.iterations,
+            resume,
+            self.final,
+        )
         places = part.X, part.uv, part.normal, part.touching, part.gap, part.slip
         results = part.residual, part.status, part.tallies
         if self.friction.none:

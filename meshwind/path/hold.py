@@ -15,7 +15,15 @@ from meshwind.path.contact import lift, link
 from meshwind.path.coulomb import HELD, STUCK, across, curve_at, differentiate, dot, nearest_on, weigh
 from meshwind.path.newton import EVALUATIONS, ITERATIONS, SOLVES, carry_lifted, sag
 from meshwind.path.relax import (
-    CONVERGED, DESCENT, LIFTED, LONGEST_MOVE, SLID_END, SLID_START, certify, failure, take_up,
+    CONVERGED,
+    DESCENT,
+    LIFTED,
+    LONGEST_MOVE,
+    SLID_END,
+    SLID_START,
+    certify,
+    failure,
+    take_up,
 )  # fmt: skip
 from meshwind.path.state import blank, copy, copy_particle, energy, touch_down
 from meshwind.surface.evaluate import SU, SV
@@ -29,7 +37,7 @@ SETTLE = 1e-9
 @njit(cache=True)
 def slide(net, periodic, step, move, contacts, count, curve, balance, state, grip, trial, after_grip, size, tally):
     """Write into `trial` the touching particles moved by step * move: along the curve if stuck, freely if slipping."""
-    X, uv, frames = state[0], state[1], state[2]
+    uv = state[1]
     place, offset, mode = grip
     place_t, offset_t, mode_t = after_grip
     ways = balance[3]
@@ -217,7 +225,9 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
         if accepted:
             for i in range(1, n - 1):
                 if trial[4][i] and not touching[i]:  # landed: where on the starting curve, and on which side of it
-                    after_grip[0][i] = min(max(0.5 * (after_grip[0][i - 1] + after_grip[0][i + 1]), 0.0), len(curve) - 1)
+                    after_grip[0][i] = min(
+                        max(0.5 * (after_grip[0][i - 1] + after_grip[0][i + 1]), 0.0), len(curve) - 1
+                    )
                     locate(curve, i, trial, after_grip, size)
                     d = after_grip[1][i]
                     after_grip[2][i] = np.int8(STUCK if d == 0.0 else (-1 if d > 0.0 else 1))
@@ -239,8 +249,8 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
 
 @njit(nogil=True, cache=True)
 def hold_all(
-    first, last, net, periodic, boxes, levels, size, pull_off, tolerance, limit, resume, final, table, starts, place, mode,
-    X, uv, normal, touching, gap, slip, residual, status, tallies,
+    first, last, net, periodic, boxes, levels, size, pull_off, tolerance, limit, resume, final,
+    table, starts, place, mode, X, uv, normal, touching, gap, slip, residual, status, tallies,
 ):  # fmt: skip
     """Bring paths first to last to rest under friction: from their starting curves, or with `resume` as they are."""
     n = uv.shape[1]

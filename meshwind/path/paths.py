@@ -27,8 +27,8 @@ _ADVICE = {
     Status.CONVERGED: "taut equilibrium",
     Status.SLID_OFF_START: "the fibre slides off the start rim (v=0): use fewer revolutions, or a wider opening there",
     Status.SLID_OFF_END: "the fibre slides off the end rim (v=1): use fewer revolutions, or a wider opening there",
-    Status.UNSTABLE: "no stable path: the fibre is balanced on a ridge and falls off it (a conjugate point, or windings "
-    "too long for the bulge): use fewer revolutions",
+    Status.UNSTABLE: "no stable path: the fibre is balanced on a ridge and falls off it (a conjugate point, or "
+    "windings too long for the bulge): use fewer revolutions",
     Status.LEFT_CHART: "the fibre slides off an open edge of the surface (u=0 or u=1): move the ends away from it",
     Status.STALLED: "the solver stopped before the fibre was at rest: use fewer revolutions, or a smoother surface "
     "(--tolerance 1e-3)",

@@ -8,8 +8,9 @@ from numba import njit
 def refine_all(first, last, X, uv, touching, gap, place, mode, X2, uv2, touching2, gap2, place2, mode2):
     """Resample paths first to last evenly by index.
 
-    Parameters are cubic where four neighbours touch and linear elsewhere; a particle between a touching and a lifted
-    one is lifted, on their chord, its gap bounded by theirs, which no gap can differ from by more than the way; places on the starting curve are linear, modes those of the nearest particle.
+    Parameters are cubic where four neighbours touch and linear elsewhere.  A particle between a touching and a lifted
+    one is lifted, on their chord, its gap bounded from theirs: a gap changes by no more than the way.  Places on the
+    starting curve are linear, modes those of the nearest particle.
     """
     m, n = X.shape[1], X2.shape[1]
     for p in range(first, last):

@@ -33,7 +33,9 @@ def touchdowns(paths: Paths, path: Ints, first: Ints, last: Ints) -> tuple[Float
         along = chord - dip[:, None] * normal
         rate = _rates(frames, along)
         form = np.einsum("bak,bk->ba", frames[:, 3:], normal)
-        press = -(form[:, 0] * rate[:, 0] ** 2 + 2 * form[:, 1] * rate[:, 0] * rate[:, 1] + form[:, 2] * rate[:, 1] ** 2)
+        press = -(
+            form[:, 0] * rate[:, 0] ** 2 + 2 * form[:, 1] * rate[:, 0] * rate[:, 1] + form[:, 2] * rate[:, 1] ** 2
+        )
         spacing = far / np.maximum(np.abs(there - here), 1)
         step = np.divide(-dip, press, out=np.zeros_like(dip), where=press > 0)
         free = (here > 0) & (here < n - 1) & (np.abs(step) <= FARTHEST * spacing)

@@ -1,0 +1,104 @@
+"""Moving ends (Fig. 7.1): a fibre dragged over the surface, slowly enough to be at rest in every frame.
+
+Each frame starts from the answer of the one before; with friction that answer is also the curve to which the next
+frame's friction holds, so that the fibre remembers its way.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from meshwind.cast import Floats, floats
+from meshwind.errors import BadInputError
+from meshwind.path.batch import Batch, Setting, fresh
+from meshwind.path.friction import Friction, friction_of
+from meshwind.path.ladder import failing
+from meshwind.path.paths import Paths
+from meshwind.path.solve import ITERATIONS, TOLERANCE, as_paths, straight
+from meshwind.surface.surface import Surface
+
+LONGEST_STEP = 0.02
+"""Largest move of an end in u or v at a time; longer ones between frames are divided."""
+HALVINGS = 5
+"""Times that a step is halved where the fibre does not follow."""
+
+
+def drag(
+    surface: Surface,
+    start: ArrayLike,
+    end: ArrayLike,
+    *,
+    particles: int = 201,
+    friction: "float | Friction | Callable[[Floats], Floats] | Floats" = 0.0,
+    initial: ArrayLike | None = None,
+    bridging: bool = True,
+    tolerance: float = TOLERANCE,
+    iterations: int = ITERATIONS,
+) -> Paths:
+    """Drag one fibre by its ends along start and end (f, 2), parametric; returns one path a frame (f of them).
+
+    initial (k, 2): the curve on which it lies before the first frame, straight in (u, v) by default.  bridging:
+    whether the fibre can leave the surface, and so jump over what is lower than it.  The rest as for `solve`.  A frame
+    in which the fibre cannot come to rest has a status other than CONVERGED, and the next starts where that one ended.
+    """
+    first, last = floats(start, "start", -1, 2), floats(end, "end", -1, 2)
+    if len(first) != len(last) or not len(first):
+        raise BadInputError(f"{len(first)} places of the start but {len(last)} of the end; give one of each a frame")
+    if particles < 3:
+        raise BadInputError(f"particles is {particles}; give a whole number, at least 3")
+    setting = Setting(surface, friction_of(surface, friction), bridging, tolerance, iterations)
+    curve = straight(first[:1], last[:1], 2) if initial is None else floats(initial, "initial", -1, 2)[None]
+    state = fresh(curve, particles)
+    setting.run(state, resume=False)
+    frames = [state]
+    for k in range(1, len(first)):
+        frames.append(_advance(setting, frames[-1], first[k], last[k]))
+    arrays: dict[str, Any] = {name: _join([getattr(f, name) for f in frames]) for name in _RESULTS}
+    joined = Batch(**arrays)
+    return as_paths(setting, joined, np.where(last[:, 0] >= first[:, 0], 1, -1))
+
+
+_RESULTS = tuple(Batch.__dataclass_fields__)
+
+
+def _join(arrays: list[Floats]) -> Floats:
+    """One array of all frames; starting curves, of different lengths, are left out."""
+    if len({array.shape for array in arrays}) > 1:
+        return np.empty((len(arrays), 2, 2))
+    return np.concatenate(arrays)
+
+
+def _advance(setting: Setting, state: Batch, start: Floats, end: Floats) -> Batch:
+    """The fibre at rest with its ends at `start` and `end` (2,), moved there in steps that it can follow."""
+    here = np.stack([state.uv[0, 0], state.uv[0, -1]])
+    goal = np.stack([start, end])
+    steps = max(1, int(np.ceil(np.abs(goal - here).max() / LONGEST_STEP)))
+    cost = np.zeros_like(state.tallies)
+    done, step, halvings = 0.0, 1.0 / steps, 0
+    while done < 1.0:
+        share = min(done + step, 1.0)
+        trial = _moved(state, here + share * (goal - here), setting.friction.none)
+        setting.run(trial, resume=True)
+        cost += trial.tallies
+        if failing(trial)[0] and halvings < HALVINGS:
+            step, halvings = 0.5 * step, halvings + 1
+            continue
+        state, done = trial, share
+    result = replace(state)
+    result.tallies[:] = cost
+    return result
+
+
+def _moved(state: Batch, ends: Floats, smooth: bool) -> Batch:
+    """A copy with new ends (2, 2), at rest nowhere yet; with friction it starts from where the fibre lies now."""
+    trial = state.rows(np.zeros(1, np.int64))
+    trial.tallies[:] = 0
+    trial.uv[0, 0], trial.uv[0, -1] = ends
+    if not smooth:
+        trial.starts = trial.uv.copy()
+        trial.place[0] = np.arange(trial.uv.shape[1])
+        trial.mode[:] = 0
+    return trial
