@@ -6,7 +6,8 @@ from layup_shapes import HEIGHT, cylinder, helices, revolved, waisted
 
 from meshwind.cast import Floats
 from meshwind.layup.layup import assess
-from meshwind.output.maps import grid, maps, principal_curvatures, windability
+from meshwind.layup.windability import of_frames
+from meshwind.output.maps import grid, maps
 from meshwind.output.winding_angle import winding_angle
 from meshwind.surface.surface import Surface
 
@@ -24,26 +25,18 @@ def waist_curvatures(v: Floats) -> tuple[Floats, Floats]:
 def test_curvatures_of_a_waist() -> None:
     on = grid(waisted())
     hoop, meridian = waist_curvatures(on.uv[:, 1])
-    _, k1, k2 = principal_curvatures(on.frames)
+    press = of_frames(on.frames, 0.0)
+    k1, k2 = press.largest, press.smallest
     assert np.abs(k1 - np.maximum(hoop, meridian)).max() < 0.02
     assert np.abs(k2 - np.minimum(hoop, meridian)).max() < 0.02
 
 
 def test_curvatures_of_a_cylinder_and_their_sign() -> None:
-    normal, k1, k2 = principal_curvatures(grid(cylinder()).frames)
+    press = of_frames(grid(cylinder()).frames, 0.0)
+    normal, k1, k2 = press.normal, press.largest, press.smallest
     assert k1 == pytest.approx(np.ones(len(k1)), abs=1e-4)
     assert np.abs(k2).max() < 1e-4
     assert np.abs(normal[:, 2]).max() < 1e-9
-
-
-def test_windability_is_the_share_of_pressing_directions() -> None:
-    rng = np.random.default_rng(3)
-    low, high = np.sort(rng.uniform(-1.0, 1.0, (2, 50)), axis=0)
-    turn = (np.arange(20000) + 0.5) / 20000 * np.pi
-    share = (high[:, None] * np.cos(turn) ** 2 + low[:, None] * np.sin(turn) ** 2 > 0.0).mean(axis=1)
-    assert np.abs(windability(high, low, 0.0) - share).max() < 1e-3
-    ends = windability(np.array([1.0, 1.0, -1.0, 1.0]), np.array([0.5, 0.0, -2.0, -1.0]), 1e-9)
-    assert ends == pytest.approx([1.0, 1.0, 0.0, 0.5])
 
 
 def test_class_and_windability_of_a_waist() -> None:
