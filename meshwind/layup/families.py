@@ -35,15 +35,15 @@ def families(surface: Surface, paths: int, revolutions: float) -> Families:
     if not (np.isfinite(revolutions) and revolutions >= 0):
         raise BadInputError(f"revolutions is {revolutions}; give a number >= 0")
     turn = np.arange(paths) / paths
-    first = _places(surface, 0.0, turn)
+    first = places(surface, 0.0, turn)
     start = np.stack([first, np.zeros(paths)], axis=1)
-    ends = [np.stack([_places(surface, 1.0, turn + r), np.ones(paths)], axis=1) for r in (revolutions, -revolutions)]
+    ends = [np.stack([places(surface, 1.0, turn + r), np.ones(paths)], axis=1) for r in (revolutions, -revolutions)]
     family = np.repeat([1, -1], paths)
     return Families(frozen(np.concatenate([start, start])), frozen(np.concatenate(ends)), frozen(family))
 
 
-def _places(surface: Surface, v: float, turn: Floats) -> Floats:
-    """The u on the rim v at the given shares of its length, unwrapped, without a mean shift against u."""
+def places(surface: Surface, v: float, turn: Floats) -> Floats:
+    """The u on the rim v at the given shares (n,) of its length, unwrapped, without a mean shift against u."""
     u = np.linspace(0.0, 1.0, SAMPLES * surface.spans[0] + 1)
     speed = np.linalg.norm(surface.frames(np.stack([u, np.full_like(u, v)], axis=1))[:, 1], axis=1)
     speed[-1] = speed[0]
