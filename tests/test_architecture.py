@@ -18,6 +18,7 @@ ORDER = [
     "path",
     "methods",
     "layup",
+    "redesign",
     "output",
     "options",
     "notes",
