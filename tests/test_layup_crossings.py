@@ -1,11 +1,15 @@
 """Crossings on a cylinder, where straight lines in (u, v) are geodesics and every answer is known."""
 
+from time import perf_counter
+
 import numpy as np
 import pytest
 from layup_shapes import HEIGHT, bridged, cylinder, drawn, helices, straight_uv
 
 from meshwind.cast import Floats
-from meshwind.layup.crossings import crossings
+from meshwind.layup.crossings import counts, crossings, own_crossings
+from meshwind.path.paths import Paths
+from meshwind.surface import shapes
 
 CYLINDER = cylinder()
 CASES = [  # paths per family, revolutions, particles
@@ -127,3 +131,87 @@ def test_order_of_the_paths_does_not_matter() -> None:
     shuffled = drawn(CYLINDER, np.asarray(paths.uv[order]), paths.family[order])
     assert matched(crossings(shuffled).uv, crossings(paths).uv) < 1e-12
     assert len(crossings(shuffled)) == len(crossings(paths))
+
+
+def cone_geodesics(count: int, twist: float, particles: int) -> tuple[Paths, float, float]:
+    """Both families of geodesics on the cone r = 1 - z / 6, z in [0, 3], which unrolls to a sector: straight there.
+
+    Returns the drawn paths, the sine of the cone's half angle and the geodesic's distance from the apex.
+    """
+    surface = shapes.cone(1.0, 0.5, 3.0, (512, 8))
+    slant = np.hypot(3.0, 0.5)
+    sine = 0.5 / slant
+    far, near = 1.0 / sine, 0.5 / sine
+    ends = far * np.array([1.0, 0.0]), near * np.array([np.cos(twist * sine), np.sin(twist * sine)])
+    t = np.linspace(0.0, 1.0, particles)[:, None]
+    line = (1.0 - t) * ends[0] + t * ends[1]
+    u = np.arctan2(line[:, 1], line[:, 0]) / sine / (2.0 * np.pi)
+    v = (far - np.linalg.norm(line, axis=1)) / slant
+    start = np.tile(np.arange(count) / count, 2)[:, None]
+    family = np.repeat([1.0, -1.0], count)
+    uv = np.stack([start + family[:, None] * u, np.broadcast_to(v, (2 * count, particles))], axis=2)
+    along = ends[1] - ends[0]
+    square = float(abs(ends[0][0] * along[1] - ends[0][1] * along[0]) / np.linalg.norm(along))
+    return drawn(surface, np.ascontiguousarray(uv), family), sine, square
+
+
+@pytest.mark.parametrize(("count", "twist"), [(8, 2.0), (12, 5.0)])
+def test_crossings_on_a_cone(count: int, twist: float) -> None:
+    paths, sine, square = cone_geodesics(count, twist, 801)
+    found = crossings(paths)
+    # path i of +1 meets path j of -1 half way between their starts: at a turn of (j - i) / 2 N from its own
+    half = np.mod(found.path_b - count - found.path_a, count) / (2.0 * count)
+    turned = half + 0.5 * np.round((np.mod(found.uv[:, 0] - found.path_a / count, 1.0) - half) * 2.0)
+    off = found.uv[:, 0] - found.path_a / count - turned
+    assert np.abs(off - np.round(2.0 * off) / 2.0).max() < 1e-9
+    angle = turned * 2.0 * np.pi * sine  # in the sector, from the start
+    far = 1.0 / sine
+    lean = np.arcsin(square / far)  # of the line against the radius at its start
+    radius = square / np.sin(np.pi - lean - angle)
+    assert np.abs(found.uv[:, 1] - (far - radius) / np.hypot(3.0, 0.5)).max() < 1e-9
+    exact = np.stack([np.cos(2 * np.pi * found.uv[:, 0]), np.sin(2 * np.pi * found.uv[:, 0])], axis=1)
+    assert np.abs(found.points[:, :2] - (radius * sine)[:, None] * exact).max() < 1e-9
+    # Clairaut: the angle to the meridian has sine square / radius; the families cross at twice that
+    between = 2.0 * np.arcsin(square / radius)
+    assert np.abs(found.angle - np.minimum(between, np.pi - between)).max() < 1e-7
+    reach = int(np.ceil(2.0 * count * twist / (2.0 * np.pi) - 1e-9)) - 1
+    assert len(found) == count * reach
+
+
+def test_fibres_that_cross_their_own_family_are_noticed() -> None:
+    uv, family = straight_uv(8, 1.0, 201)
+    assert len(own_crossings(drawn(CYLINDER, uv, family))) == 0
+    uv[2, :, 0] += 0.3 * np.sin(np.pi * uv[2, :, 1])  # over its two neighbours and back
+    pairs = own_crossings(drawn(CYLINDER, uv, family))
+    assert sorted(map(tuple, pairs.tolist())) == [(2, 3), (2, 3), (2, 4), (2, 4)]
+    uv, family = straight_uv(8, 1.0, 201)
+    turn = np.linspace(0.0, 2.0 * np.pi, 21)
+    uv[5, 90:111] = uv[5, 100] + 0.02 * np.column_stack([np.sin(turn), 1.0 - np.cos(turn)]) + [0.0, -0.001]
+    looped = own_crossings(drawn(CYLINDER, uv, family))
+    assert (looped == 5).all() and len(looped) >= 1
+    assert len(own_crossings(drawn(CYLINDER, uv, family), np.arange(16) != 5)) == 0
+
+
+def test_counts_a_region_add_up() -> None:
+    found = crossings(helices(8, 1.0, 101, CYLINDER))
+    held = counts(found, 4, 5)
+    assert held.shape == (4, 5)
+    assert held.sum() == len(found)
+    assert (held.sum(axis=1) == len(found) // 4).all()
+    assert counts(found, 1, 2).tolist() == [[56, 64]]  # the row half way up counts above
+
+
+def test_cost_grows_with_crossings_not_with_pairs() -> None:
+    """As many crossings of four times the paths: comparing pairs of segments would take 16 times as long."""
+
+    def seconds(count: int) -> float:
+        paths = helices(count, 8000.0 / count**2, 201, CYLINDER)
+        assert 14000 < len(crossings(paths)) < 17000
+        best = np.inf
+        for _ in range(3):
+            start = perf_counter()
+            crossings(paths)
+            best = min(best, perf_counter() - start)
+        return float(best)
+
+    assert seconds(1600) < 9.0 * seconds(400) + 0.05

@@ -1,11 +1,12 @@
 """Where paths of one family cross those of the other, found in the (u, v) plane with u periodic."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from meshwind.cast import Bools, Floats, Ints, frozen
 from meshwind.layup.segments import meetings
+from meshwind.layup.sharpen import sharpened
 from meshwind.path.paths import Paths
 
 SHARED = 4e-9
@@ -20,7 +21,7 @@ _SAME = 1e-6
 class Crossings:
     """The k crossings of family +1 (path_a) with family -1 (path_b), ordered by path_a, then along it.
 
-    path_a, path_b (k,) indices of paths; t_a, t_b (k,) positions along them as fractional particle indices;
+    path_a, path_b (k,) indices of paths; t_a, t_b (k,) where their chords cross, as fractional particle indices;
     sense (k,) +1 where b passes a to its left in (u, v), else -1; uv (k, 2) with u in [0, 1); angle (k,) in
     radians, 0 to pi/2; points (k, 3) on the surface, or midway between the two fibres where either bridges;
     on_surface (k,) where neither bridges; compared (p,) the paths that took part.
@@ -51,8 +52,11 @@ def crossings(paths: Paths, among: Bools | None = None) -> Crossings:
     inner = ~_at_shared_end(paths, a, b, t_a, t_b)
     a, b, t_a, t_b, sense = a[inner], b[inner], t_a[inner], t_b[inner], sense[inner]
     strands = [_Strand.at(paths, a, t_a), _Strand.at(paths, b, t_b)]
-    frames = paths.surface.frames(strands[0].uv)
     on_surface = strands[0].on_surface & strands[1].on_surface
+    sharp, *along, holds = sharpened(paths, a, b, t_a, t_b)
+    holds &= on_surface & (np.abs(sharp[:, 1] - 0.5) <= 0.5)
+    strands = [strand.on_curve(sharp, step, holds) for strand, step in zip(strands, along, strict=True)]
+    frames = paths.surface.frames(strands[0].uv)
     midway = 0.5 * (strands[0].points + strands[1].points)
     angle = _angle(*(strand.tangent(frames) for strand in strands))
     uv = strands[0].uv - np.floor(strands[0].uv) * [1.0, 0.0]
@@ -78,6 +82,29 @@ def meet(paths: Paths, first: Bools, second: Bools) -> tuple[Ints, Ints, Floats,
     order = np.flatnonzero(new)
     order = order[np.lexsort((t_a[order], a[order]))]
     return a[order], b[order], t_a[order], t_b[order], sign[order].astype(np.int64)
+
+
+def own_crossings(paths: Paths, among: Bools | None = None) -> Ints:
+    """Pairs (k, 2) of paths of one family that cross each other, or of a path with itself; one row a crossing.
+
+    Fibres of a family should not cross: one that does lies under or over its neighbour, and leaves the quad mesh.
+    """
+    compared = np.ones(len(paths), dtype=bool) if among is None else np.asarray(among, dtype=bool)
+    pairs = [np.zeros((0, 2), dtype=np.int64)]
+    for family in (1, -1):
+        mine = compared & (paths.family == family)
+        a, b, t_a, t_b, _ = meet(paths, mine, mine)
+        inner = ~_at_shared_end(paths, a, b, t_a, t_b)
+        apart = (a < b) | ((a == b) & (t_b - t_a > 0.5))  # neighbours on one path share a particle
+        pairs.append(np.stack([a, b], axis=1)[apart & inner])
+    return np.concatenate(pairs)
+
+
+def counts(crossings: Crossings, around: int, along: int) -> Ints:
+    """Number of crossings (around, along) in each of the equal regions of the (u, v) rectangle."""
+    u = np.minimum((crossings.uv[:, 0] * around).astype(np.int64), around - 1)
+    v = np.clip((crossings.uv[:, 1] * along).astype(np.int64), 0, along - 1)
+    return np.bincount(u * along + v, minlength=around * along).reshape(around, along)
 
 
 def _segments(paths: Paths, mask: Bools) -> tuple[Ints, Floats]:
@@ -134,6 +161,11 @@ class _Strand:
             chord=paths.points[path, k + 1] - paths.points[path, k],
             on_surface=paths.on_surface[path, k] & paths.on_surface[path, k + 1],
         )
+
+    def on_curve(self, uv: Floats, duv: Floats, where: Bools) -> "_Strand":
+        """The strand with a better place and direction where there is one."""
+        mask = where[:, None]
+        return replace(self, uv=np.where(mask, uv, self.uv), duv=np.where(mask, duv, self.duv))
 
     def tangent(self, frames: Floats) -> Floats:
         """The fibre's direction: in the tangent plane where it touches, along its chord where it bridges."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.cast import Bools, Floats, Ints, frozen
-from meshwind.layup.crossings import SHARED, Crossings, meet
+from meshwind.layup.crossings import SHARED, Crossings, own_crossings
 from meshwind.layup.faces import trace
 from meshwind.layup.polygons import split
 from meshwind.path.paths import Paths
@@ -88,12 +88,7 @@ def _spans_the_part(paths: Paths) -> Bools:
 
 def _cross_their_own(paths: Paths, kept: Bools) -> Bools:
     """The fewest paths, picked greedily, without which no path crosses itself or its own family."""
-    pairs = np.zeros((0, 2), dtype=np.int64)
-    for family in (1, -1):
-        mine = kept & (paths.family == family)
-        a, b, t_a, t_b, _ = meet(paths, mine, mine)
-        apart = (a < b) | ((a == b) & (t_b - t_a > 0.5))  # neighbours on one path share a particle
-        pairs = np.concatenate([pairs, np.stack([a, b], axis=1)[apart]])
+    pairs = own_crossings(paths, kept)
     pairs = np.unique(pairs, axis=0)
     out = np.zeros(len(paths), dtype=bool)
     while len(pairs):
