@@ -1,0 +1,209 @@
+"""What the work-precision diagrams say in figures: who is beaten where, by how much, and what fails."""
+
+from collections.abc import Sequence
+from statistics import median
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from charts.record import Results
+from charts.style import LOOKS, save
+from charts.work_precision import Point, cannot, front
+from meshwind.methods.problems import TABLE
+
+OURS = "meshwind"
+NOISE = 1.1
+"""A time counts as shorter if it is by this factor: repeats on a shared machine agree no better."""
+ERRORS = (1e-4, 1e-6, 1e-8)
+
+
+def of(points: Sequence[Point], problem: str, method: str) -> list[Point]:
+    """The settings of a method on a problem that came to rest."""
+    return [p for p in points if p.problem == problem and p.method == method and p.result == "ok"]
+
+
+def beaten(points: Sequence[Point], cost: str = "seconds") -> list[dict[str, Any]]:
+    """Rungs of ours on which another method is both cheaper and more accurate, the worst such case of each."""
+    rows = []
+    for problem in dict.fromkeys(p.problem for p in points):
+        for mine in front(of(points, problem, OURS), cost):
+            better = [
+                p
+                for p in points
+                if p.problem == problem
+                and p.method != OURS
+                and p.result == "ok"
+                and p.error <= mine.error
+                and (cost == "seconds" or p.evaluations)
+                and NOISE * getattr(p, cost) < getattr(mine, cost)
+            ]
+            if better:
+                worst = min(better, key=lambda p: getattr(p, cost))
+                rows.append(
+                    dict(
+                        problem=problem,
+                        cost=cost,
+                        particles=mine.size,
+                        setting=mine.setting,
+                        ours=getattr(mine, cost),
+                        our_error=mine.error,
+                        by=worst.method,
+                        its_setting=worst.setting,
+                        its_size=worst.size,
+                        its=getattr(worst, cost),
+                        its_error=worst.error,
+                        factor=getattr(mine, cost) / getattr(worst, cost),
+                    )
+                )
+    return rows
+
+
+def ratios(points: Sequence[Point]) -> list[dict[str, Any]]:
+    """Time of each method over ours at equal error: at each point of its front, the quickest of ours as accurate."""
+    rows = []
+    for problem in dict.fromkeys(p.problem for p in points):
+        ours = of(points, problem, OURS)
+        for method in LOOKS:
+            found = []
+            for p in front(of(points, problem, method), "seconds"):
+                mine = [q for q in ours if q.error <= p.error]
+                if mine:
+                    found.append((p.error, p.seconds / min(q.seconds for q in mine)))
+            if found and method != OURS:
+                row: dict[str, Any] = dict(
+                    problem=problem,
+                    method=method,
+                    rungs=len(found),
+                    least=min(r for _, r in found),
+                    middle=median(r for _, r in found),
+                    most=max(r for _, r in found),
+                )
+                rows.append(row | {f"at {e:g}": at_error(points, problem, method, e) for e in ERRORS})
+    return rows
+
+
+def at_error(points: Sequence[Point], problem: str, method: str, error: float) -> float | None:
+    """Seconds of a method over ours, each the quickest setting with at most this error; None where one has none."""
+    times = [min((p.seconds for p in of(points, problem, m) if p.error <= error), default=None) for m in (method, OURS)]
+    return None if times[0] is None or times[1] is None else times[0] / times[1]
+
+
+def failures(points: Sequence[Point]) -> list[dict[str, Any]]:
+    """Settings tried and how each ended, by problem and method; with why where a method cannot."""
+    rows = []
+    for problem in dict.fromkeys(p.problem for p in points):
+        for method in LOOKS:
+            mine = [p for p in points if p.problem == problem and p.method == method]
+            why = cannot(TABLE[problem], method)
+            count = {
+                key: sum(p.result == key for p in mine) for key in ("ok", "wrong", "refused", "stalled", "diverged")
+            }
+            rows.append(dict(problem=problem, method=method, tried=len(mine), **count, cannot=why or ""))
+    return rows
+
+
+def draw_failures(results: Results, rows: Sequence[dict[str, Any]]) -> None:
+    """A table as a picture: settings that failed, of those tried, by method and problem."""
+    problems = list(dict.fromkeys(row["problem"] for row in rows))
+    methods = list(LOOKS)
+    share = np.full((len(methods), len(problems)), np.nan)
+    figure, axes = plt.subplots(figsize=(1.0 + 0.72 * len(problems) + 3, 0.42 * len(methods) + 2.2))
+    words = {
+        "no friction": "no\nfriction",
+        "stays on the surface": "cannot\nbridge",
+        "finds the shortest path, not one of several turns": "shortest\nonly",
+    }
+    for row in rows:
+        i, j = methods.index(row["method"]), problems.index(row["problem"])
+        failed = row["tried"] - row["ok"]
+        if row["cannot"] or not row["tried"]:
+            axes.text(
+                j, i, words.get(row["cannot"], "not\ntried"), ha="center", va="center", fontsize=5.5, color="#888888"
+            )
+            continue
+        share[i, j] = failed / row["tried"]
+        axes.text(
+            j,
+            i,
+            f"{failed}/{row['tried']}",
+            ha="center",
+            va="center",
+            fontsize=7,
+            color="white" if share[i, j] > 0.6 else "black",
+        )
+    axes.imshow(share, cmap="Blues", vmin=0, vmax=1.1, aspect="auto")
+    axes.set_xticks(range(len(problems)), problems, rotation=45, ha="right")
+    axes.set_yticks(range(len(methods)), [LOOKS[m].label for m in methods])
+    axes.grid(visible=False)
+    axes.set_title(
+        "Settings that failed (diverged, not at rest within the step budget, or wrong by over 30 %), of those tried"
+    )
+    save(figure, results.folder, "failures")
+
+
+CAPABILITIES = (
+    # method, several turns, bridging, friction, ends within a facet, path, certificate
+    ("meshwind", "yes", "yes", "yes, Coulomb's law", "a surface: any point", "residual and status"),
+    (
+        "backward-euler",
+        "yes",
+        "yes, with (5.2)'s weights; Algorithm 1's test chatters",
+        "roughly, depends on the step (4.19)",
+        "a surface: any point",
+        "residual",
+    ),
+    ("backward-euler-reuse", "yes", "as backward Euler", "as backward Euler", "a surface: any point", "residual"),
+    ("explicit-euler", "yes", "yes", "yes (4.19)", "a surface: any point", "residual"),
+    ("symplectic-euler", "yes", "yes", "yes (4.19)", "a surface: any point", "residual"),
+    ("rk4", "yes", "yes", "yes (4.19)", "a surface: any point", "residual"),
+    ("kkt", "yes", "yes", "no", "a surface: any point", "residual"),
+    ("penalty", "yes", "yes, floating by its width", "no", "a surface: any point", "residual"),
+    ("flipout", "yes, by way points", "no: stays on the facets", "no", "vertices only", "none"),
+    (
+        "mmp-pygeodesic",
+        "no: the shortest only",
+        "no: stays on the facets",
+        "no",
+        "vertices only",
+        "exact on the facets",
+    ),
+    (
+        "mmp-libigl",
+        "no: the shortest only",
+        "no: stays on the facets",
+        "no",
+        "vertices or faces; no path",
+        "exact on the facets",
+    ),
+    (
+        "shooting-dop853",
+        "yes, ill-conditioned with length",
+        "no",
+        "only where told what slips which way",
+        "a surface: any point",
+        "miss of the end",
+    ),
+    (
+        "shooting-trace",
+        "yes, ill-conditioned with length",
+        "no",
+        "only where told what slips which way",
+        "a surface: any point",
+        "miss of the end",
+    ),
+    (
+        "collocation",
+        "yes",
+        "no",
+        "only where told what slips which way",
+        "a surface: any point",
+        "residual; not stability",
+    ),
+)
+
+
+def capabilities() -> list[dict[str, str]]:
+    """The table of who can do what."""
+    heads = ("several turns", "bridging", "friction", "ends", "certificate")
+    return [dict(zip(("method", *heads), (LOOKS[m].label, *rest), strict=True)) for m, *rest in CAPABILITIES]

@@ -1,0 +1,75 @@
+"""Maps of success and failure: a coloured cell a setting, with a sign for readers who see no colours."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.patches import Patch
+
+from charts.style import CLASSES, SIGNS
+from meshwind.methods.attempt import Attempt, Outcome
+
+KEYS = list(CLASSES)
+SHADES = ListedColormap(["#BFE3D5" if key == "ok" else colour for key, (_, colour) in CLASSES.items()])
+
+
+def classify(found: Attempt, error: float, allowed: float) -> str:
+    """Class of an attempt: at rest with an error above `allowed` is a wrong answer that nobody notices."""
+    if found.outcome == Outcome.REST:
+        return "ok" if error <= allowed else "wrong"
+    return {Outcome.STALLED: "stalled", Outcome.DIVERGED: "diverged"}.get(found.outcome, "refused")
+
+
+def paint(
+    axes: Axes,
+    x: Sequence[float],
+    y: Sequence[float],
+    classes: Sequence[Sequence[str]],
+    *,
+    log_x: bool = False,
+    log_y: bool = False,
+) -> None:
+    """Cells classes[row of y][column of x]; axes keep the units of x and y."""
+    values = np.array([[KEYS.index(cell) for cell in row] for row in classes])
+    axes.pcolormesh(
+        edges(x, log_x),
+        edges(y, log_y),
+        values,
+        cmap=SHADES,
+        norm=BoundaryNorm(np.arange(len(KEYS) + 1) - 0.5, len(KEYS)),
+        edgecolors="white",
+        linewidth=0.3,
+    )
+    for j, row in enumerate(classes):
+        for i, cell in enumerate(row):
+            if SIGNS[cell]:
+                axes.text(x[i], y[j], SIGNS[cell], ha="center", va="center", fontsize=6.5, color="white", weight="bold")
+    axes.grid(visible=False)
+    if log_x:
+        axes.set_xscale("log")
+    if log_y:
+        axes.set_yscale("log")
+
+
+def edges(centres: Sequence[float], logarithmic: bool) -> np.ndarray[Any, Any]:
+    """Cell edges (n + 1,) half way between centres (n,)."""
+    c = np.log(np.asarray(centres, float)) if logarithmic else np.asarray(centres, float)
+    middle = 0.5 * (c[1:] + c[:-1])
+    found = np.concatenate([[2 * c[0] - middle[0]], middle, [2 * c[-1] - middle[-1]]])
+    return np.asarray(np.exp(found) if logarithmic else found)
+
+
+def key(axes: Axes, used: Sequence[Sequence[str]], **where: Any) -> None:
+    """Legend of the classes that occur, with their number."""
+    flat = [cell for row in used for cell in row]
+    patches = [
+        Patch(
+            color=SHADES(KEYS.index(k)),
+            label=f"{CLASSES[k][0]}{' (' + SIGNS[k] + ')' if SIGNS[k] else ''}: {flat.count(k)}",
+        )
+        for k in KEYS
+        if k in flat
+    ]
+    axes.legend(handles=patches, **({"loc": "upper center", "bbox_to_anchor": (0.5, -0.14), "ncol": 2} | where))

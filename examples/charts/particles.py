@@ -1,0 +1,46 @@
+"""Particles against error: the order of convergence of ours on every problem."""
+
+from collections.abc import Sequence
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from charts.record import Results
+from charts.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, log_axes, save
+from charts.work_precision import Point
+from meshwind.methods.problems import TABLE, Kind
+
+CYCLE = (RED, BLUE, GREEN, ORANGE, PURPLE, SKY, BLACK, GREY)
+LEAST = 26
+
+
+def draw(results: Results, points: Sequence[Point]) -> None:
+    """A panel a kind, each problem a line, with slope 2 beside."""
+    kinds = [kind for kind in Kind if any(p.kind == kind for p in points)]
+    figure, grid = plt.subplots(1, len(kinds), figsize=(4.2 * len(kinds), 4.4), sharey=True, squeeze=False)
+    for axes, kind in zip(grid[0], kinds, strict=True):
+        names = [name for name, problem in TABLE.items() if problem.kind == kind]
+        for colour, marker, name in zip(CYCLE, "osD^vP*X", names, strict=False):
+            mine = sorted(
+                {
+                    p.size: p
+                    for p in points
+                    if p.problem == name and p.method == "meshwind" and p.result == "ok" and "default" in p.setting
+                }.values(),
+                key=lambda p: p.size,
+            )
+            if mine:
+                axes.plot(
+                    [p.size for p in mine], [p.error for p in mine], marker=marker, ms=4.5, color=colour, label=name
+                )
+        n = np.array([LEAST, 6401.0])
+        axes.plot(n, 1e-2 * (n / LEAST) ** -2, "k--", lw=1, label="slope -2")
+        log_axes(axes, "particles", "relative error of the length")
+        axes.set_title(str(kind))
+        axes.legend()
+    figure.suptitle(
+        "meshwind, default settings: error against particles. Flat at the bottom: the spline's own distance from "
+        "the exact shape, or exact chords."
+    )
+    figure.tight_layout()
+    save(figure, results.folder, "particles")

@@ -1,0 +1,66 @@
+"""Tables of figures as CSV, and everything together as results.json."""
+
+import csv
+import json
+import os
+import platform
+from collections.abc import Sequence
+from dataclasses import asdict, is_dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+
+class Results:
+    """What a script has measured, by chart; every table goes to its own CSV and into results.json."""
+
+    def __init__(self, folder: Path, script: str, quick: bool) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        self.folder = folder
+        self._all: dict[str, Any] = {"script": script, "quick": quick, "machine": machine()}
+
+    def table(self, name: str, rows: Sequence[Any]) -> None:
+        """Keep rows, dictionaries or dataclasses of the same fields, under a name."""
+        plain = [asdict(row) if is_dataclass(row) and not isinstance(row, type) else dict(row) for row in rows]
+        self._all[name] = plain
+        if plain:
+            fields = list(dict.fromkeys(key for row in plain for key in row))
+            with (self.folder / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
+                writer = csv.DictWriter(file, fields)
+                writer.writeheader()
+                writer.writerows(plain)
+
+    def cells(self, result: str, tables: Sequence[str], method: str) -> list[dict[str, Any]]:
+        """Rows with this result in some tables, of one method where the table has several."""
+        return [
+            dict(chart=name, **row)
+            for name in tables
+            for row in self._all.get(name, [])
+            if row["result"] == result and row.get("method", method) == method
+        ]
+
+    def write(self) -> None:
+        """Write results.json."""
+        text = json.dumps(self._all, indent=1, default=str)
+        (self.folder / "results.json").write_text(text + "\n", encoding="utf-8")
+
+
+def machine() -> dict[str, Any]:
+    """What the seconds depend on."""
+    names = ("numpy", "scipy", "numba", "libigl")
+    return {
+        "processor": processor(),
+        "cores": os.cpu_count(),
+        "python": platform.python_version(),
+        **{name: version(name) for name in names},
+    }
+
+
+def processor() -> str:
+    """The processor's own name, where the system tells it."""
+    info = Path("/proc/cpuinfo")
+    if info.exists():
+        for line in info.read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                return line.split(":", 1)[1].strip()
+    return platform.processor() or platform.machine()

@@ -1,0 +1,169 @@
+"""The source's Table 7.1 redone: how the time of 1000 backward Euler steps splits, and what ours takes instead."""
+
+from collections.abc import Callable
+from time import perf_counter
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from charts.record import Results
+from charts.style import BLUE, GREY, ORANGE, SKY, save
+from charts.timing import least
+from meshwind.methods import backward_euler, run
+from meshwind.methods.attempt import attempt
+from meshwind.methods.chain import Physics, carry, gather, link, place
+from meshwind.methods.lifting import PULL, contact
+from meshwind.methods.march import forces_for
+from meshwind.methods.problems import TABLE
+
+SOURCE = {"build": 233.22, "solve": 204.35, "lift and land": 149.65, "other": 15.86}
+"""Milliseconds, C++ on 6 threads of a Core i7 7700K; its surface and number of particles are not given."""
+PROBLEM = TABLE["bottle-neck"]
+"""A freeform part with a bridge, as the source's figure 7.2-b."""
+PARTICLES, STEPS = 401, 1000
+STEP, DAMPING = 10.0, 0.1
+
+
+def clocked(call: Callable[..., Any], *arguments: Any) -> tuple[float, Any]:
+    """Seconds of one call and its result."""
+    begin = perf_counter()
+    found = call(*arguments)
+    return perf_counter() - begin, found
+
+
+def split() -> dict[str, float]:
+    """Milliseconds of 1000 steps by part: the compiled parts called one by one, less what an idle call costs."""
+    surface = PROBLEM.surface()
+    net, periodic, n = surface.net, surface.periodic, PARTICLES
+    physics = Physics(STEP, 1.0, DAMPING, 0.0)
+    t = np.linspace(0.0, 1.0, n)[:, None]
+    uv = np.ascontiguousarray((1 - t) * np.array(PROBLEM.start) + t * np.array(PROBLEM.end))
+    chain = (
+        np.empty((n, 3)),
+        uv,
+        np.zeros((n, 2)),
+        np.empty((n, 6, 3)),
+        np.empty((n, 3)),
+        np.ones(n, np.bool_),
+        np.zeros(n),
+    )
+    contacts, before, after = np.empty(n, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int64)
+    forces, kept, move, tally = forces_for(n), np.empty(n, np.bool_), np.zeros((n, 2)), np.zeros(4, np.int64)
+    bits, metric = forces[0], forces[1]
+    system = np.empty((n, 3)), np.zeros((n, 2, 2)), np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 3))
+    place(net, periodic, chain, np.arange(n), n, False)
+    link(chain[5], before, after)
+    spacing = PROBLEM.length / (n - 1)
+    spent = {"build": 0.0, "solve": 0.0, "lift and land": 0.0, "other": 0.0}
+    contact(net, periodic, chain, True, PULL * spacing, before, after, kept, tally)
+    for _ in range(STEPS):
+        gathered, (count, _worst) = clocked(gather, chain, periodic, 0.0, contacts, before, after, forces)
+        building = (chain, physics, contacts, before, after)
+        idle = clocked(backward_euler.build, *building, 0, bits, metric, system[0], system[1])[0]
+        built = clocked(backward_euler.build, *building, count, bits, metric, system[0], system[1])[0]
+        stepping = (forces, True, system, move, tally)
+        idle_step = clocked(backward_euler.step, *building, 0, *stepping)[0]
+        stepped = clocked(backward_euler.step, *building, count, *stepping)[0]
+        idle_carry = clocked(carry, net, periodic, chain, contacts, 0, move, False)[0]
+        carried = clocked(carry, net, periodic, chain, contacts, count, move, False)[0]
+        landed = clocked(contact, net, periodic, chain, True, PULL * spacing, before, after, kept, tally)[0]
+        spent["build"] += built - idle
+        spent["solve"] += stepped - idle_step - (built - idle)
+        spent["lift and land"] += landed - idle_carry
+        spent["other"] += gathered - idle_carry + carried - idle_carry
+    return {key: 1e3 * max(value, 0.0) for key, value in spent.items()}
+
+
+def measure(results: Results) -> dict[str, float]:
+    """The split beside the source's, and the whole compiled run beside ours."""
+    split()  # compile
+    here = min((split() for _ in range(3)), key=lambda s: sum(s.values()))
+
+    def thousand(**extra: Any) -> Any:
+        return run(
+            "backward-euler",
+            PROBLEM.surface(),
+            PROBLEM.start,
+            PROBLEM.end,
+            particles=PARTICLES,
+            steps=STEPS,
+            step_size=STEP,
+            damping=DAMPING,
+            tolerance=0.0,
+            weighted=True,
+            **extra,
+        )
+
+    whole, on_surface = least(thousand), least(lambda: thousand(lifting=False))
+    reused = least(lambda: thousand(reuse=20))
+    ours = least(lambda: attempt("meshwind", PROBLEM, PARTICLES))
+    theirs_error, our_error = (PROBLEM.error(x.length) for x in (thousand(), attempt("meshwind", PROBLEM, PARTICLES)))
+    rows = [
+        dict(
+            part=key,
+            source_ms=SOURCE[key],
+            source_share=SOURCE[key] / sum(SOURCE.values()),
+            here_ms=here[key],
+            here_share=here[key] / sum(here.values()),
+        )
+        for key in SOURCE
+    ]
+    rows.append(
+        dict(part="total", source_ms=sum(SOURCE.values()), source_share=1.0, here_ms=sum(here.values()), here_share=1.0)
+    )
+    results.table("source_table_7_1", rows)
+    convex = TABLE["barrel-1.5"]
+    held: dict[str, Any] = dict(
+        particles=PARTICLES, steps=STEPS, step_size=STEP, damping=DAMPING, tolerance=0.0, lifting=False
+    )
+    barrel = least(lambda: run("backward-euler", convex.surface(), convex.start, convex.end, **held))
+    our_barrel = least(lambda: attempt("meshwind", convex, PARTICLES))
+    slow = run("backward-euler", convex.surface(), convex.start, convex.end, **held)
+    figures = dict(
+        whole_ms=1e3 * whole,
+        on_surface_ms=1e3 * on_surface,
+        reused_ms=1e3 * reused,
+        ours_ms=1e3 * ours,
+        ratio=whole / ours,
+        their_error=theirs_error,
+        our_error=our_error,
+        barrel_ms=1e3 * barrel,
+        our_barrel_ms=1e3 * our_barrel,
+        barrel_ratio=barrel / our_barrel,
+        barrel_their_error=convex.error(slow.length),
+        barrel_our_error=convex.error(attempt("meshwind", convex, PARTICLES).length),
+    )
+    results.table("source_setting", [figures])
+    _draw(results, here, figures)
+    return figures
+
+
+def _draw(results: Results, here: dict[str, float], figures: dict[str, float]) -> None:
+    figure, axes = plt.subplots(figsize=(10, 3.6))
+    bars = (
+        (f"source, C++ on 6 threads:\n{sum(SOURCE.values()):.0f} ms", SOURCE),
+        (f"here, one thread, {PROBLEM.name},\n{PARTICLES} particles: {sum(here.values()):.1f} ms", here),
+    )
+    for row, (_, parts) in enumerate(bars):
+        left, total = 0.0, sum(parts.values())
+        for (key, value), colour in zip(parts.items(), (BLUE, SKY, ORANGE, GREY), strict=True):
+            share = 100 * value / total
+            axes.barh(row, share, left=left, color=colour, label=key if row == 0 else None)
+            axes.annotate(
+                f"{share:.0f} %\n{value:.3g} ms", (left + share / 2, row), ha="center", va="center", fontsize=7
+            )
+            left += share
+    axes.set_yticks(range(2), [name for name, _ in bars])
+    axes.set(xlabel="share of the time of 1000 backward Euler steps [%]", xlim=(0, 100))
+    axes.set_title(
+        f"The source's Table 7.1 and the same steps here (h = {STEP:g} sqrt(m/K), damping {DAMPING:g} sqrt(K m)); the"
+        f" source gives neither part nor particles.\nThe steps compiled whole: {figures['whole_ms']:.3g} ms, error"
+        f" {figures['their_error']:.1e}; meshwind: {figures['ours_ms']:.3g} ms, error {figures['our_error']:.1e},"
+        f" {figures['ratio']:.0f} times quicker ({figures['barrel_ratio']:.0f} times on barrel-1.5)",
+        fontsize=8.5,
+    )
+    axes.invert_yaxis()
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncol=4)
+    figure.tight_layout()
+    save(figure, results.folder, "source_table_7_1")

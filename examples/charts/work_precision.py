@@ -1,0 +1,252 @@
+"""Work-precision diagrams: the error of a path's length against time and against surface evaluations."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from importlib.util import find_spec
+from typing import Any
+
+import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
+
+from charts.ladders import KEPT, QUICK_SIZES, SIZES, trials
+from charts.record import Results
+from charts.style import LOOKS, log_axes, save
+from charts.timing import least, timed
+from meshwind.methods.attempt import Attempt, Outcome, attempt
+from meshwind.methods.peers_smooth import collocate, shoot, shoot_traced
+from meshwind.methods.problems import TABLE, Kind, Problem
+
+CHAINS = (
+    "meshwind",
+    "backward-euler",
+    "backward-euler-reuse",
+    "explicit-euler",
+    "symplectic-euler",
+    "rk4",
+    "kkt",
+    "penalty",
+)
+SMOOTH: dict[str, tuple[Callable[[Problem, float], Attempt], tuple[float, ...]]] = {
+    "shooting-dop853": (shoot, (1e-3, 1e-5, 1e-7, 1e-8)),
+    "shooting-trace": (shoot_traced, (1e-2, 1e-3, 1e-5, 1e-7)),
+    "collocation": (collocate, (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)),
+}
+MESHES = ("flipout", "mmp-pygeodesic", "mmp-libigl")
+VERTICES = (250, 1000, 4000, 16_000)
+LARGEST_EXACT = 4000
+"""Vertices beyond which the exact polyhedral methods take seconds a path."""
+FAR = 0.3
+"""A path whose length is off by more is another path: a wrong answer."""
+QUICK = ("barrel-1.5", "barrel-4", "vase", "catenary-0.3", "bottle-turn")
+SHOWN_EXACT = 1e-12
+
+
+@dataclass(frozen=True)
+class Point:
+    """One setting of one method on one problem; seconds and error are those of a run that came to rest."""
+
+    problem: str
+    kind: str
+    method: str
+    size: int
+    setting: str
+    result: str
+    seconds: float
+    error: float
+    evaluations: int
+    feet: int
+    solves: int
+    iterations: int
+    setup_seconds: float = 0.0
+    best: bool = False
+
+
+def classed(found: Attempt, error: float) -> str:
+    """The class of an attempt: ok, wrong, stalled, diverged or refused."""
+    if found.outcome != Outcome.REST:
+        return {Outcome.STALLED: "stalled", Outcome.DIVERGED: "diverged"}.get(found.outcome, "refused")
+    return "wrong" if error > FAR else "ok"
+
+
+def measure(problem: Problem, method: str, size: int, setting: str, call: Callable[[], Attempt]) -> Point:
+    """Run once; time again only what came to rest."""
+    seconds, found = timed(call)
+    error = problem.error(found.length)
+    result = classed(found, error)
+    if result == "ok" and seconds < 0.05:
+        seconds = min(seconds, timed(call)[0])
+    return Point(
+        problem.name,
+        problem.kind,
+        method,
+        size,
+        setting,
+        result,
+        seconds,
+        error,
+        found.evaluations,
+        found.feet,
+        found.solves,
+        found.iterations,
+    )
+
+
+def cannot(problem: Problem, method: str) -> str | None:
+    """Why a method cannot solve a problem, None where it can."""
+    turns = abs(problem.end[0] - problem.start[0])
+    if method in ("kkt", "penalty") and problem.friction:
+        return "no friction"
+    if method not in CHAINS:
+        if problem.friction:
+            return "no friction"
+        if problem.bridges:
+            return "stays on the surface"
+        if method.startswith("mmp") and turns >= 0.5:
+            return "finds the shortest path, not one of several turns"
+    return None
+
+
+def climb(problem: Problem, method: str, sizes: Sequence[int]) -> list[Point]:
+    """All rungs of a scheme's ladder; it ends with the first on which no setting comes to rest."""
+    points: list[Point] = []
+    kept: list[str] | None = None
+    for n in sizes:
+        rung = []
+        for trial in trials(method, problem, n):
+            if kept is not None and trial.key not in kept:
+                continue
+            call = partial(attempt, trial.scheme, problem, n, trial.setting)
+            if kept is None:
+                call()  # compile
+            rung.append((measure(problem, method, n, trial.key, call), call))
+        done = [(p, call) for p, call in rung if p.result == "ok"]
+        for p, call in rung:
+            best = any(p is q for q in front([q for q, _ in done], "seconds"))
+            points.append(replace(p, seconds=least(call, p.seconds), best=True) if best else p)
+        if not done:
+            break
+        good = min(p.error for p, _ in done)
+        order = sorted(done, key=lambda item: (item[0].error > 1.5 * good, item[0].seconds))
+        kept = [p.setting for p, _ in order[:KEPT]]
+    return points
+
+
+def front(points: Sequence[Point], cost: str) -> list[Point]:
+    """The points that no other beats in both cost and error, by cost."""
+    best: list[Point] = []
+    for p in sorted(points, key=lambda p: (getattr(p, cost), p.error)):
+        if not best or p.error < best[-1].error:
+            best.append(p)
+    return best
+
+
+def peers(problem: Problem, quick: bool) -> list[Point]:
+    """The public peers that solve this problem."""
+    points = []
+    for method, (solver, ladder) in SMOOTH.items():
+        if cannot(problem, method) is None:
+            for tolerance in ladder[:-1] if quick else ladder:
+                call = partial(solver, problem, tolerance)
+                call()
+                p = measure(problem, method, 0, f"tolerance {tolerance:g}", call)
+                points.append(replace(p, seconds=least(call, p.seconds)) if p.result == "ok" else p)
+                if p.seconds > 1.0:
+                    break
+    if find_spec("potpourri3d") is None or find_spec("pygeodesic") is None:
+        print("the mesh peers are left out: pip install 'meshwind[peers]'")
+        return points
+    from meshwind.methods.peers_mesh import PEERS, facets
+
+    for method, solver_on_mesh in PEERS.items():
+        if cannot(problem, method) is not None:
+            continue
+        for count in VERTICES:
+            if count > (LARGEST_EXACT if method != "flipout" else VERTICES[-1]) or (quick and count > 4000):
+                continue
+            mesh = facets(problem, count)
+            # set-up: what a second path on the same mesh does not pay again
+            setup = timed(lambda m=mesh, f=method: m.flipper if f == "flipout" else m.exact)[0]  # type: ignore[misc]
+            on_mesh = partial(solver_on_mesh, mesh, problem)
+            on_mesh()
+            p = measure(problem, method, len(mesh.vertices), f"{len(mesh.vertices)} vertices", on_mesh)
+            points.append(replace(p, seconds=least(on_mesh, p.seconds), setup_seconds=setup) if p.result == "ok" else p)
+    return points
+
+
+def survey(quick: bool) -> list[Point]:
+    """Every method on every problem."""
+    points: list[Point] = []
+    for problem in TABLE.values():
+        if quick and problem.name not in QUICK:
+            continue
+        begin = len(points)
+        for method in CHAINS:
+            if cannot(problem, method) is None:
+                points += climb(problem, method, QUICK_SIZES if quick else SIZES)
+        points += peers(problem, quick)
+        print(f"  {problem.name}: {len(points) - begin} settings", flush=True)
+    return points
+
+
+def panel(axes: Axes, problem: Problem, points: Sequence[Point], cost: str) -> None:
+    """One problem: a faint dot for every setting at rest, and a line through each method's best."""
+    for method, look in LOOKS.items():
+        mine = [p for p in points if p.method == method and p.result == "ok" and (cost == "seconds" or p.evaluations)]
+        scale = 1e3 if cost == "seconds" else 1
+        axes.scatter(
+            [scale * getattr(p, cost) for p in mine],
+            [p.error for p in mine],
+            s=5,
+            color=look.colour,
+            alpha=0.3,
+            linewidths=0,
+        )
+        best = front(mine, cost)
+        axes.plot(
+            [scale * getattr(p, cost) for p in best],
+            [p.error for p in best],
+            look.line,
+            color=look.colour,
+            marker=look.marker,
+            ms=6 if method != "meshwind" else 7,
+            lw=2.2 if method == "meshwind" else 1.2,
+            zorder=5 if method == "meshwind" else 3,
+            label=look.label,
+        )
+    log_axes(axes, "time a path [ms]" if cost == "seconds" else "surface evaluations", "relative error of the length")
+    axes.set_title(
+        f"{problem.name}: {problem.hard}\nlength {problem.length:.9g}"
+        + (f", friction {problem.friction:g}" if problem.friction else "")
+    )
+    low, high = axes.get_ylim()
+    axes.set_ylim(min(low, 1e-10), min(max(high, 1e-2), 1.0))
+
+
+def draw(results: Results, points: Sequence[Point]) -> None:
+    """A figure a kind and cost."""
+    for kind in Kind:
+        problems = [p for p in TABLE.values() if p.kind == kind and any(q.problem == p.name for q in points)]
+        for cost, word in (("seconds", "time"), ("evaluations", "evaluations")):
+            if not problems:
+                continue
+            columns = min(4, len(problems)) if len(problems) != 5 else 3
+            rows = -(-len(problems) // columns)
+            figure, grid = plt.subplots(rows, columns, figsize=(5.0 * columns, 4.2 * rows + 0.8), squeeze=False)
+            for axes in grid.flat[len(problems) :]:
+                axes.set_visible(False)
+            for axes, problem in zip(grid.flat, problems, strict=False):
+                panel(axes, problem, [p for p in points if p.problem == problem.name], cost)
+            handles: dict[str, Any] = {}
+            for axes in grid.flat[: len(problems)]:
+                handles |= {
+                    label: h for h, label in zip(*axes.get_legend_handles_labels(), strict=True) if len(h.get_xdata())
+                }
+            figure.suptitle(
+                f"Taut paths {kind}: error against {word}. Down and left is better. Every dot is a setting that came to"
+                " rest, the line joins a method's best.",
+                fontsize=11,
+            )
+            figure.tight_layout(rect=(0, 0.09 if rows > 1 else 0.16, 1, 0.98))
+            figure.legend(handles.values(), handles.keys(), loc="lower center", ncol=min(5, len(handles)))
+            save(figure, results.folder, f"work_precision_{kind.name.lower()}_{word}")

@@ -1,0 +1,104 @@
+"""Any method on any problem, with the outcome in one form: what charts, tests and golden figures compare."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+
+from meshwind.cast import Floats
+from meshwind.methods.driver import run
+from meshwind.methods.problems import Problem
+from meshwind.methods.run import Ending
+from meshwind.path.paths import Status
+from meshwind.path.solve import solve
+
+OURS = "meshwind"
+"""The name of our own solver among the methods; the others are those of `Method`."""
+
+
+class Outcome(StrEnum):
+    """How an attempt ended, before its answer is compared with the truth."""
+
+    REST = "at rest"
+    STALLED = "stalled"
+    DIVERGED = "diverged"
+    REFUSED = "refused"
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """One path by one method.
+
+    length in the surface's units, of the polyline where there is one; counts of surface evaluations, foot points,
+    linear solves and iterations (time steps); points (n, 3), empty where the method gives a length only; gap: the
+    largest distance of a point from the surface.
+    """
+
+    outcome: Outcome
+    length: float
+    evaluations: int
+    feet: int = 0
+    solves: int = 0
+    iterations: int = 0
+    gap: float = 0.0
+    points: Floats | None = None
+
+
+ENDINGS = {Ending.CONVERGED: Outcome.REST, Ending.STOPPED: Outcome.STALLED, Ending.DIVERGED: Outcome.DIVERGED}
+
+
+def polyline(points: Floats) -> float:
+    """Length of a polyline (n, 3)."""
+    return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+
+
+def attempt(method: str, problem: Problem, particles: int, setting: Mapping[str, Any] | None = None) -> Attempt:
+    """Solve a problem by one of `Method` or by ours, from the problem's starting curve."""
+    given = dict(setting or {})
+    curve = None if problem.initial is None else problem.initial(particles)
+    if method == OURS:
+        return _ours(problem, particles, curve, given)
+    if problem.friction:
+        given["friction"] = problem.friction
+    if method not in ("penalty", "kkt"):
+        given = {"lifting": problem.bridges, "weighted": True} | given
+    found = run(method, problem.surface(), problem.start, problem.end, particles=particles, initial=curve, **given)
+    c = found.counters
+    return Attempt(
+        ENDINGS[found.status],
+        found.length,
+        c.evaluations,
+        c.feet,
+        c.solves,
+        c.iterations,
+        float(np.abs(found.gap).max()),
+        found.points,
+    )
+
+
+def _ours(problem: Problem, particles: int, curve: Floats | None, given: dict[str, Any]) -> Attempt:
+    found = solve(
+        problem.surface(),
+        [problem.start],
+        [problem.end],
+        particles=particles,
+        friction=problem.friction,
+        initial=None if curve is None else curve[None],
+        **given,
+    )
+    c = found.counters
+    outcome = Outcome.REST if found.status[0] == Status.CONVERGED else Outcome.REFUSED
+    if found.status[0] == Status.STALLED:
+        outcome = Outcome.STALLED
+    return Attempt(
+        outcome,
+        polyline(found.points[0]),
+        c.evaluations,
+        c.feet,
+        c.solves,
+        c.iterations,
+        float(found.gap[0].max()),
+        found.points[0],
+    )
