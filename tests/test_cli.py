@@ -72,7 +72,7 @@ def test_bad_meshes_exit_2_with_one_line_and_leave_nothing(name: str, tmp_path: 
 @pytest.mark.parametrize(("arguments", "says"), [
     (["wind"], "MESH"), (["wind", "a.stl", "--paths", "none"], "paths"), (["wind", "a.stl", "--paths", "0"], "paths"),
     (["wind", "a.stl", "--revolutions", "-1"], "revolutions"), (["fly"], "fly"), ([], "command"),
-    (["wind", "a.stl", "--friction", "0.2"], "friction"), (["wind", "a.stl", "--wings"], "wings"),
+    (["wind", "a.stl", "--friction", "wet"], "friction"), (["wind", "a.stl", "--wings"], "wings"),
     (["wind", "a.stl", "--revolutions", "nan"], "revolutions is nan; give a number from 0"),
     (["wind", "a.stl", "--revolutions", "5/0"], "revolutions is '5/0'; give"),
     (["wind", "a.stl", "--revolutions", "200"], "revolutions is 200; give a number from 0 to 50"),

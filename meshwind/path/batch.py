@@ -67,7 +67,7 @@ def fresh(starts: Floats, particles: int) -> Batch:
     uv = (1.0 - x) * starts[:, k] + x * starts[:, k + 1]
     shape = (p, particles)
     return Batch(
-        np.ascontiguousarray(starts), np.zeros((*shape, 3)), np.ascontiguousarray(uv), np.zeros((*shape, 3)),
+        np.array(starts), np.zeros((*shape, 3)), np.ascontiguousarray(uv), np.zeros((*shape, 3)),
         np.ones(shape, np.bool_), np.zeros(shape), np.full(shape, np.nan), np.zeros(shape), np.zeros(shape, np.int8),
         np.full(p, np.inf), np.zeros(p, np.int64), np.zeros((p, 4), np.int64),
     )  # fmt: skip

@@ -2,8 +2,14 @@
 
 Friction holds the lateral part of the force only, because the tension is the same all along the fibre (3.4): each
 particle is free along the fibre.  A stuck one stays on the starting curve c and needs |F . b| <= mu N (3.12); one that
-slips has left c to the side where F . b pulls, and is held back by the whole of mu N.  With b = n x t and N = -F . n
-the balance reads R_t = F . t = 0 and R_b = F . b + sigma mu N = 0, where sigma = -sign of the slip.
+slips has left c to the side where F . b pulls, and is held back by the whole of mu N.  With e and a the springs to the
+next and the last touching particle, F = e - a, m = e + a, b = n x m / |n x m| and N = -F . n the balance reads
+
+    R_t = F . m / |n x m| = 0,  equal tension: |e| = |a|, so that F / |e| is the turn of the fibre's unit tangent, and
+    R_b = F . b + sigma mu N = 0, where sigma = -sign of the slip.
+
+Where the fibre bends sharply m leans out of the tangent plane and R_t is not the springs' own pull F . t; their
+difference counts as one more force, held while a step is judged.
 """
 
 import numpy as np
@@ -27,8 +33,8 @@ def dot(a, b):
 
 
 @njit(cache=True)
-def curve_at(curve, s, point, tangent, bend):
-    """Point and derivatives by s of the Catmull-Rom spline through curve (m, 2), s in samples: third order."""
+def curve_at(curve, s, point, tangent):
+    """Point and derivative by s of the Catmull-Rom spline through curve (m, 2), s in samples: third order."""
     m = len(curve)
     k = min(max(int(np.floor(s)), 0), m - 2)
     x = s - k
@@ -42,14 +48,13 @@ def curve_at(curve, s, point, tangent, bend):
         y, z = x * x, x * x * x
         point[a] = (2 * z - 3 * y + 1) * p0 + (z - 2 * y + x) * d0 + (3 * y - 2 * z) * p1 + (z - y) * d1
         tangent[a] = (6 * y - 6 * x) * (p0 - p1) + (3 * y - 4 * x + 1) * d0 + (3 * y - 2 * x) * d1
-        bend[a] = (12 * x - 6) * (p0 - p1) + (6 * x - 4) * d0 + (6 * x - 2) * d1
 
 
 @njit(cache=True)
-def nearest_on(curve, s, u, v, frame, point, tangent, bend):
+def nearest_on(curve, s, u, v, frame, point, tangent):
     """The s whose point of the curve is nearest (u, v) in the metric of `frame`, from a guess; leaves that point."""
     for _ in range(12):
-        curve_at(curve, s, point, tangent, bend)
+        curve_at(curve, s, point, tangent)
         along = square = 0.0
         for k in range(3):
             c = frame[SU, k] * tangent[0] + frame[SV, k] * tangent[1]
@@ -61,7 +66,7 @@ def nearest_on(curve, s, u, v, frame, point, tangent, bend):
         s = then
         if done:
             break
-    curve_at(curve, s, point, tangent, bend)
+    curve_at(curve, s, point, tangent)
     return s
 
 
@@ -105,21 +110,16 @@ def second_form(frame, n, a, b):
 
 
 @njit(cache=True)
-def along_curve(curve, s, frame, n, t, b, way, turn):
-    """At place s of the starting curve: its unit tangent t, b = n x t, t in (u, v), and its curvature vector."""
-    point, tangent, bend = np.empty(2), np.empty(2), np.empty(2)
-    curve_at(curve, s, point, tangent, bend)
+def along_curve(curve, s, frame, n, t, b, way):
+    """At place s of the starting curve: its unit tangent t, b = n x t, and t in (u, v)."""
+    point, tangent = np.empty(2), np.empty(2)
+    curve_at(curve, s, point, tangent)
     u, v = tangent[0], tangent[1]
-    square = along = 0.0
+    square = 0.0
     for k in range(3):
         t[k] = frame[SU, k] * u + frame[SV, k] * v
-        turn[k] = frame[SUU, k] * u * u + 2.0 * frame[SUV, k] * u * v + frame[SVV, k] * v * v
-        turn[k] += frame[SU, k] * bend[0] + frame[SV, k] * bend[1]
         square += t[k] * t[k]
-        along += t[k] * turn[k]
     square = max(square, 1e-300)
-    for k in range(3):
-        turn[k] = (turn[k] - along / square * t[k]) / square
     size = np.sqrt(square)
     for k in range(3):
         t[k] /= size
@@ -139,12 +139,12 @@ def across(n, t, b):
 def weigh(state, periodic, before, after, table, curve, grip, barred, balance):
     """Force balance of every touching particle, and the directions in which it may move.
 
-    grip is (s, offset, mode): place on the starting curve, signed lateral distance from it, and mode.  Fills
-    balance: t, b, turn (n, 3), of the fibre where it slips and of the starting curve, with its curvature, where it is
-    stuck; ways (n, 2, 2), t and b in (u, v); load (n, 4) as F . t, F . b, N, mu; rest (n, 2) the residual R.
-    b points to the same side of the starting curve everywhere.  Releases stuck particles that slip, unless `barred`
-    (n,), and holds those pressed against a rim.  Returns the number of modes changed and the largest unbalanced
-    force.
+    grip is (s, offset, mode): place on the starting curve, signed lateral distance from it, and mode. Fills
+    balance: t, b (n, 3), of the fibre where it slips and of the starting curve where it is stuck, and turn (n, 3),
+    the rim's curvature where it is held; ways (n, 2, 2), t and b in (u, v); load (n, 5) as F . t, F . b, N, mu and
+    F . t - R_t; rest (n, 2) the residual R. b points to the same side of the starting curve everywhere. Releases
+    stuck particles that slip, unless `barred` (n,), and holds those pressed against a rim. Returns the number of
+    modes changed and the largest unbalanced force.
     """
     X, uv, frames, normal, touching, clear = state
     place, offset, mode = grip
@@ -166,10 +166,14 @@ def weigh(state, periodic, before, after, table, curve, grip, barred, balance):
         was = mode[i]
         if was == HELD:
             mode[i] = np.int8(-1 if offset[i] > 0.0 else 1)
-        along_curve(curve, place[i], frames[i], normal_i, t[i], b[i], ways[i, 0], turn[i])
+        along_curve(curve, place[i], frames[i], normal_i, t[i], b[i], ways[i, 0])
         back = dot(m, t[i]) < 0.0  # the fibre runs the other way along its starting curve
         if was == STUCK and not barred[i]:
-            side = dot(force, b[i])
+            # across the fibre itself, which at a kink is not the direction of its starting curve
+            across(normal_i, m, turn[i])
+            side = dot(force, turn[i]) / span
+            if back:
+                side = -side
             if abs(side) > mu[0] * press * (1.0 + MARGIN) + FAINT * span:
                 mode[i] = np.int8(-1 if side > 0.0 else 1)
         if mode[i] != STUCK:
@@ -192,6 +196,11 @@ def weigh(state, periodic, before, after, table, curve, grip, barred, balance):
                 ways[i, 0, 0], ways[i, 0, 1] = 1.0 / size, 0.0
         load[i, 0], load[i, 1], load[i, 2], load[i, 3] = dot(force, t[i]), dot(force, b[i]), press, mu[0]
         rest[i, 0], rest[i, 1] = load[i, 0], 0.0
+        if mode[i] != HELD:
+            rest[i, 0] = dot(force, m) / span
+            if back and mode[i] == STUCK:
+                rest[i, 0] = -rest[i, 0]
+        load[i, 4] = load[i, 0] - rest[i, 0]
         if mode[i] == STUCK or mode[i] == HELD:
             ways[i, 1, 0] = ways[i, 1, 1] = 0.0
         else:
@@ -229,6 +238,7 @@ def differentiate(state, periodic, before, after, table, mode, balance, contacts
         ft, fb, press, sigma = load[i, 0], load[i, 1], load[i, 2], float(mode[i])
         bound = mode[i] == STUCK or mode[i] == HELD
         grip = sigma * mu[0] if press > 0.0 else 0.0
+        sense = -1.0 if mode[i] == STUCK and dot(m, t[i]) < 0.0 else 1.0
         for a in range(2):
             for side in range(3):
                 other = p if side == 0 else (i if side == 1 else q)
@@ -237,11 +247,16 @@ def differentiate(state, periodic, before, after, table, mode, balance, contacts
                 if free and 0 < other < n - 1:
                     column = t[other] if a == 0 else b[other]
                     weight = gp if side == 0 else (-gp - gq if side == 1 else gq)
-                    row_t = weight * dot(column, t[i])
-                    if bound:
+                    if mode[i] == HELD:
+                        row_t = weight * dot(column, t[i])
                         if side == 1:
                             row_t += dot(force, turn[i])
-                    else:
+                    else:  # R_t = (|e|^2 - |a|^2) / |n x m|
+                        for k in range(3):
+                            e, f = gq * (X[q, k] - X[i, k]), gp * (X[i, k] - X[p, k])
+                            row_t += column[k] * (gp * f if side == 0 else (-gq * e - gp * f if side == 1 else gq * e))
+                        row_t *= 2.0 / (flat * sense)
+                    if not bound:
                         spin = -gp if side == 0 else (gp - gq if side == 1 else gq)
                         dn_t = dn_b = slope = 0.0
                         if side == 1:
@@ -249,7 +264,6 @@ def differentiate(state, periodic, before, after, table, mode, balance, contacts
                             dn_b = -second_form(frames[i], n_i, ways[i, 1], ways[i, a])
                             slope = mu[1] * ways[i, a, 0] + mu[2] * ways[i, a, 1]
                         angle = (spin * dot(column, b[i]) - lean * dn_b) / flat
-                        row_t += fb * angle + press * dn_t
                         row_b = weight * dot(column, b[i]) - ft * angle + press * dn_b + sigma * press * slope
                         row_b -= grip * (weight * dot(column, n_i) + ft * dn_t + fb * dn_b)
                 if bound and side == 1 and a == 1:

@@ -21,9 +21,11 @@ from meshwind.path.relax import (
     LONGEST_MOVE,
     SLID_END,
     SLID_START,
+    TOO_COARSE,
     certify,
     failure,
     take_up,
+    unresolved,
 )  # fmt: skip
 from meshwind.path.state import blank, copy, copy_particle, energy, touch_down
 from meshwind.surface.evaluate import SU, SV
@@ -41,7 +43,7 @@ def slide(net, periodic, step, move, contacts, count, curve, balance, state, gri
     place, offset, mode = grip
     place_t, offset_t, mode_t = after_grip
     ways = balance[3]
-    point, tangent, bend = np.empty(2), np.empty(2), np.empty(2)
+    point, tangent = np.empty(2), np.empty(2)
     last = len(uv) - 1
     copy_particle(state, trial, 0)
     copy_particle(state, trial, last)
@@ -50,10 +52,10 @@ def slide(net, periodic, step, move, contacts, count, curve, balance, state, gri
     for c in range(count):
         i = contacts[c]
         if mode[i] == STUCK:
-            curve_at(curve, place[i], point, tangent, bend)
+            curve_at(curve, place[i], point, tangent)
             rate = np.sqrt((tangent[0] ** 2 + tangent[1] ** 2) / max(ways[i, 0, 0] ** 2 + ways[i, 0, 1] ** 2, 1e-300))
             place_t[i] = min(max(place[i] + step * move[c, 0] / max(rate, 1e-300), 0.0), len(curve) - 1.0)
-            curve_at(curve, place_t[i], point, tangent, bend)
+            curve_at(curve, place_t[i], point, tangent)
             touch_down(net, periodic, trial, i, point[0], point[1])
             continue
         u = uv[i, 0] + step * (move[c, 0] * ways[i, 0, 0] + move[c, 1] * ways[i, 1, 0])
@@ -65,7 +67,7 @@ def slide(net, periodic, step, move, contacts, count, curve, balance, state, gri
         locate(curve, i, trial, after_grip, size)
         if mode[i] != HELD and offset_t[i] * mode[i] >= 0.0:  # back on the curve, or across it
             mode_t[i] = np.int8(STUCK)
-            curve_at(curve, place_t[i], point, tangent, bend)
+            curve_at(curve, place_t[i], point, tangent)
             touch_down(net, periodic, trial, i, point[0], point[1])
             offset_t[i] = 0.0
             tally[EVALUATIONS] += 1
@@ -77,8 +79,8 @@ def locate(curve, i, state, grip, size):
     """Place of particle i along the starting curve, and its signed distance from it, positive to the left."""
     uv, frames, normal = state[1], state[2], state[3]
     place, offset, mode = grip
-    point, tangent, bend = np.empty(2), np.empty(2), np.empty(2)
-    place[i] = nearest_on(curve, place[i], uv[i, 0], uv[i, 1], frames[i], point, tangent, bend)
+    point, tangent = np.empty(2), np.empty(2)
+    place[i] = nearest_on(curve, place[i], uv[i, 0], uv[i, 1], frames[i], point, tangent)
     way, side, away = np.empty(3), np.empty(3), np.empty(3)
     for k in range(3):
         way[k] = frames[i, SU, k] * tangent[0] + frames[i, SV, k] * tangent[1]
@@ -92,7 +94,7 @@ def locate(curve, i, state, grip, size):
 def blank_balance(n):
     """Work space of `weigh`."""
     return (
-        np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 2, 2)), np.zeros((n, 4)), np.zeros((n, 2))
+        np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 2, 2)), np.zeros((n, 5)), np.zeros((n, 2))
     )  # fmt: skip
 
 
@@ -201,6 +203,7 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
                 price = then
                 for c in range(count):
                     i = contacts[c]
+                    price += step * move[c, 0] * load[i, 4]
                     if (mode[i] == 1 or mode[i] == -1) and after_grip[2][i] != STUCK:
                         price += load[i, 2] * load[i, 3] * abs(offset[i] + step * move[c, 1])
                 blind = slope <= 1e-13 * now and price <= cost * (1.0 + 1e-12)
@@ -272,6 +275,8 @@ def hold_all(
         )
         if final and status[p] != LIFTED:
             certify(net, periodic, boxes, levels, state, slip[p], tally)
+            if status[p] == CONVERGED and unresolved(state):
+                status[p] = TOO_COARSE
 
 
 @njit(cache=True)
@@ -279,7 +284,7 @@ def take_hold(net, periodic, curve, state, grip, size, tally):
     """Complete the grip of a state: stuck particles go to their place, slipping ones measure their way from it."""
     X, uv, frames, normal, touching, clear = state
     place, offset, mode = grip
-    point, tangent, bend = np.empty(2), np.empty(2), np.empty(2)
+    point, tangent = np.empty(2), np.empty(2)
     offset[0] = offset[-1] = 0.0
     for i in range(1, len(X) - 1):
         offset[i] = 0.0
@@ -290,7 +295,7 @@ def take_hold(net, periodic, curve, state, grip, size, tally):
             locate(curve, i, state, grip, size)
             mode[i] = np.int8(STUCK if offset[i] == 0.0 else (-1 if offset[i] > 0.0 else 1))
         if mode[i] == STUCK:
-            curve_at(curve, place[i], point, tangent, bend)
+            curve_at(curve, place[i], point, tangent)
             touch_down(net, periodic, state, i, point[0], point[1])
             tally[EVALUATIONS] += 1
             offset[i] = 0.0
@@ -312,17 +317,17 @@ def space_along(net, periodic, curve, state, place):
     """Put the particles on the starting curve, evenly by length in space."""
     X = state[0]
     n = len(X)
-    point, tangent, bend = np.empty(2), np.empty(2), np.empty(2)
+    point, tangent = np.empty(2), np.empty(2)
     for i in range(n):
         place[i] = (len(curve) - 1.0) * i / (n - 1)
     for _ in range(2):
         for i in range(n):
-            curve_at(curve, place[i], point, tangent, bend)
+            curve_at(curve, place[i], point, tangent)
             touch_down(net, periodic, state, i, point[0], point[1])
         s = np.zeros(n)
         for i in range(1, n):
             s[i] = s[i - 1] + np.sqrt(((X[i] - X[i - 1]) ** 2).sum())
         place[:] = np.interp(np.linspace(0.0, s[n - 1], n), s, place)
     for i in range(n):
-        curve_at(curve, place[i], point, tangent, bend)
+        curve_at(curve, place[i], point, tangent)
         touch_down(net, periodic, state, i, point[0], point[1])

@@ -13,7 +13,7 @@ from meshwind.path.batch import Batch, Setting, fresh
 from meshwind.path.friction import Friction
 from meshwind.path.paths import Status
 
-FEWEST = 48
+FEWEST = 96
 """Particles of the lowest rung, at least; and as many a turn."""
 QUICK = 12
 """Steps that a direct start with all particles may take."""
@@ -71,6 +71,8 @@ def choose(setting: Setting, curves: Floats, accuracy: float) -> tuple[Batch, tu
         batch = ascend(setting, batch, 2 * batch.X.shape[1] - 1)
         before, length = length, lengths(batch)
         done = ~failing(batch)
+        if (batch.status == Status.TOO_COARSE).any():
+            continue
         # second order: a third of the last change is what is left
         if np.all(np.abs(length - before)[done] <= 3.0 * accuracy * length[done]):
             break
@@ -94,12 +96,13 @@ def lengths(batch: Batch) -> Floats:
 
 
 def ascend(setting: Setting, batch: Batch, particles: int) -> Batch:
-    """The batch with more particles; a path at rest that does not settle anew from below starts from its curve.
+    """The batch with more particles; a path that stalls, below or here, starts anew from its curve.
 
-    A path that is not at rest is only drawn with more particles: it has no answer to refine.
+    A path that slid off is only drawn with more particles: it has no answer to refine.
     """
     fine = batch.refined(particles)
-    held, loose = np.flatnonzero(~failing(batch)), np.flatnonzero(failing(batch))
+    gone = failing(batch) & (batch.status != Status.STALLED)
+    held, loose = np.flatnonzero(~failing(batch)), np.flatnonzero(gone)
     taut = fine.rows(held)
     setting.run(taut, resume=True)
     fine.put(held, taut)
@@ -108,21 +111,19 @@ def ascend(setting: Setting, batch: Batch, particles: int) -> Batch:
         replace(setting, iterations=0).run(drawn, resume=True)
         drawn.status[:], drawn.residual[:] = batch.status[loose], batch.residual[loose]
         fine.put(loose, drawn)
-    lost = held[failing(taut)]
+    lost = np.flatnonzero((failing(fine) | failing(batch)) & ~gone)
     if len(lost):
         anew = fresh(fine.starts[lost], particles)
         anew.tallies[:] = fine.tallies[lost]
         setting.run(anew, resume=False)
         search(setting, anew)
-        done = np.flatnonzero(~failing(anew))
-        fine.tallies[lost] = anew.tallies
-        fine.put(lost[done], anew.rows(done))
+        fine.put(lost, anew)
     return fine
 
 
 def failing(batch: Batch) -> Bools:
-    """Which paths are not at rest."""
-    return np.asarray(batch.status != Status.CONVERGED)
+    """Which paths are not at rest; one that cuts an edge is."""
+    return np.asarray((batch.status != Status.CONVERGED) & (batch.status != Status.TOO_COARSE))
 
 
 def rescue(setting: Setting, batch: Batch) -> tuple[Floats, Floats]:

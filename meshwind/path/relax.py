@@ -14,12 +14,12 @@ from meshwind.path.block_tridiagonal import solve
 from meshwind.path.contact import lift, link
 from meshwind.path.newton import EVALUATIONS, FEET, ITERATIONS, SOLVES, assemble, carry_lifted, land, move_touching, sag
 from meshwind.path.paths import Status
-from meshwind.path.state import blank, copy, energy, place, space_evenly, touch_down
+from meshwind.path.state import blank, copy, distance, energy, place, space_evenly, touch_down
 from meshwind.surface.evaluate import S, unit_normal
 from meshwind.surface.tree import nearest_foot
 
-CONVERGED, SLID_START, SLID_END, UNSTABLE, STALLED, LEFT_CHART = (int(status) for status in Status)
-LIFTED = LEFT_CHART + 1
+CONVERGED, SLID_START, SLID_END, UNSTABLE, STALLED, LEFT_CHART, TOO_COARSE = (int(status) for status in Status)
+LIFTED = TOO_COARSE + 1
 """The fibre leaves the surface and no search tree was given: start again with one.  No result ever has it."""
 
 PULL = 1e-9
@@ -31,6 +31,8 @@ DESCENT = 1e-4
 """Armijo's share of the predicted fall."""
 PATIENCE = 60
 """Steps in a row that a path may lean on a rim before it counts as slid off there."""
+LONGEST_SEGMENT, OPPOSED = 2.0, -0.2
+"""A segment on the surface longer than this share of the mean, or whose normals have a product below, cuts an edge."""
 MOST_FALLS = 5
 """Saddles that a path may leave on its way to rest."""
 
@@ -209,6 +211,8 @@ def relax_all(
         )
         if final and status[p] != LIFTED:
             certify(net, periodic, boxes, levels, state, slip[p], tallies[p])
+            if status[p] == CONVERGED and unresolved(state):
+                status[p] = TOO_COARSE
 
 
 @njit(cache=True)
@@ -244,15 +248,36 @@ def certify(net, periodic, boxes, levels, state, slip, tally):
 
 
 @njit(cache=True)
+def unresolved(state):
+    """Whether the path cuts an edge: a segment much longer than the others, or normals that turn right over in one."""
+    X, normal, touching = state[0], state[3], state[4]
+    n = len(X)
+    _, length = energy(X)
+    for i in range(n - 1):
+        if touching[i] and touching[i + 1]:
+            if distance(X, i, i + 1) > LONGEST_SEGMENT * length / (n - 1):
+                return True
+            facing = 0.0
+            for k in range(3):
+                facing += normal[i, k] * normal[i + 1, k]
+            if facing < OPPOSED:
+                return True
+    return False
+
+
+@njit(cache=True)
 def needed_slip(X, normal, i):
-    """|kg| / kn from the turn of the polyline at particle i; 0 where the fibre runs straight."""
-    press = whole = along = span = 0.0
+    """|kg| / kn from the turn of the polyline's unit tangent at particle i; 0 where the fibre runs straight."""
+    before, after = distance(X, i, i - 1), distance(X, i + 1, i)
+    turn, middle = np.empty(3), np.empty(3)
     for k in range(3):
-        bend = X[i + 1, k] - 2.0 * X[i, k] + X[i - 1, k]
-        chord = X[i + 1, k] - X[i - 1, k]
-        press -= bend * normal[i, k]
-        whole += bend * bend
-        along += bend * chord
-        span += chord * chord
-    side = max(whole - press * press - along * along / max(span, 1e-300), 0.0)
-    return np.sqrt(side) / press if press > PULL * np.sqrt(span) else 0.0
+        a, e = (X[i, k] - X[i - 1, k]) / max(before, 1e-300), (X[i + 1, k] - X[i, k]) / max(after, 1e-300)
+        turn[k], middle[k] = e - a, e + a
+    n = normal[i]
+    press = side = square = 0.0
+    for k in range(3):
+        press -= turn[k] * n[k]
+        b = n[(k + 1) % 3] * middle[(k + 2) % 3] - n[(k + 2) % 3] * middle[(k + 1) % 3]
+        side += turn[k] * b
+        square += b * b
+    return abs(side) / np.sqrt(max(square, 1e-300)) / press if press > PULL else 0.0
