@@ -131,7 +131,7 @@ def time_step(results: Results, quick: bool) -> None:
             allowed = max(10.0 * problem.error(truth.length), 1e-6)
             for h in steps:
                 found = attempt(
-                    "backward-euler", problem, 101, dict(step_size=h, damping=damping, steps=1000, tolerance=1e-6)
+                    "backward-euler", problem, 101, dict(step_size=h, damping=damping, steps=500, tolerance=1e-6)
                 )
                 error = problem.error(found.length)
                 line.append(classify(found, error, allowed))
@@ -148,7 +148,7 @@ def time_step(results: Results, quick: bool) -> None:
                 )
             classes.append(line)
         paint(axes, list(steps), list(range(len(names))), classes, log_x=True)
-        axes.set(xlabel="time step h [sqrt(m/K)]", title=f"backward Euler, damping {damping:g} sqrt(K m), 1000 steps")
+        axes.set(xlabel="time step h [sqrt(m/K)]", title=f"backward Euler, damping {damping:g} sqrt(K m), 500 steps")
         key(axes, classes)
     ours: list[list[str]] = []
     for name in names:

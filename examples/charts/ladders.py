@@ -14,7 +14,7 @@ from meshwind.methods import stable_step
 from meshwind.methods.problems import Problem
 
 SIZES = (26, 51, 101, 201, 401, 801, 1601, 3201, 6401)
-QUICK_SIZES = (26, 101, 401, 1601)
+QUICK_SIZES = (26, 101, 401)
 STEP_LIMIT = 1.5e6
 """Particles times steps that a run may take: about 0.3 s."""
 COSTLIER = {"rk4": 4, "kkt": 8, "penalty": 8}

@@ -19,6 +19,7 @@ from meshwind.methods.problems import TABLE
 
 SOURCE = {"build": 233.22, "solve": 204.35, "lift and land": 149.65, "other": 15.86}
 """Milliseconds, C++ on 6 threads of a Core i7 7700K; its surface and number of particles are not given."""
+NAMES = {"other": "other (here: surface frames and forces)"}
 PROBLEM = TABLE["bottle-neck"]
 """A freeform part with a bridge, as the source's figure 7.2-b."""
 PARTICLES, STEPS = 401, 1000
@@ -121,6 +122,7 @@ def measure(results: Results) -> dict[str, float]:
     our_barrel = least(lambda: attempt("meshwind", convex, PARTICLES))
     slow = run("backward-euler", convex.surface(), convex.start, convex.end, **held)
     figures = dict(
+        linear_share=(here["build"] + here["solve"]) / sum(here.values()),
         whole_ms=1e3 * whole,
         on_surface_ms=1e3 * on_surface,
         reused_ms=1e3 * reused,
@@ -149,7 +151,7 @@ def _draw(results: Results, here: dict[str, float], figures: dict[str, float]) -
         left, total = 0.0, sum(parts.values())
         for (key, value), colour in zip(parts.items(), (BLUE, SKY, ORANGE, GREY), strict=True):
             share = 100 * value / total
-            axes.barh(row, share, left=left, color=colour, label=key if row == 0 else None)
+            axes.barh(row, share, left=left, color=colour, label=NAMES.get(key, key) if row == 0 else None)
             axes.annotate(
                 f"{share:.0f} %\n{value:.3g} ms", (left + share / 2, row), ha="center", va="center", fontsize=7
             )

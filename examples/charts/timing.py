@@ -8,7 +8,7 @@ T = TypeVar("T")
 
 REPEATS = 15
 """At most; fewer where a call is long."""
-SHARE = 0.15
+SHARE = 0.08
 """Seconds that the repeats of one call may take together, once three are done."""
 
 

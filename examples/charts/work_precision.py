@@ -220,7 +220,7 @@ def panel(axes: Axes, problem: Problem, points: Sequence[Point], cost: str) -> N
         + (f", friction {problem.friction:g}" if problem.friction else "")
     )
     low, high = axes.get_ylim()
-    axes.set_ylim(min(low, 1e-10), min(max(high, 1e-2), 1.0))
+    axes.set_ylim(low, min(max(high, 1e-2), 1.0))
 
 
 def draw(results: Results, points: Sequence[Point]) -> None:
@@ -243,7 +243,7 @@ def draw(results: Results, points: Sequence[Point]) -> None:
                     label: h for h, label in zip(*axes.get_legend_handles_labels(), strict=True) if len(h.get_xdata())
                 }
             figure.suptitle(
-                f"Taut paths {kind}: error against {word}. Down and left is better. Every dot is a setting that came to"
+                f"Taut paths, {kind}: error against {word}. Down and left is better. Every dot is a setting that came to"
                 " rest, the line joins a method's best.",
                 fontsize=11,
             )
