@@ -9,6 +9,7 @@ from meshwind.errors import BadInputError
 from meshwind.mandrel.ends import place
 from meshwind.output.apart import apart
 from meshwind.output.words import power, quantity, ratio
+from meshwind.path.paths import EDGE, Paths, Status
 from meshwind.surface import FitError, Surface
 
 MISSED = 10.0
@@ -46,6 +47,16 @@ class Note:
         """The note, naming its picture where that is there and not where it is not."""
         words = f"; see {self.picture}"
         return replace(self, text=self.text.removesuffix(words) + (words if there and self.picture else ""))
+
+
+def about_paths(paths: Paths) -> tuple[Note, ...]:
+    """What to say of the paths: how many cut an edge that their particles do not resolve."""
+    cut = int((paths.sharpest_turn[paths.status == Status.CONVERGED] > EDGE).sum())
+    if not cut:
+        return ()
+    told = "1 path turns" if cut == 1 else f"{cut} paths turn"
+    more = 2 * paths.gap.shape[1] - 1
+    return (Note(f"{told} over an edge within one segment, exact to its length there; --particles {more} tells more"),)
 
 
 def about_fit(surface: Surface, chart: Chart, tolerance: float, worst_fit: float, units: str = "") -> tuple[Note, ...]:

@@ -14,7 +14,7 @@ from meshwind.layup.families import families
 from meshwind.layup.layup import Layup, assess
 from meshwind.mandrel import Mesh, annulus, read
 from meshwind.mandrel.scalars import Scalars, read_scalars
-from meshwind.notes import FIT_ERROR, Note, about_fit
+from meshwind.notes import FIT_ERROR, Note, about_fit, about_paths
 from meshwind.options import FIELD, Options
 from meshwind.output import driver, folder
 from meshwind.output.fit_scene import fit_scene
@@ -162,6 +162,7 @@ def wind(
             particles=options.particles,
             friction=rough if rough is not None else float(options.friction),
         )
+        notes = (*notes, *about_paths(laid))
     with clock.stage("assess"):
         layup = assess(laid)
     result = Result(part, chart, layup, options, command, clock.seconds, notes)

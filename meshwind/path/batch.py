@@ -77,7 +77,10 @@ def fresh(starts: Floats, particles: int) -> Batch:
 class Setting:
     """What all paths of a solve have in common.
 
-    Solved in coordinates about the surface's middle, so that a part far from the origin loses no digits.
+    final: whether answers need their certificate.  even: whether frictionless paths, too, are solved for equal tension,
+    as those with friction are; it costs more and matters at edges alone, where the springs' own balance crowds the
+    particles on one side.  Solved in coordinates about the surface's middle, so that a part far from the origin loses
+    no digits.
     """
 
     surface: Surface
@@ -86,6 +89,7 @@ class Setting:
     tolerance: float
     iterations: int
     final: bool = True
+    even: bool = False
 
     def run(self, batch: Batch, resume: bool, tree: bool = True) -> None:
         """Bring the batch to rest, from its starting curves or, with `resume`, from where it is.
@@ -125,7 +129,7 @@ class Setting:
         )
         places = part.X, part.uv, part.normal, part.touching, part.gap, part.slip
         results = part.residual, part.status, part.tallies
-        if self.friction.none:
+        if self.friction.none and not self.even:
             spread(relax_all, len(part), 1, *general, *places, *results)
         else:
             spread(hold_all, len(part), 1, *general, self.friction.table, part.starts, part.place, part.mode, *places,

@@ -42,7 +42,7 @@ def slide(net, periodic, step, move, contacts, count, curve, balance, state, gri
     uv = state[1]
     place, offset, mode = grip
     place_t, offset_t, mode_t = after_grip
-    ways = balance[3]
+    ways, load = balance[3], balance[4]
     point, tangent = np.empty(2), np.empty(2)
     last = len(uv) - 1
     copy_particle(state, trial, 0)
@@ -65,7 +65,7 @@ def slide(net, periodic, step, move, contacts, count, curve, balance, state, gri
             u = min(max(u, 0.0), 1.0)
         touch_down(net, periodic, trial, i, u, v)
         locate(curve, i, trial, after_grip, size)
-        if mode[i] != HELD and offset_t[i] * mode[i] >= 0.0:  # back on the curve, or across it
+        if mode[i] != HELD and load[i, 3] > 0.0 and offset_t[i] * mode[i] >= 0.0:  # back on the curve, or across it
             mode_t[i] = np.int8(STUCK)
             curve_at(curve, place_t[i], point, tangent)
             touch_down(net, periodic, trial, i, point[0], point[1])
@@ -163,7 +163,8 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
             for c in range(count):
                 i = contacts[c]
                 # a particle just released must leave to the side that it is pulled to
-                if (mode[i] == 1 or mode[i] == -1) and offset[i] == 0.0 and move[c, 1] * mode[i] >= 0.0:
+                slips = (mode[i] == 1 or mode[i] == -1) and load[i, 3] > 0.0
+                if slips and offset[i] == 0.0 and move[c, 1] * mode[i] >= 0.0:
                     wrong += 1
                     if not firm:
                         mode[i], barred[i] = np.int8(STUCK), True

@@ -11,7 +11,7 @@ import numpy as np
 from meshwind.cast import Bools, Floats
 from meshwind.path.batch import Batch, Setting, fresh
 from meshwind.path.friction import Friction
-from meshwind.path.paths import Status
+from meshwind.path.paths import EDGE, Status, sharpest_turn
 
 FEWEST = 96
 """Particles of the lowest rung, at least; and as many a turn."""
@@ -58,7 +58,27 @@ def climb(
         for n in rungs[1:]:
             work = ascend(setting if n == particles else rough(setting), work, n)
         batch.put(rest, work)
-    return batch, holds
+    return even_out(setting, batch), holds
+
+
+def even_out(setting: Setting, batch: Batch) -> Batch:
+    """Solve frictionless paths that turn over sharp edges for equal tension; where that fails they stay as they are."""
+    index = np.flatnonzero(batch.status == Status.TOO_COARSE)
+    if setting.friction.none and len(index):
+        work = batch.rows(index)
+        work.place[:] = np.linspace(0.0, work.starts.shape[1] - 1.0, work.X.shape[1])
+        work.mode[:] = 1
+        replace(setting, even=True).run(work, resume=True)
+        again = np.flatnonzero(work.status != Status.CONVERGED)
+        if len(again):
+            anew = fresh(work.starts[again], work.X.shape[1])
+            anew.tallies[:] = work.tallies[again]
+            replace(setting, even=True).run(anew, resume=False)
+            work.put(again, anew)
+        batch.tallies[index] = work.tallies
+        done = np.flatnonzero(~failing(work))
+        batch.put(index[done], work.rows(done))
+    return batch
 
 
 def choose(setting: Setting, curves: Floats, accuracy: float) -> tuple[Batch, tuple[Floats, Floats]]:
@@ -68,10 +88,12 @@ def choose(setting: Setting, curves: Floats, accuracy: float) -> tuple[Batch, tu
     holds = rescue(setting, batch)
     length = lengths(batch)
     while batch.X.shape[1] < MOST:
-        batch = ascend(setting, batch, 2 * batch.X.shape[1] - 1)
+        batch = even_out(setting, ascend(setting, batch, 2 * batch.X.shape[1] - 1))
         before, length = length, lengths(batch)
         done = ~failing(batch)
-        if (batch.status == Status.TOO_COARSE).any():
+        if (batch.status == Status.TOO_COARSE).any() or (
+            sharpest_turn(batch.normal[done], batch.touching[done]) > EDGE
+        ).any():
             continue
         # second order: a third of the last change is what is left
         if np.all(np.abs(length - before)[done] <= 3.0 * accuracy * length[done]):
@@ -146,7 +168,7 @@ def rescue(setting: Setting, batch: Batch) -> tuple[Floats, Floats]:
 def search(setting: Setting, batch: Batch) -> Floats:
     """Try the paths that are not at rest in other ways, in place; returns the change of u that holds, 0 if unknown."""
     turns = np.zeros(len(batch))
-    for start in (wind_up,) if setting.friction.none else (from_smooth, from_rough):
+    for start in (from_few, wind_up) if setting.friction.none else (from_few, from_smooth, from_rough):
         index = np.flatnonzero(failing(batch))
         if len(index):
             work, held = start(setting, batch.rows(index))
@@ -155,6 +177,21 @@ def search(setting: Setting, batch: Batch) -> Floats:
             done = np.flatnonzero(~failing(work))
             batch.put(index[done], work.rows(done))
     return turns
+
+
+def from_few(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
+    """Try again from the answer with half the particles, to which small dents are nothing."""
+    n = part.X.shape[1]
+    few = fresh(part.starts, (n - 1) // 2 + 1)
+    few.tallies[:] = part.tallies
+    rough(setting).run(few, resume=False)
+    work = few.refined(n)
+    found = np.flatnonzero(~failing(few))
+    taut = work.rows(found)
+    setting.run(taut, resume=True)
+    work.status[:] = few.status
+    work.put(found, taut)
+    return work, np.zeros(len(few))
 
 
 def from_smooth(setting: Setting, part: Batch) -> tuple[Batch, Floats]:

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import IntEnum
 
+import numpy as np
+
 from meshwind.cast import Bools, Floats, Ints
 from meshwind.surface.surface import Surface
 
@@ -36,6 +38,10 @@ _ADVICE = {
     Status.STALLED: "the solver stopped before the fibre was at rest: use fewer revolutions, or a smoother surface "
     "(--tolerance 1e-3)",
 }
+
+
+EDGE = 1.7
+"""Turn of the surface within one segment, in radians, above which the segment cuts an edge."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +84,14 @@ class Paths:
     def __len__(self) -> int:
         return len(self.points)
 
+    @property
+    def sharpest_turn(self) -> Floats:
+        """Largest angle (p,), in radians, that the surface turns within one segment of a path.
+
+        Above EDGE the segment cuts an edge, and the path is right to the particles' spacing only.
+        """
+        return sharpest_turn(self.normal, self.on_surface)
+
     def advice(self, path: int) -> str:
         """What became of a path and, where it does not hold, what would hold it."""
         status = Status(int(self.status[path]))
@@ -87,3 +101,10 @@ class Paths:
         if self.holding_friction[path] > 0.0:
             ways.append(f"friction {self.holding_friction[path]:g}")
         return status.advice + (f"; {' or '.join(ways)} would hold it" if ways else "")
+
+
+def sharpest_turn(normal: Floats, touching: Bools) -> Floats:
+    """Largest angle (p,), in radians, between the normals (p, n, 3) of neighbours that touch (p, n)."""
+    facing = np.einsum("pnk,pnk->pn", normal[:, :-1], normal[:, 1:])
+    facing[~(touching[:, :-1] & touching[:, 1:])] = 1.0
+    return np.asarray(np.arccos(np.clip(facing.min(axis=1, initial=1.0), -1.0, 1.0)))

@@ -31,8 +31,8 @@ DESCENT = 1e-4
 """Armijo's share of the predicted fall."""
 PATIENCE = 60
 """Steps in a row that a path may lean on a rim before it counts as slid off there."""
-LONGEST_SEGMENT, OPPOSED = 2.0, -0.2
-"""A segment on the surface longer than this share of the mean, or whose normals have a product below, cuts an edge."""
+LONGEST_SEGMENT = 2.0
+"""A segment on the surface longer than this share of the mean cuts an edge."""
 MOST_FALLS = 5
 """Saddles that a path may leave on its way to rest."""
 
@@ -249,19 +249,13 @@ def certify(net, periodic, boxes, levels, state, slip, tally):
 
 @njit(cache=True)
 def unresolved(state):
-    """Whether the path cuts an edge: a segment much longer than the others, or normals that turn right over in one."""
-    X, normal, touching = state[0], state[3], state[4]
+    """Whether the path cuts an edge by a segment on the surface much longer than the others."""
+    X, touching = state[0], state[4]
     n = len(X)
     _, length = energy(X)
     for i in range(n - 1):
-        if touching[i] and touching[i + 1]:
-            if distance(X, i, i + 1) > LONGEST_SEGMENT * length / (n - 1):
-                return True
-            facing = 0.0
-            for k in range(3):
-                facing += normal[i, k] * normal[i + 1, k]
-            if facing < OPPOSED:
-                return True
+        if touching[i] and touching[i + 1] and distance(X, i, i + 1) > LONGEST_SEGMENT * length / (n - 1):
+            return True
     return False
 
 
