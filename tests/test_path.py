@@ -2,10 +2,24 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from meshwind.errors import BadInputError
-from meshwind.methods.problems import PROBLEMS, RULING, TURN, Problem, barrel, barrel_clairaut, hyperboloid, vase_radius
+from meshwind.layup.lengths import bridges
+from meshwind.methods.problems import (
+    PROBLEMS,
+    RULING,
+    TABLE,
+    TURN,
+    Problem,
+    barrel,
+    barrel_clairaut,
+    bottle,
+    hyperboloid,
+    vase_radius,
+)
 from meshwind.path import Paths, Status, solve
+from meshwind.path.touchdown import touchdowns
 from meshwind.surface import shapes
 
 
@@ -46,19 +60,50 @@ def test_position_converges_with_second_order(name: str) -> None:
     assert np.log2(errors[0] / errors[2]) / 2 >= 1.9
 
 
+def tangent_contact(end: float, low: float, high: float) -> float:
+    """The z in [low, high] at which the vase's profile is tangent to the line through its point at z = `end`."""
+
+    def slope(z: float) -> float:
+        return float(-0.35 * 0.75 * np.pi * np.sin(0.75 * np.pi * z + 0.3) + 0.225 * np.cos(2.25 * z))
+
+    def miss(z: float) -> float:
+        return float(vase_radius(np.float64(end)) - vase_radius(np.float64(z)) - slope(z) * (end - z))
+
+    return float(brentq(miss, low, high, xtol=1e-15))
+
+
+def bridge_end_errors(particles: int) -> tuple[float, float]:
+    """How far the inner ends of the vase's two bridges are from where their chords are tangent to it."""
+    spans = bridges(lay(TABLE["vase"], particles))
+    assert len(spans) == 2
+    landing, leaving = spans.ends[0, 1, 2], spans.ends[1, 0, 2]
+    return abs(landing - tangent_contact(0.0, 2.0, 2.8)), abs(leaving - tangent_contact(4.0, 2.8, 3.4))
+
+
 def test_bridge_ends_converge_with_second_order() -> None:
-    """The vase's long bridge starts at z=0 and lands tangent to the profile; the fibre's own landing must converge."""
-    errors = []
-    z = np.linspace(2.4, 2.9, 2_000_001)
-    r = vase_radius(z)
-    slope = (r - vase_radius(np.zeros(1))) / z
-    touch = np.array([z[np.argmax(slope)], 0.0, 0.0])
-    for n in (101, 401, 1601):
-        paths = lay(next(p for p in PROBLEMS if p.name == "vase"), n)
-        first = np.flatnonzero(paths.on_surface[0])[1]
-        errors.append(abs(paths.points[0, first, 2] - touch[0]))
-        assert errors[-1] <= 2 * 4.2 / n  # a contact is a particle: no better than the spacing
-    assert errors[2] < errors[0]
+    """Both bridges of the vase end at its rims' one side; on the other they must find the common tangent."""
+    coarse, fine = bridge_end_errors(101), bridge_end_errors(1601)
+    assert np.log2(coarse[1] / fine[1]) / 4 >= 1.9
+    assert max(bridge_end_errors(401)[0], fine[0]) <= 1e-7
+
+
+def test_bridge_ends_are_where_the_chord_is_tangent() -> None:
+    """The chord's angle to the surface at a touchdown is far below that at the particle next to it."""
+    paths = solve(bottle(), [(0.1, 0), (0.3, 0)], [(0.4, 1), (0.9, 1)])
+    spans = bridges(paths)
+    assert len(spans) >= 2
+    places = touchdowns(paths, spans.path, spans.first, spans.last)[1]
+    chord = spans.ends[:, 1] - spans.ends[:, 0]
+    chord /= np.linalg.norm(chord, axis=1)[:, None]
+    spacing = spans.length / (spans.last - spans.first)
+    for side, particle in enumerate((spans.first, spans.last)):
+        free = (particle > 0) & (particle < 400)
+        assert free.any()
+        dip = np.abs(np.einsum("bk,bk->b", chord, paths.surface.normals(places[:, side])))[free]
+        at_particle = np.abs(np.einsum("bk,bk->b", chord, paths.normal[spans.path, particle]))[free]
+        assert (dip <= 0.05 * at_particle.max()).all()
+        moved = np.linalg.norm(spans.ends[:, side] - paths.points[spans.path, particle], axis=1)
+        assert (moved <= 2.0 * spacing).all()
 
 
 @pytest.mark.parametrize("twist", [0.5, 1.5, 2.5])
@@ -97,10 +142,15 @@ def test_convex_parts_pay_nothing_for_lifting() -> None:
 
 
 @pytest.mark.parametrize(("change", "why"), [
-    (dict(friction=0.1), "friction"), (dict(particles=2), "particles"), (dict(start=[(0, -0.5)]), "start"),
-    (dict(end=[(0, 1), (1, 1)]), "as many"), (dict(start=[(np.nan, 0)]), "NaN"),
+    (dict(friction=-0.1), "friction"), (dict(friction=np.nan), "friction"), (dict(friction=11.0), "friction"),
+    (dict(friction=np.ones((1, 5))), "2 by 2"), (dict(friction=lambda places: places), "one number a point"),
+    (dict(friction=lambda places: places[:, 0] - 9.0), "friction"), (dict(particles=2), "particles"),
+    (dict(particles=2.5), "particles"), (dict(particles=None, accuracy=0.0), "accuracy"),
+    (dict(start=[(0, -0.5)]), "start"), (dict(end=[(0, 1), (1, 1)]), "as many"), (dict(start=[(np.nan, 0)]), "NaN"),
+    (dict(initial=[[[0.0, np.nan], [0.5, 1.0]]]), "initial"),
 ])  # fmt: skip
 def test_bad_arguments_are_refused(change: dict[str, object], why: str) -> None:
     arguments: dict[str, object] = dict(start=[(0, 0)], end=[(0.5, 1)]) | change
-    with pytest.raises(BadInputError, match=why):
+    with pytest.raises(BadInputError, match=why) as refusal:
         solve(barrel(), arguments.pop("start"), arguments.pop("end"), **arguments)  # type: ignore[arg-type]
+    assert "\n" not in str(refusal.value)

@@ -1,0 +1,147 @@
+"""From coarse to fine: accuracy without a number of particles, counters, and answers that do not depend on threads."""
+
+import json
+import os
+import subprocess
+import sys
+from dataclasses import fields
+from hashlib import sha256
+
+import numpy as np
+import pytest
+from friction_checks import bent, wavy
+
+from meshwind.cast import Floats
+from meshwind.methods.problems import FREEFORM, PROBLEMS, TABLE, Problem, barrel, vase
+from meshwind.path import Counters, Paths, Status, solve
+
+
+def length(paths: Paths) -> Floats:
+    return np.asarray(np.linalg.norm(np.diff(paths.points, axis=1), axis=2).sum(axis=1))
+
+
+def choose(problem: Problem, accuracy: float) -> Paths:
+    initial = None if problem.initial is None else problem.initial(1601)[None]
+    return solve(problem.surface(), [problem.start], [problem.end], particles=None, accuracy=accuracy,
+                 friction=problem.friction, initial=initial)  # fmt: skip
+
+
+@pytest.mark.parametrize("problem", (*PROBLEMS, *FREEFORM), ids=lambda p: p.name)
+def test_the_accuracy_asked_for_is_met(problem: Problem) -> None:
+    for accuracy in (1e-3, 1e-5):
+        paths = choose(problem, accuracy)
+        assert paths.status[0] == Status.CONVERGED
+        assert problem.error(float(length(paths)[0])) <= accuracy
+        assert paths.residual[0] <= 1e-10
+
+
+@pytest.mark.parametrize("name", ["catenary-0.3", "catenary-0.2", "stick-slip"])
+def test_the_accuracy_asked_for_is_met_under_friction(name: str) -> None:
+    paths = choose(TABLE[name], 1e-5)
+    assert paths.status[0] == Status.CONVERGED
+    assert TABLE[name].error(float(length(paths)[0])) <= 1e-5
+
+
+def test_no_more_particles_than_needed() -> None:
+    """A looser accuracy takes fewer particles, and an easy path fewer than a bumpy one."""
+    counts = [choose(TABLE["barrel-1.5"], accuracy).points.shape[1] for accuracy in (1e-4, 1e-5, 1e-6)]
+    assert counts[0] <= counts[1] < counts[2]
+    assert choose(TABLE["hyperboloid-0.5"], 1e-5).points.shape[1] < choose(TABLE["bottle-turn"], 1e-5).points.shape[1]
+    # second order: the error at the count chosen for 1e-5 says that an eighth of them would not have done
+    few = solve(barrel(), [(0, 0)], [TABLE["barrel-1.5"].end], particles=counts[1] // 8)
+    assert TABLE["barrel-1.5"].error(float(length(few)[0])) > 1e-5
+
+
+def test_counters_add_up() -> None:
+    flat = solve(barrel(), [(0, 0)], [(0.3, 1)]).counters
+    held = solve(barrel(), [(0, 0)], [(0.3, 1)], friction=0.1).counters
+    aloft = solve(vase(), [(0, 0)], [(0.3, 1)]).counters
+    for counters in (flat, held, aloft):
+        assert min(counters.evaluations, counters.solves, counters.iterations) > 0
+        assert counters.evaluations >= 401
+        assert counters.iterations <= 1000
+    assert flat.feet == held.feet == 0
+    assert aloft.feet > 0
+    twice = solve(barrel(), [(0, 0), (0, 0)], [(0.3, 1), (0.3, 1)]).counters
+    assert twice == Counters(*(2 * getattr(flat, field.name) for field in fields(Counters)))
+
+
+def test_a_path_does_not_depend_on_its_neighbours() -> None:
+    """Among others, in whatever order, the same bits; alone the same answer, if by other rungs."""
+    start = np.array([(0.0, 0.0), (0.3, 0.02), (0.7, 0.0), (0.1, 0.0)])
+    end = np.array([(0.3, 1.0), (-0.25, 0.97), (1.25, 1.0), (2.4, 1.0)])
+    for surface, friction in ((bent(), 0.0), (bent(), 0.1), (wavy(), 0.0), (wavy(), 0.1)):
+        together = solve(surface, start, end, particles=301, friction=friction)
+        back = solve(surface, start[::-1], end[::-1], particles=301, friction=friction)
+        for name in ("points", "uv", "on_surface", "gap", "slip", "status", "residual"):
+            one, other = getattr(together, name), getattr(back, name)[::-1]
+            assert np.array_equal(one, other, equal_nan=one.dtype.kind == "f"), name
+        for k in range(4):
+            alone = solve(surface, start[k : k + 1], end[k : k + 1], particles=301, friction=friction)
+            assert alone.status[0] == together.status[k]
+            if alone.status[0] == Status.CONVERGED:
+                assert np.abs(alone.points[0] - together.points[k]).max() <= 1e-7 * surface.size
+
+
+LAY = """
+import json, sys
+sys.path.insert(0, {tests!r})
+from test_ladder import digest
+print(json.dumps(digest()))
+"""
+
+
+def digest() -> dict[str, str]:
+    """Hashes of all that batches on several parts hold, with and without friction."""
+    start = np.stack([np.arange(12) / 12, np.zeros(12)], axis=1)
+    end = np.stack([np.arange(12) / 12 + np.linspace(-1.5, 1.5, 12), np.ones(12)], axis=1)
+    found = {}
+    for name, surface in (("bent", bent()), ("barrel", barrel())):
+        for friction in (0.0, 0.1):
+            for particles in (201, None):
+                paths = solve(surface, start, end, particles=particles, friction=friction, accuracy=1e-4)
+                arrays = [getattr(paths, field.name) for field in fields(Paths)]
+                joined = b"".join(array.tobytes() for array in arrays if isinstance(array, np.ndarray))
+                found[f"{name} {friction} {particles}"] = sha256(joined + repr(paths.counters).encode()).hexdigest()
+    return found
+
+
+def python(code: str, threads: int) -> str:
+    environment = dict(os.environ) | {"NUMBA_NUM_THREADS": str(threads)}
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code], env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_threads_do_not_change_a_bit() -> None:
+    code = LAY.format(tests=os.path.dirname(__file__))
+    one, two = (json.loads(python(code, threads)) for threads in (1, 2))
+    assert one == two
+    assert len(set(one.values())) == len(one)
+
+
+FRUGAL = """
+from meshwind.methods.problems import barrel, sphere
+from meshwind.path import solve
+from meshwind.path.hold import hold_all
+from meshwind.surface import tree
+
+for surface in (barrel(), sphere()):
+    for particles in (401, None):
+        paths = solve(surface, [(0, 0), (0.1, 0)], [(0.2, 1), (0.35, 1)], particles=particles)
+        assert (paths.status == 0).all()
+        assert paths.counters.feet == 0
+    assert "tree" not in vars(surface) and "tree" not in vars(surface.centred)
+assert not tree.build.signatures
+assert not hold_all.signatures
+solve(barrel(), [(0, 0)], [(0.2, 1)], friction=0.1)
+assert hold_all.signatures
+print("frugal")
+"""
+
+
+def test_smooth_convex_parts_pay_for_neither_friction_nor_lifting() -> None:
+    """No search tree is built, no foot point found and no friction code compiled, nor loaded from the cache."""
+    assert python(FRUGAL, 1).strip() == "frugal"
