@@ -9,7 +9,7 @@ several repeats after a warm-up.
 
 import argparse
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, process_time
 
 import numba
 from charts import comparison, fitting, particles, source_in_space, source_on_surface, source_timing, work_precision
@@ -60,9 +60,11 @@ def main() -> None:
             f" ({row['its_setting']}), {row['factor']:.2g} times, errors {row['our_error']:.1e} and"
             f" {row['its_error']:.1e}"
         )
-    results.table("run", [dict(seconds=perf_counter() - begin)])
+    results.table("run", [dict(seconds=perf_counter() - begin, processor_seconds=process_time())])
     results.write()
-    print(f"{len(points)} settings, {perf_counter() - begin:.0f} s; charts in {given.out}")
+    print(
+        f"{len(points)} settings, {perf_counter() - begin:.0f} s, {process_time():.0f} s of one core; charts in {given.out}"
+    )
 
 
 if __name__ == "__main__":

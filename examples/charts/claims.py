@@ -145,7 +145,7 @@ def judge(results: Results, figure_7_6: list[dict[str, Any]], setting: dict[str,
         claim(
             "70 % of the time goes into building and solving",
             setting["linear_share"] >= 0.6,
-            f"{100 * setting['linear_share']:.0f} % here: elimination by 2 x 2 blocks needs no sparse matrix, so that evaluating"
+            f"{100 * setting['linear_share']:.0f} % here: 2 x 2 blocks need no sparse matrix, so that evaluating"
             " the surface is the larger part",
         ),
         claim(

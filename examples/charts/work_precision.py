@@ -243,7 +243,7 @@ def draw(results: Results, points: Sequence[Point]) -> None:
                     label: h for h, label in zip(*axes.get_legend_handles_labels(), strict=True) if len(h.get_xdata())
                 }
             figure.suptitle(
-                f"Taut paths, {kind}: error against {word}. Down and left is better. Every dot is a setting that came to"
+                f"Taut paths, {kind}: error against {word}. Down and left is better. Each dot is a setting that came to"
                 " rest, the line joins a method's best.",
                 fontsize=11,
             )
