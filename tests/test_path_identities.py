@@ -1,0 +1,182 @@
+"""What must not matter: where a part lies, its unit, its mirror image, which way a path runs, how (u, v) is laid."""
+
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+from friction_checks import SHAPES, bent_shape
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from meshwind.cast import Floats
+from meshwind.path import Paths, Status, solve
+from meshwind.surface import Surface, shapes
+
+PARTICLES = 151
+NEAR = 1e-6
+"""Largest distance between two answers, over the part's size; measured: 1e-9."""
+
+parts = st.sampled_from(["bent", "bottle", "vase", "wavy", "elbow"])
+frictions = st.sampled_from([0.0, 0.05, 0.3])
+shares = st.floats(0.0, 1.0, allow_nan=False)
+few = settings(max_examples=25, deadline=None, derandomize=True, database=None)
+
+
+@st.composite
+def ends(draw: Callable[..., float]) -> tuple[Floats, Floats]:
+    """Two ends, one in the lower third and one in the upper, up to 0.7 turns apart."""
+    u, turn = draw(shares), 1.4 * draw(shares) - 0.7
+    return np.array([[u, 0.3 * draw(shares)]]), np.array([[u + turn, 1.0 - 0.3 * draw(shares)]])
+
+
+def lay(surface: Surface, start: Floats, end: Floats, friction: float, initial: Floats | None = None) -> Paths:
+    given_curve = None if initial is None else initial[None]
+    return solve(surface, start, end, particles=PARTICLES, friction=friction, initial=given_curve)
+
+
+def same(paths: Paths, points: Floats, other: Paths, near: float = NEAR) -> None:
+    """Both at rest on the same curve, or neither."""
+    assert (paths.status[0] == Status.CONVERGED) == (other.status[0] == Status.CONVERGED)
+    if paths.status[0] == Status.CONVERGED:
+        assert np.abs(points - paths.points[0]).max() <= near * paths.surface.size
+
+
+def rotation(seed: int) -> Floats:
+    q, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
+    return np.asarray(q * np.linalg.det(q))
+
+
+def turned(surface: Surface, matrix: Floats, reverse_u: bool, reverse_v: bool) -> Surface:
+    """The surface with control points @ matrix.T, u or v running the other way."""
+    points = surface.control_points @ matrix.T
+    points = points[::-1] if reverse_u else points
+    return Surface(points[:, ::-1] if reverse_v else points, surface.periodic)
+
+
+def backwards(surface: Surface, uv: Floats, reverse_v: bool) -> Floats:
+    """Where uv goes if the order of the control points is reversed in u: basis i is centred on (i - 1) / nu."""
+    u = (surface.control_points.shape[0] - 3) / surface.spans[0] - uv[:, 0]
+    return np.stack([u, 1.0 - uv[:, 1] if reverse_v else uv[:, 1]], axis=1)
+
+
+@few
+@given(parts, ends(), frictions, st.integers(0, 1000), st.floats(-6.0, 6.0), st.floats(0.0, 10.0))
+def test_place_and_unit(
+    name: str, places: tuple[Floats, Floats], friction: float, seed: int, power: float, far: float
+) -> None:
+    surface, scale, matrix = SHAPES[name](), 10.0**power, rotation(seed)
+    shift = far * surface.size * matrix[0]
+    moved = Surface((surface.control_points @ matrix.T + shift) * scale, surface.periodic)
+    paths, other = lay(surface, *places, friction), lay(moved, *places, friction)
+    same(paths, (other.points[0] / scale - shift) @ matrix, other)
+    assert np.array_equal(paths.on_surface, other.on_surface) or friction == 0.0 or paths.status[0] != 0
+
+
+@few
+@given(parts, ends(), frictions)
+def test_mirror_image(name: str, places: tuple[Floats, Floats], friction: float) -> None:
+    """x to -x: u runs the other way, so that normals stay outward and the family changes."""
+    surface, mirror = SHAPES[name](), np.diag([-1.0, 1.0, 1.0])
+    image = turned(surface, mirror, True, False)
+    start, end = (backwards(surface, place, False) for place in places)
+    paths, other = lay(surface, *places, friction), lay(image, start, end, friction)
+    same(paths, other.points[0] @ mirror, other)
+    if places[0][0, 0] != places[1][0, 0]:
+        assert paths.family[0] == -other.family[0]
+
+
+@few
+@given(parts, ends(), frictions)
+def test_reversal_of_the_path(name: str, places: tuple[Floats, Floats], friction: float) -> None:
+    paths, other = lay(SHAPES[name](), *places, friction), lay(SHAPES[name](), *places[::-1], friction)
+    same(paths, other.points[0, ::-1], other)
+
+
+@few
+@given(parts, ends(), frictions)
+def test_other_end_first(name: str, places: tuple[Floats, Floats], friction: float) -> None:
+    """u and v both run the other way: the same part, seen from its other end."""
+    surface = SHAPES[name]()
+    start, end = (backwards(surface, place, True) for place in places)
+    other = lay(turned(surface, np.eye(3), True, True), start, end, friction)
+    paths = lay(surface, *places, friction)
+    same(paths, other.points[0], other)
+
+
+@few
+@given(st.sampled_from(["vase", "barrel", "elbow", "hyperboloid"]), shares, shares, frictions)
+def test_either_family(name: str, u: float, turn: float, friction: float) -> None:
+    """A part with a mirror plane: the paths of one family are the images of the other's, status and all."""
+    surface = SHAPES[name]()
+    u = 0.0 if name == "elbow" else u
+    # the elbow's plane is z = 0; the plane of a part of revolution may be turned with the start
+    angle = 2 * np.pi * u
+    normal = np.array([0.0, 0.0, 1.0]) if name == "elbow" else np.array([-np.sin(angle), np.cos(angle), 0.0])
+    mirror = np.eye(3) - 2 * np.outer(normal, normal)
+    start = np.array([[u, 0.05]])
+    ahead, back = (lay(surface, start, np.array([[u + s * 0.6 * turn, 0.9]]), friction) for s in (1, -1))
+    same(ahead, back.points[0] @ mirror, back)
+    if turn > 0.0:
+        assert (ahead.family[0], back.family[0]) == (1, -1)
+
+
+@few
+@given(parts, ends(), frictions, st.integers(-3, 3))
+def test_whole_turns_of_u(name: str, places: tuple[Floats, Floats], friction: float, turns: int) -> None:
+    surface, shift = SHAPES[name](), np.array([float(turns), 0.0])
+    paths, other = lay(surface, *places, friction), lay(surface, places[0] + shift, places[1] + shift, friction)
+    same(paths, other.points[0], other)
+
+
+def warp(uv: Floats) -> Floats:
+    """A smooth change of parameters of period 1 in u that keeps the rims."""
+    u, v = uv[..., 0], uv[..., 1]
+    return np.stack([u + 0.05 * np.sin(2 * np.pi * (u + v)), v + 0.1 * v * (1 - v) * np.cos(2 * np.pi * u)], axis=-1)
+
+
+def unwarp(uv: Floats) -> Floats:
+    """The inverse of `warp`, by its contraction."""
+    found = uv.copy()
+    for _ in range(200):
+        found = found - (warp(found) - uv)
+    return found
+
+
+@cache
+def fine() -> Surface:
+    return shapes.parametric(bent_shape, (192, 192))
+
+
+@cache
+def warped() -> Surface:
+    def formula(u: Floats, v: Floats) -> Floats:
+        places = warp(np.stack(np.broadcast_arrays(u, v), axis=-1))
+        return bent_shape(places[..., 0], places[..., 1])
+
+    return shapes.parametric(formula, (192, 192))
+
+
+@few
+@given(ends(), frictions)
+def test_reparameterised_surface(places: tuple[Floats, Floats], friction: float) -> None:
+    """The same part under other (u, v), and the same starting curve in space: the same fibre."""
+    curve = places[0] + np.linspace(0.0, 1.0, 801)[:, None] * (places[1] - places[0])
+    other_curve = unwarp(curve)
+    other_curve[:, 1] = np.clip(other_curve[:, 1], 0.0, 1.0)
+    paths = lay(fine(), *places, friction, curve)
+    other = lay(warped(), other_curve[:1], other_curve[-1:], friction, other_curve)
+    same(paths, other.points[0], other, 1e-4)  # the two splines differ by 1e-7, the particles slide by more
+
+
+@few
+@given(parts, ends(), st.sampled_from([0.0, 0.05, 0.3]))
+def test_more_particles(name: str, places: tuple[Floats, Floats], friction: float) -> None:
+    """The same curve with four times as many: the particles that both have come closer together each time."""
+    surface = SHAPES[name]()
+    found = [solve(surface, *places, particles=n, friction=friction) for n in (101, 401, 1601)]
+    settled = {int(paths.status[0]) for paths in found}
+    assert len(settled) == 1
+    if settled == {int(Status.CONVERGED)}:
+        coarse, middle, dense = (paths.points[0] for paths in found)
+        assert np.abs(coarse - middle[::4]).max() <= 5e-3 * surface.size
+        assert np.abs(middle - dense[::4]).max() <= 5e-4 * surface.size
