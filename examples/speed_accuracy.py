@@ -63,7 +63,8 @@ def main() -> None:
     results.table("run", [dict(seconds=perf_counter() - begin, processor_seconds=process_time())])
     results.write()
     print(
-        f"{len(points)} settings, {perf_counter() - begin:.0f} s, {process_time():.0f} s of one core; charts in {given.out}"
+        f"{len(points)} settings, {perf_counter() - begin:.0f} s ("
+        f"{process_time():.0f} s of a core); charts in {given.out}"
     )
 
 
