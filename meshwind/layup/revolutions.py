@@ -97,13 +97,12 @@ def choose_revolutions(
     top = min(held.high, most)
     common = pressed.most_common(held.low, top)
     share = max((float(pressed.share(np.array([_inside(*each)]))[0]) for each in common), default=0.0)
-    trials = list(held.trials)
-    if held.any:
-        trials += [trial(surface, float(turns), friction, tried) for turns in _candidates(held, top)]
+    candidates = [trial(surface, float(turns), friction, tried) for turns in _candidates(held, top, paths)]
     chosen, trials = _choose(
-        _order(trials, held, common, square),
-        trials,
+        _order(candidates, held, common, square),
+        [*held.trials, *candidates],
         lambda turns: full_trial(surface, turns, friction, paths, particles),
+        0.5 / paths,
     )
     gains = _further(surface, held, most, friction) if further and held.any and np.isfinite(held.high) else (0.0, 0.0)
     trials.sort(key=lambda each: each.revolutions)
@@ -118,12 +117,24 @@ def _limit(held: Holding) -> float:
     return held.low + MARGIN * (held.high - held.low)
 
 
-def _candidates(held: Holding, top: float) -> Floats:
-    return np.linspace(held.low, min(top, _limit(held)), CANDIDATES + 1)[1:]
+def _candidates(held: Holding, top: float, paths: int) -> Floats:
+    """Numbers spread evenly over those that hold, such that ends of both families meet on the end rim too."""
+    last = min(top, _limit(held))
+    if not held.any:
+        return np.zeros(0)
+    even = np.linspace(held.low, last, CANDIDATES + 1)[1:]
+    meeting = np.unique(_meeting(even, paths))
+    meeting = meeting[(meeting > held.low) & (meeting <= last) & (meeting > 0.0)]
+    return meeting if len(meeting) else even
+
+
+def _meeting(turns: Floats, paths: int) -> Floats:
+    """The nearest revolutions by which both families end in the same points: whole multiples of 1 / 2 paths."""
+    return np.asarray(np.round(2.0 * paths * turns) / (2.0 * paths))
 
 
 def _order(trials: list[Trial], held: Holding, common: Intervals, square: float) -> list[Trial]:
-    """The candidates, the best first: those that bridge no more than the least, then by what they bridge."""
+    """The trials that hold, the best first: those that bridge no more than the least, then by what they bridge."""
     good = [each for each in trials if each.holds and 0.0 < each.revolutions <= _limit(held) * (1.0 + 1e-12)]
     least = min((each.bridged for each in good), default=0.0)
 
@@ -135,7 +146,7 @@ def _order(trials: list[Trial], held: Holding, common: Intervals, square: float)
     return sorted(good, key=merit)
 
 
-def _choose(order: list[Trial], trials: list[Trial], wound: Wound) -> tuple[Trial, list[Trial]]:
+def _choose(order: list[Trial], trials: list[Trial], wound: Wound, grain: float) -> tuple[Trial, list[Trial]]:
     """The winding in earnest that holds and bridges least, or has most paths at rest; and all windings tried.
 
     Coarse paths miss the bridged share by several percent of the fibre: where all bridge, candidates are compared by
@@ -151,9 +162,13 @@ def _choose(order: list[Trial], trials: list[Trial], wound: Wound) -> tuple[Tria
             checked.append(wound(best.revolutions))
     numbers = sorted(each.revolutions for each in order)
     step = 0.5 * float(np.diff(numbers).max(initial=0.0))
-    while checked and step > _CLOSE * _least(checked).revolutions and _least(checked).bridged > NEAR:
+    while checked and step > max(_CLOSE * _least(checked).revolutions, 0.5 * grain) and _least(checked).bridged > NEAR:
+        whole = grain * np.ceil(step / grain - 1e-9)
         middle = _least(checked).revolutions
-        checked += [wound(turns) for turns in (middle - step, middle + step) if 0.0 < turns <= numbers[-1]]
+        beside = [middle - whole, middle + whole]
+        known = [each.revolutions for each in checked]
+        beside = [turns for turns in beside if 0.0 < turns <= numbers[-1] + 1e-9 and not np.isclose(known, turns).any()]
+        checked += [wound(turns) for turns in beside]
         step *= 0.5
     turned = checked or [each for each in trials if each.revolutions > 0.0]
     return _least(turned), [*trials, *checked]

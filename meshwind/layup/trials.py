@@ -17,6 +17,8 @@ PATHS = 8
 """Paths a family; the part turns by an eighth from one to the next."""
 _PARTICLES = 72
 """Segments of a path at least: on a barrel the bound of revolutions comes out to 1e-3."""
+_FINER = (1, 2, 4)
+"""Times so many segments where a path does not hold: coarse ones catch on sharp edges."""
 _TOLERANCE, _ITERATIONS = 1e-6, 150
 """A path that is not all but at rest by then slides: waiting longer only costs."""
 _HOPELESS = 0.5
@@ -39,16 +41,23 @@ class Trial:
 
 
 def trial(surface: Surface, revolutions: float, friction: float = 0.0, paths: int = PATHS) -> Trial:
-    """Wind both families with `paths` paths each, coarse ones, as the first rung of `solve` does."""
+    """Wind both families with `paths` coarse paths each; those that do not hold are tried anew with more particles."""
     rims = families(surface, paths, revolutions)
     setting = Setting(surface, friction_of(surface, friction), True, _TOLERANCE, _ITERATIONS)
     curves = straight(rims.start, rims.end, 2)
-    batch = fresh(curves, max(_PARTICLES, fewest(curves)) + 1)
-    setting.run(batch, resume=False)
-    lost = float((batch.status != Status.CONVERGED).mean())
-    if 0.0 < lost <= _HOPELESS:
-        search(setting, batch)
-    return told(as_paths(setting, batch, rims.family), revolutions)
+    least = max(_PARTICLES, fewest(curves))
+    left, batches = np.arange(len(curves)), []
+    for finer in _FINER:
+        batch = fresh(curves[left], least * finer + 1)
+        setting.run(batch, resume=False)
+        lost = float((batch.status != Status.CONVERGED).mean())
+        if finer > 1 or 0.0 < lost <= _HOPELESS:
+            search(setting, batch)
+        batches.append(as_paths(setting, batch, rims.family[left]))
+        left = left[batch.status != Status.CONVERGED]
+        if not len(left) or (finer == 1 and lost > _HOPELESS):
+            break
+    return _sum_up(batches, revolutions)
 
 
 def full_trial(surface: Surface, revolutions: float, friction: float, paths: int, particles: int) -> Trial:
@@ -60,9 +69,17 @@ def full_trial(surface: Surface, revolutions: float, friction: float, paths: int
 
 def told(laid: Paths, revolutions: float) -> Trial:
     """The figures of paths that were wound by so many revolutions."""
-    figures = lengths(laid)
-    rest = laid.status == Status.CONVERGED
-    measured = rest if rest.any() else np.ones(len(laid), dtype=bool)
-    bridged = float(figures.bridged[measured].sum() / max(float(figures.length[measured].sum()), 1e-300))
-    slid = tuple(int((laid.status == end).sum()) for end in (Status.SLID_OFF_START, Status.SLID_OFF_END))
-    return Trial(float(revolutions), float(rest.mean()), bridged, (slid[0], slid[1]))
+    return _sum_up([laid], revolutions)
+
+
+def _sum_up(batches: list[Paths], revolutions: float) -> Trial:
+    """The figures of paths of which those not at rest were tried again in the batch that follows."""
+    rest = [laid.status == Status.CONVERGED for laid in batches]
+    held = sum(int(each.sum()) for each in rest)
+    length = bridged = 0.0
+    for laid, mask in zip(batches, rest, strict=True):
+        figures, told = lengths(laid), mask if held else np.ones_like(mask)
+        length += float(figures.length[told].sum())
+        bridged += float(figures.bridged[told].sum())
+    slid = tuple(int((batches[-1].status == end).sum()) for end in (Status.SLID_OFF_START, Status.SLID_OFF_END))
+    return Trial(float(revolutions), held / len(batches[0]), bridged / max(length, 1e-300), (slid[0], slid[1]))
