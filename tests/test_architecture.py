@@ -20,6 +20,7 @@ ORDER = [
     "layup",
     "redesign",
     "output",
+    "export",
     "options",
     "notes",
     "pipeline",

@@ -1,0 +1,34 @@
+"""Results folders of exact layups, written by the writers of a run and read back as an export reads them."""
+
+from pathlib import Path
+
+import numpy as np
+from layup_shapes import bridged, cylinder, helices
+
+from meshwind.export.results import Results, read_results
+from meshwind.layup.layup import assess
+from meshwind.mandrel.mesh import Mesh
+from meshwind.output.maps import grid
+from meshwind.output.report import report, write_report
+from meshwind.output.write import write_files
+from meshwind.path.paths import Paths
+
+
+def leave(folder: Path, paths: Paths, units: str = "mm") -> Results:
+    """Write what a run writes, and read it."""
+    layup = assess(paths)
+    on = grid(paths.surface)
+    part = Mesh(on.points, np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]]), "part.stl")
+    write_files(folder, layup)
+    write_report(folder / "report.json", report(layup, part, None, revolutions=0.25, units=units))
+    return read_results(folder)
+
+
+def waisted_results(folder: Path, units: str = "mm") -> Results:
+    """A waist of radius 1 and height 4 that every fibre bridges."""
+    return leave(folder, bridged(), units)
+
+
+def plain_results(folder: Path, units: str = "mm") -> Results:
+    """A cylinder of radius 1 and height 4 with helices of half a turn, which are exact geodesics."""
+    return leave(folder, helices(16, 0.5, 401, cylinder(64)), units)
