@@ -1,0 +1,92 @@
+"""The fitted surface as shell elements: a grid of quads, or the quad mesh on the crossings."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from meshwind.cast import Floats, Ints, frozen
+from meshwind.errors import BadInputError
+from meshwind.export.results import Results
+from meshwind.export.vtk_reading import read_faces
+from meshwind.layup.quads import edge_counts
+from meshwind.surface.surface import Surface
+
+_FEWEST = 12, 4
+"""Elements around and along below which a part is no part."""
+_ON_RIM = 1e-9
+
+
+@dataclass(frozen=True)
+class Elements:
+    """Quads (q, 4) and triangles (t, 3) between points (n, 3) on a surface at uv (n, 2); q + t = k elements.
+
+    Corners run counterclockwise seen from outside; centre (k, 2) is each element's middle in uv, quads first.
+    """
+
+    surface: Surface
+    uv: Floats
+    points: Floats
+    quads: Ints
+    triangles: Ints
+    centre: Floats
+
+    def __len__(self) -> int:
+        return len(self.quads) + len(self.triangles)
+
+    @property
+    def rims(self) -> tuple[Ints, Ints]:
+        """Numbers of the points on the start rim (v=0) and on the end rim (v=1)."""
+        v = self.uv[:, 1]
+        return np.flatnonzero(v < _ON_RIM), np.flatnonzero(v > 1.0 - _ON_RIM)
+
+    @property
+    def edges(self) -> Ints:
+        """Every edge (e, 2) once, the lower number first."""
+        return edge_counts(self.quads, self.triangles)[0]
+
+    def between(self, edges: Ints) -> Floats:
+        """Middles in uv (e, 2) of edges (e, 2), the short way around."""
+        return middle(self.surface, self.uv[edges])
+
+
+def middle(surface: Surface, corners: Floats) -> Floats:
+    """Means (k, 2) of corners (k, c, 2) in uv; around a closed part the short way."""
+    away = corners - corners[:, :1]
+    if surface.periodic:
+        away[..., 0] -= np.round(away[..., 0])
+    return np.asarray(corners[:, 0] + away.mean(axis=1))
+
+
+def regular(surface: Surface, count: int) -> Elements:
+    """About `count` quads, about as long as they are wide on average."""
+    t = (np.arange(16) + 0.5) / 16
+    frames = surface.frames(np.stack(np.meshgrid(t, t, indexing="ij"), axis=2).reshape(-1, 2))
+    around, along = np.linalg.norm(frames[:, 1:3], axis=2).mean(axis=0)
+    nu = max(round(float(np.sqrt(count * around / max(along, 1e-300)))), _FEWEST[0])
+    nv = max(round(count / nu), _FEWEST[1])
+    columns = nu if surface.periodic else nu + 1
+    u, v = np.arange(columns) / nu, np.linspace(0.0, 1.0, nv + 1)
+    uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2)
+    number = np.arange(len(uv)).reshape(columns, nv + 1)
+    if surface.periodic:
+        number = np.concatenate([number, number[:1]])
+    corners = [number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]]
+    return _elements(surface, uv, np.stack(corners, axis=2).reshape(-1, 4), np.zeros((0, 3), dtype=np.int64))
+
+
+def on_crossings(results: Results) -> Elements:
+    """The run's quad mesh, its points on the surface; raises BadInputError where the run made none."""
+    mesh = read_faces(results.folder / "quads.vtu")
+    if not len(mesh.quads) + len(mesh.triangles) or "uv" not in mesh.point_data:
+        raise BadInputError(f"{Path('quads.vtu')} of {results.folder} has no faces; take the grid: --shell grid")
+    used, corner = np.unique(np.concatenate([mesh.quads.ravel(), mesh.triangles.ravel()]), return_inverse=True)
+    split = mesh.quads.size
+    uv = mesh.point_data["uv"][used].astype(np.float64)
+    return _elements(results.surface, uv, corner[:split].reshape(-1, 4), corner[split:].reshape(-1, 3))
+
+
+def _elements(surface: Surface, uv: Floats, quads: Ints, triangles: Ints) -> Elements:
+    centre = np.concatenate([middle(surface, uv[quads]), middle(surface, uv[triangles])])
+    points = surface.points(uv)
+    return Elements(surface, frozen(uv), frozen(points), frozen(quads), frozen(triangles), frozen(centre))

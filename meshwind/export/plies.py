@@ -1,0 +1,71 @@
+"""What lies on each element: of each family, the direction of its fibres and how thick it lies."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshwind.cast import Floats, frozen
+from meshwind.errors import BadInputError
+from meshwind.export.direction import axes, directions, laid
+from meshwind.export.elements import Elements
+from meshwind.export.results import Results
+from meshwind.layup.coverage import coverage
+
+LAYER = 1e-3
+"""Thickness of one layer of band over the part's diagonal, where none is given."""
+
+
+@dataclass(frozen=True)
+class Ply:
+    """One family on k elements: unit tangent of the fibres (k, 3), their angle (k,), layers (k,), thickness (k,).
+
+    The angle is in radians from the meridian s_v, positive towards s_u; thickness is layers times that of one layer.
+    """
+
+    family: int
+    direction: Floats
+    angle: Floats
+    layers: Floats
+    thickness: Floats
+
+
+@dataclass(frozen=True)
+class Plies:
+    """The families on k elements, +1 first; normal (k, 3) outward; what one layer was taken to be, in mesh units."""
+
+    families: tuple[Ply, ...]
+    normal: Floats
+    layer: float
+    band_width: float
+
+    @property
+    def thickness(self) -> Floats:
+        """Thickness (k,) of all families together."""
+        return np.asarray(sum(ply.thickness for ply in self.families))
+
+
+def plies(results: Results, elements: Elements, layer: float | None = None, width: float | None = None) -> Plies:
+    """Lay the paths at rest on the elements as bands of `width` and of the thickness `layer`, in mesh units.
+
+    By default a layer is 1e-3 of the part's diagonal thick, and the band as wide as the run's coverage took it.
+    Raises BadInputError where either is no length, or there is no band at all.
+    """
+    thick = _length("thickness", LAYER * results.diagonal if layer is None else layer)
+    wide = _length("band width", results.band_width if width is None else width)
+    present = [family for family in (1, -1) if (results.paths.family == family).any()]
+    families = tuple(_ply(results, elements, family, thick, wide) for family in present)
+    normal = axes(elements.surface, elements.centre)[2]
+    return Plies(families, frozen(normal), thick, wide)
+
+
+def _length(name: str, value: float | None) -> float:
+    if value is None or not (np.isfinite(value) and value > 0.0):
+        raise BadInputError(f"{name} is {value}; give a length above 0 in the mesh's units")
+    return float(value)
+
+
+def _ply(results: Results, elements: Elements, family: int, layer: float, width: float) -> Ply:
+    paths = laid(results.paths, family)
+    direction, angle = directions(paths, elements.centre)
+    layers = coverage(paths, width).at(elements.centre)
+    return Ply(family, *map(frozen, (direction, angle, layers, layer * layers)))
