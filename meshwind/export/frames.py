@@ -1,0 +1,158 @@
+"""Frames that a robot follows: one CSV file a path, and one of all."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from meshwind.cast import Floats, frozen
+from meshwind.errors import BadInputError
+from meshwind.export.material import millimetres
+from meshwind.export.results import Results
+
+HEADER = (
+    "index,arc_length,parameter_s,x,y,z,tx,ty,tz,nx,ny,nz,sx,sy,sz,width,left_x,left_y,left_z,right_x,right_y,right_z"
+)
+FOLDER, ALL = "frames", "all.csv"
+STEP, ANGLE = 0.02, 5.0
+"""Longest step over the part's diagonal and largest turn in degrees, where none is given."""
+_SHORTEST = 0.02
+"""No step is shorter than this part of the longest, unless particles are all there is: tiny moves make robots rough."""
+
+
+@dataclass(frozen=True)
+class Frames:
+    """Frames of a path at m points: all (m, 3) but arc_length (m,), in the mesh's units, and length.
+
+    tangent, normal and side are orthonormal, side = normal x tangent: to the left of one who walks along the fibre
+    with the part below.  left and right are the edges of the band.
+    """
+
+    arc_length: Floats
+    length: float
+    point: Floats
+    tangent: Floats
+    normal: Floats
+    side: Floats
+    width: float
+
+    @property
+    def left(self) -> Floats:
+        """Left edge of the band (m, 3)."""
+        return np.asarray(self.point + 0.5 * self.width * self.side)
+
+    @property
+    def right(self) -> Floats:
+        """Right edge of the band (m, 3)."""
+        return np.asarray(self.point - 0.5 * self.width * self.side)
+
+
+def frames(points: Floats, normals: Floats, width: float, step: float, angle: float) -> Frames:
+    """Frames along a path of points (n, 3) with outward normals (n, 3).
+
+    Steps are at most `step` long and turn the frame by at most `angle` radians, as few and as even as that allows.
+    Positions and tangents are those of the cubic spline through the points, arc_length that of the polyline as in
+    paths.vtp.
+    """
+    from scipy.interpolate import CubicSpline
+
+    chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    moved = np.concatenate([[True], chords > 1e-12 * chords.sum()])  # particles that lie on one another are one
+    points, normals = points[moved], normals[moved]
+    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    spline = CubicSpline(arc, points)
+    at = _stations(arc, *_square(spline(arc, 1), normals)[:2], step, angle)
+    near = np.stack([np.interp(at, arc, normals[:, axis]) for axis in range(3)], axis=1)
+    tangent, normal, side = _square(spline(at, 1), near)
+    point = spline(at)
+    point[0], point[-1] = points[0], points[-1]
+    at, point, tangent, normal, side = map(frozen, (at, point, tangent, normal, side))
+    return Frames(at, float(arc[-1]), point, tangent, normal, side, float(width))
+
+
+def _square(tangent: Floats, normal: Floats) -> tuple[Floats, Floats, Floats]:
+    """Orthonormal tangent, normal and side: the tangent keeps its direction, the normal gives way."""
+    t = tangent / np.linalg.norm(tangent, axis=1, keepdims=True)
+    side = np.cross(normal, t)
+    side /= np.linalg.norm(side, axis=1, keepdims=True)
+    return t, np.cross(t, side), side
+
+
+def _stations(arc: Floats, tangent: Floats, normal: Floats, step: float, angle: float) -> Floats:
+    """Arc lengths (m,) that share out length and turning evenly: both in their limits counted from one to the next."""
+    turns = np.maximum(_turn(tangent), _turn(normal))
+    chords = np.diff(arc)
+    effort = np.maximum(chords / step, np.minimum(turns / angle, chords / (_SHORTEST * step)))
+    spent = np.concatenate([[0.0], np.cumsum(effort)])
+    count = max(int(np.ceil(spent[-1] * (1.0 - 1e-12))), 1)
+    at = np.interp(np.linspace(0.0, spent[-1], count + 1), spent, arc)
+    at[0], at[-1] = 0.0, arc[-1]
+    return at
+
+
+def _turn(directions: Floats) -> Floats:
+    """Angles (n - 1,) between unit vectors (n, 3) that follow one another."""
+    apart = np.linalg.norm(np.diff(directions, axis=0), axis=1)
+    return np.asarray(2.0 * np.arcsin(np.minimum(0.5 * apart, 1.0)))
+
+
+def write_frames(
+    folder: Path, results: Results, step: float | None = None, angle: float | None = None, width: float | None = None
+) -> list[str]:
+    """Write frames/path_000.csv and so on, one a path at rest, and frames/all.csv; lengths in mm.
+
+    step: longest step in the mesh's units, 2 % of the part's diagonal by default; angle: largest turn from frame to
+    frame in degrees, 5 by default; width of the band in the mesh's units, the run's own by default.  Returns what the
+    user should know.  Raises BadInputError where no path came to rest, or a limit is none.
+    """
+    longest = _above("step", STEP * results.diagonal if step is None else step)
+    turn = np.radians(_above("angle", ANGLE if angle is None else angle))
+    wide = _above("band width", results.band_width if width is None else width)
+    rest = np.flatnonzero(results.at_rest)
+    if not len(rest):
+        raise BadInputError(f"no path of {results.folder} came to rest, so there is none to follow; wind it otherwise")
+    scale = millimetres(results.units)
+    (folder / FOLDER).mkdir()
+    paths, sharp = results.paths, 0
+    with (folder / FOLDER / ALL).open("w", encoding="ascii") as every:
+        every.write(f"path,family,{HEADER}\n")
+        for k in rest:
+            found = frames(paths.points[k], paths.normal[k], wide, longest, turn)
+            rows = table(found, scale)
+            with (folder / FOLDER / f"path_{k:03d}.csv").open("w", encoding="ascii") as file:
+                np.savetxt(file, rows, fmt=_FORMAT, delimiter=",", header=HEADER, comments="")
+            both = np.column_stack([np.broadcast_to([k, paths.family[k]], (len(rows), 2)), rows])
+            np.savetxt(every, both, fmt=["%d", "%d", *_FORMAT], delimiter=",")
+            sharp += int((np.maximum(_turn(found.tangent), _turn(found.normal)) > turn * (1.0 + 1e-6)).sum())
+    return _told(results, len(rest), sharp)
+
+
+_FORMAT = ["%d"] + 21 * ["%.15g"]
+
+
+def table(found: Frames, scale: float) -> Floats:
+    """The rows (m, 22) of a CSV file, lengths times `scale`."""
+    m = len(found.point)
+    share = found.arc_length / max(found.length, 1e-300)
+    edges = [scale * edge for edge in (found.left, found.right)]
+    return np.column_stack(
+        [np.arange(m), scale * found.arc_length, share, scale * found.point, found.tangent, found.normal, found.side]
+        + [np.full(m, scale * found.width), *edges]
+    )
+
+
+def _told(results: Results, written: int, sharp: int) -> list[str]:
+    notes = []
+    if written < len(results.paths):
+        notes.append(f"{FOLDER}: left out as not at rest: {len(results.paths) - written} of {len(results.paths)} paths")
+    if sharp:
+        notes.append(f"{FOLDER}: {sharp} steps turn by more than the limit, as the paths do between two particles")
+    if not results.units:
+        notes.append(f"{FOLDER}: the run names no unit, so its lengths are taken as mm")
+    return notes
+
+
+def _above(name: str, value: float | None) -> float:
+    if value is None or not (np.isfinite(value) and value > 0.0):
+        raise BadInputError(f"{name} is {value}; give a number above 0")
+    return float(value)
