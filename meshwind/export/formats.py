@@ -1,0 +1,153 @@
+"""The results as meshes in other formats, through meshio; what a format cannot hold is told."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshwind.cast import Floats, Ints
+from meshwind.export.results import Results
+from meshwind.export.vtk_reading import Faces, Lines, read_faces, read_lines, read_vertices
+from meshwind.export.xdmf import write_xdmf
+
+FOLDER = "formats"
+
+Data: TypeAlias = Mapping[str, NDArray[Any]]
+
+
+@dataclass(frozen=True)
+class _Part:
+    """One result as a mesh: cells by kind, data of the points, data of each kind's cells in their order."""
+
+    name: str
+    points: Floats
+    cells: tuple[tuple[str, Ints], ...]
+    point_data: Data
+    cell_data: Data
+
+
+def write_formats(folder: Path, results: Results, formats: tuple[str, ...]) -> list[str]:
+    """Write surface, quads, paths, bridges and crossings in each format into the folder's `formats`.
+
+    Polylines become line cells, one a segment, with their path's data each.  Returns one line for each thing that a
+    format cannot hold.
+    """
+    (folder / FOLDER).mkdir()
+    told: list[str] = []
+    for part in _parts(results):
+        if not len(part.points):
+            told.append(f"{part.name}: there are none, so no format has a file of them")
+            continue
+        for name in formats:
+            told += FORMATS[name](folder / FOLDER, part)
+    return list(dict.fromkeys(told))
+
+
+def _parts(results: Results) -> list[_Part]:
+    """What of the run is a mesh; bridges and crossings may be without points."""
+    place = results.folder
+    parts = [_of_faces(name, read_faces(place / f"{name}.vtu")) for name in ("surface", "quads")]
+    parts += [_of_lines(name, read_lines(place / f"{name}.vtp")) for name in ("paths", "bridges")]
+    points, data = read_vertices(place / "crossings.vtp")
+    parts.append(_Part("crossings", points, (("vertex", np.arange(len(points))[:, None]),), data, {}))
+    return parts
+
+
+def _of_faces(name: str, read: Faces) -> _Part:
+    cells = tuple((kind, block) for kind, block in (("quad", read.quads), ("triangle", read.triangles)) if len(block))
+    return _Part(name, read.points, cells or (_each(read.points),), read.point_data, {})
+
+
+def _of_lines(name: str, read: Lines) -> _Part:
+    """Polylines as line cells: each segment carries the data of its line."""
+    sizes = np.diff(read.starts)
+    line = np.repeat(np.arange(len(sizes)), np.maximum(sizes - 1, 0))
+    first = np.delete(np.arange(len(read.points)), read.starts[1:] - 1) if len(sizes) else np.zeros(0, dtype=np.int64)
+    data = {key: values[line] for key, values in read.cell_data.items()}
+    return _Part(name, read.points, (("line", np.stack([first, first + 1], axis=1)),), read.point_data, data)
+
+
+def _each(points: Floats) -> tuple[str, Ints]:
+    return "vertex", np.arange(len(points))[:, None]
+
+
+def _mesh(part: _Part, point_data: Data, cell_data: Mapping[str, list[NDArray[Any]]] | None = None) -> Any:
+    import meshio
+
+    cells = [(kind, np.array(block)) for kind, block in part.cells]
+    held = cell_data if cell_data is not None else {name: [values] for name, values in part.cell_data.items()}
+    return meshio.Mesh(np.array(part.points), cells, point_data=dict(point_data), cell_data=dict(held))
+
+
+def _apart(data: Data, widest: int) -> dict[str, NDArray[Any]]:
+    """The data with vectors of fewer than three components, or of more than `widest`, one by one: uv as uv_0, uv_1."""
+    out: dict[str, NDArray[Any]] = {}
+    for name, values in data.items():
+        if values.ndim == 1 or values.shape[1] == 3 <= widest:
+            out[name] = values
+        else:
+            out |= {f"{name}_{k}": np.ascontiguousarray(values[:, k]) for k in range(values.shape[1])}
+    return out
+
+
+def _vtu(folder: Path, part: _Part) -> list[str]:
+    _mesh(part, _apart(part.point_data, 3)).write(folder / f"{part.name}.vtu")
+    return []
+
+
+def _vtk(folder: Path, part: _Part) -> list[str]:
+    _mesh(part, _apart(part.point_data, 3)).write(folder / f"{part.name}.vtk")
+    return []
+
+
+def _xdmf(folder: Path, part: _Part) -> list[str]:
+    write_xdmf(folder / f"{part.name}.xdmf", part.points, part.cells, _apart(part.point_data, 3), part.cell_data)
+    return []
+
+
+def _gmsh(folder: Path, part: _Part) -> list[str]:
+    import meshio
+
+    tags = {
+        name: [np.full(len(block), number, dtype=np.int64) for number, (_, block) in enumerate(part.cells, start=1)]
+        for name in ("gmsh:physical", "gmsh:geometrical")
+    }
+    cell_data: dict[str, list[NDArray[Any]]] = {n: [v.astype(float)] for n, v in part.cell_data.items()}
+    point_data = {name: values.astype(float) for name, values in _apart(part.point_data, 3).items()}
+    mesh = _mesh(part, point_data, cell_data | tags)
+    meshio.gmsh.write(str(folder / f"{part.name}.msh"), mesh, fmt_version="2.2", binary=True)
+    return []
+
+
+def _ply(folder: Path, part: _Part) -> list[str]:
+    """meshio's PLY has faces alone and its numbers at the points: lines are left as their points."""
+    lost = [f"ply: no data of cells; of {part.name} it lacks {', '.join(part.cell_data)}"] if part.cell_data else []
+    kinds = {kind for kind, _ in part.cells}
+    if kinds & {"line", "vertex"}:
+        lost += ["ply: no lines; paths and bridges are written as their points"] if "line" in kinds else []
+        part = replace(part, cells=())
+    mesh = _mesh(replace(part, cell_data={}), _apart(part.point_data, 1))
+    for block in mesh.cells:
+        block.data = block.data.astype(np.int32)  # PLY has no wider integers
+    mesh.write(folder / f"{part.name}.ply", binary=True)
+    return lost
+
+
+def _obj(folder: Path, part: _Part) -> list[str]:
+    """OBJ by hand: meshio writes its faces alone, and it has lines and points too."""
+    letters = {"quad": "f", "triangle": "f", "line": "l", "vertex": "p"}
+    with (folder / f"{part.name}.obj").open("w", encoding="ascii") as file:
+        file.write(f"# {part.name} of a winding\n")
+        np.savetxt(file, part.points, fmt="v %.17g %.17g %.17g")
+        for kind, block in part.cells:
+            np.savetxt(file, block + 1, fmt=" ".join([letters[kind]] + block.shape[1] * ["%d"]))
+    return ["obj: no fields; only points, lines and faces are written"]
+
+
+FORMATS: dict[str, Callable[[Path, _Part], list[str]]] = {
+    "vtu": _vtu, "vtk": _vtk, "xdmf": _xdmf, "ply": _ply, "obj": _obj, "gmsh": _gmsh,
+}  # fmt: skip
+"""Mesh formats by name: each writes one part into a folder and tells what it could not hold."""

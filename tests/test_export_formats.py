@@ -1,0 +1,113 @@
+"""Results in other formats: read back by meshio, and told what is lost."""
+
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+import pyvista as pv
+from export_results import plain_results, waisted_results
+
+from meshwind.export.formats import FORMATS, write_formats
+from meshwind.export.vtk_reading import read_faces, read_lines
+
+ENDING = {name: name for name in FORMATS} | {"gmsh": "msh"}
+READABLE = [name for name in FORMATS if name != "xdmf"]  # meshio reads no XDMF without h5py: VTK does, below
+PARTS = "surface", "quads", "paths", "bridges", "crossings"
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[str]]:
+    out = tmp_path_factory.mktemp("formats")
+    return out, write_formats(out, waisted_results(out), tuple(FORMATS))
+
+
+def test_every_part_is_in_every_format(written: tuple[Path, list[str]]) -> None:
+    found = {file.name for file in (written[0] / "formats").iterdir()}
+    assert found == {f"{part}.{ending}" for part in PARTS for ending in (*ENDING.values(), "raw")}
+
+
+@pytest.mark.parametrize("name", ["vtu", "vtk", "gmsh"])
+def test_lines_carry_their_data(written: tuple[Path, list[str]], name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = read_lines(written[0] / "paths.vtp")
+    read = meshio.read(written[0] / "formats" / f"paths.{ENDING[name]}")
+    assert [block.type for block in read.cells] == ["line"]
+    segments = read.cells[0].data
+    count, each = len(lines.starts) - 1, int(lines.starts[1])
+    assert len(segments) == count * (each - 1)
+    assert np.array_equal(read.points, lines.points)
+    path = read.cell_data["path"][0].ravel()
+    assert np.array_equal(path, np.repeat(np.arange(count), each - 1))
+    assert np.array_equal(segments // each, np.stack([path, path], axis=1).astype(int))
+    steps = np.linalg.norm(np.diff(read.points[segments], axis=1)[:, 0], axis=1)
+    assert np.bincount(path.astype(int), steps) == pytest.approx(lines.cell_data["length"])
+    assert np.array_equal(read.point_data["slip"].ravel(), lines.point_data["slip"], equal_nan=True)
+    assert np.array_equal(read.point_data["normal"], lines.point_data["normal"])
+    assert np.array_equal(read.point_data["uv_0"].ravel(), lines.point_data["uv"][:, 0])
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize("name", READABLE)
+def test_faces_come_back(written: tuple[Path, list[str]], name: str) -> None:
+    faces = read_faces(written[0] / "quads.vtu")
+    read = meshio.read(written[0] / "formats" / f"quads.{ENDING[name]}")
+    held = {block.type: block.data for block in read.cells}
+    assert np.array_equal(held["quad"], faces.quads)
+    assert np.array_equal(held["triangle"], faces.triangles)
+    assert np.array_equal(read.points, faces.points)
+
+
+def test_paraviews_reader_takes_the_xdmf(written: tuple[Path, list[str]]) -> None:
+    from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
+
+    lines, faces = read_lines(written[0] / "paths.vtp"), read_faces(written[0] / "quads.vtu")
+    for part, cells in (("paths", len(lines.points) - len(lines.starts) + 1), ("quads", None), ("crossings", None)):
+        reader = vtkXdmfReader()
+        reader.SetFileName(str(written[0] / "formats" / f"{part}.xdmf"))
+        reader.Update()
+        read = pv.wrap(reader.GetOutputDataObject(0))
+        if part == "paths":
+            assert read.n_cells == cells
+            assert np.array_equal(read.points, lines.points)
+            assert np.array_equal(read.point_data["slip"], lines.point_data["slip"], equal_nan=True)
+            assert np.array_equal(read.point_data["normal"], lines.point_data["normal"])
+            assert np.array_equal(np.unique(read.cell_data["path"]), np.arange(len(lines.starts) - 1))
+        if part == "quads":
+            assert np.array_equal(read.cells_dict[9], faces.quads)
+            assert np.array_equal(read.cells_dict[5], faces.triangles)
+        if part == "crossings":
+            assert read.n_points > 0
+
+
+def test_ply_holds_vectors_by_component(written: tuple[Path, list[str]]) -> None:
+    lines = read_lines(written[0] / "paths.vtp")
+    read = meshio.read(written[0] / "formats" / "paths.ply")
+    assert np.array_equal(read.point_data["normal_2"], lines.point_data["normal"][:, 2])
+    assert np.array_equal(read.point_data["uv_1"], lines.point_data["uv"][:, 1])
+
+
+def test_obj_holds_lines_and_points(written: tuple[Path, list[str]]) -> None:
+    for part, letter, file in (("bridges", "l", "bridges.vtp"), ("crossings", "p", "")):
+        rows = [line.split() for line in (written[0] / "formats" / f"{part}.obj").read_text().splitlines()]
+        points = np.array([row[1:] for row in rows if row[0] == "v"], dtype=float)
+        cells = [row for row in rows if row[0] == letter]
+        if file:
+            lines = read_lines(written[0] / file)
+            assert np.array_equal(points, lines.points)
+            assert len(cells) == len(points) - (len(lines.starts) - 1)
+        else:
+            assert len(cells) == len(points) > 0
+
+
+def test_what_is_lost_is_told_once(written: tuple[Path, list[str]]) -> None:
+    notes = written[1]
+    assert len(notes) == len(set(notes)) == 4
+    assert any(note.startswith("ply: no lines") for note in notes)
+    assert any(note.startswith("ply: no data of cells; of paths it lacks path, family") for note in notes)
+    assert any(note.startswith("obj: no fields") for note in notes)
+
+
+def test_a_part_without_bridges_has_no_file_of_them(tmp_path: Path) -> None:
+    results = plain_results(tmp_path)
+    assert write_formats(tmp_path, results, ("vtu",)) == ["bridges: there are none, so no format has a file of them"]
+    assert not (tmp_path / "formats" / "bridges.vtu").exists()
