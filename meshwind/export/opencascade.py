@@ -1,0 +1,64 @@
+"""The door to OpenCASCADE, which is an extra: what is missing is told with what to install."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any
+
+from meshwind.errors import BadInputError
+
+MISSING = "STEP and IGES need OpenCASCADE; install it with: pip install 'meshwind[cad]'"
+
+
+def need() -> None:
+    """Raise BadInputError where OpenCASCADE is not installed, or is too old for this."""
+    if find_spec("OCP") is None or find_spec("OCP.collections") is None:
+        raise BadInputError(MISSING)
+
+
+def occ(module: str) -> Any:
+    """A module of OpenCASCADE, such as Geom."""
+    return import_module(f"OCP.{module}")
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Keep OpenCASCADE's reports of each transfer off the terminal; its results are checked instead."""
+    message = occ("Message")
+    messenger = message.Message.DefaultMessenger_s()
+    printers = list(messenger.Printers())
+    for printer in printers:
+        messenger.RemovePrinter(printer)
+    try:
+        yield
+    finally:
+        for printer in printers:
+            messenger.AddPrinter(printer)
+
+
+def points_array(values: Any) -> Any:
+    """An OpenCASCADE array of points, of the shape of values (m, 3) or (m, n, 3)."""
+    collections, gp = occ("collections"), occ("gp")
+    if values.ndim == 2:
+        line = collections.Array1_gp_Pnt(1, len(values))
+        for i, point in enumerate(values.tolist(), start=1):
+            line.SetValue(i, gp.gp_Pnt(*point))
+        return line
+    grid = collections.Array2_gp_Pnt(1, values.shape[0], 1, values.shape[1])
+    for i, row in enumerate(values.tolist(), start=1):
+        for j, point in enumerate(row, start=1):
+            grid.SetValue(i, j, gp.gp_Pnt(*point))
+    return grid
+
+
+def knots_array(knots: Any) -> tuple[Any, Any]:
+    """Knots and how often each is there, as OpenCASCADE's arrays, of a knot vector with repetitions."""
+    collections = occ("collections")
+    first = [0, *(k for k in range(1, len(knots)) if knots[k] != knots[k - 1])]
+    many = [b - a for a, b in zip(first, [*first[1:], len(knots)], strict=True)]
+    values, counts = collections.Array1_double(1, len(first)), collections.Array1_int(1, len(first))
+    for k, (at, count) in enumerate(zip(first, many, strict=True), start=1):
+        values.SetValue(k, float(knots[at]))
+        counts.SetValue(k, count)
+    return values, counts

@@ -1,0 +1,70 @@
+"""surface.step: the fitted surface as one B-spline face and the fibres as curves, for CAD."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from meshwind.cast import Floats
+from meshwind.errors import BadInputError
+from meshwind.export.material import millimetres
+from meshwind.export.opencascade import knots_array, need, occ, points_array, quiet
+from meshwind.export.results import Results
+from meshwind.export.splines import clamped_surface, curve_through
+from meshwind.surface.surface import DEGREE, Surface
+
+FILE = "surface.step"
+
+
+def write_step(folder: Path, results: Results) -> list[str]:
+    """Write surface.step into a folder that is there, in mm; return what the user should know.
+
+    The surface is the fitted one, not facets of it; a fibre is the cubic spline through its particles, and named by
+    its path and family.  Paths that are not at rest are left out.  Raises BadInputError without OpenCASCADE.
+    """
+    need()
+    scale = millimetres(results.units)
+    shapes = [("surface", face(results.surface, scale))]
+    for path in np.flatnonzero(results.at_rest):
+        name = f"path {path} family {results.paths.family[path]:+d}"
+        shapes.append((name, edge(results.paths.points[path], scale)))
+    _write(folder / FILE, shapes)
+    left = int((~results.at_rest).sum())
+    notes = [f"{FILE}: left out as not at rest: {left} of {len(results.paths)} paths"] if left else []
+    if not results.units:
+        notes.append(f"{FILE}: the run names no unit, so its lengths are taken as mm")
+    return notes
+
+
+def face(surface: Surface, scale: float = 1.0) -> Any:
+    """The surface as a face of OpenCASCADE."""
+    poles, knots_u, knots_v = clamped_surface(surface)
+    (u, times_u), (v, times_v) = knots_array(knots_u), knots_array(knots_v)
+    geometry = occ("Geom").Geom_BSplineSurface(points_array(scale * poles), u, v, times_u, times_v, DEGREE, DEGREE)
+    made = occ("BRepBuilderAPI").BRepBuilderAPI_MakeFace(geometry, 1e-7)
+    if not made.IsDone():
+        raise BadInputError(f"OpenCASCADE makes no face of the surface ({made.Error()}); fit it to a smoother mesh")
+    return made.Face()
+
+
+def edge(points: Floats, scale: float = 1.0) -> Any:
+    """A fibre through points (n, 3) as an edge of OpenCASCADE."""
+    curve = curve_through(points)
+    knots, times = knots_array(scale * curve.knots)
+    geometry = occ("Geom").Geom_BSplineCurve(points_array(scale * curve.poles), knots, times, DEGREE)
+    return occ("BRepBuilderAPI").BRepBuilderAPI_MakeEdge(geometry).Edge()
+
+
+def _write(path: Path, shapes: list[tuple[str, Any]]) -> None:
+    strings, control = occ("TCollection"), occ("STEPCAFControl")
+    document = occ("TDocStd").TDocStd_Document(strings.TCollection_ExtendedString("meshwind"))
+    tool = occ("XCAFDoc").XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    for name, shape in shapes:
+        label = tool.AddShape(shape, False)
+        occ("TDataStd").TDataStd_Name.Set_s(label, strings.TCollection_ExtendedString(name))
+    with quiet():
+        writer = control.STEPCAFControl_Writer()
+        done = writer.Transfer(document, occ("STEPControl").STEPControl_StepModelType.STEPControl_AsIs)
+        status = writer.Write(str(path)) if done else None
+    if status != occ("IFSelect").IFSelect_ReturnStatus.IFSelect_RetDone:
+        raise OSError(f"OpenCASCADE could not write {path.name}")
