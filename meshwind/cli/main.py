@@ -9,6 +9,7 @@ from typing import NoReturn
 import typer
 
 from meshwind.cli.check import check
+from meshwind.cli.export import export
 from meshwind.cli.wind import wind
 from meshwind.errors import BadInputError
 
@@ -27,6 +28,7 @@ app = typer.Typer(
 )
 app.command()(wind)
 app.command()(check)
+app.command()(export)
 
 
 def _version(wanted: bool) -> None:
