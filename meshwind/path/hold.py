@@ -17,6 +17,7 @@ from meshwind.path.newton import EVALUATIONS, ITERATIONS, SOLVES, carry_lifted, 
 from meshwind.path.relax import (
     CONVERGED,
     DESCENT,
+    HALF_TURN,
     LIFTED,
     LONGEST_MOVE,
     SLID_END,
@@ -24,6 +25,7 @@ from meshwind.path.relax import (
     TOO_COARSE,
     certify,
     failure,
+    largest_turn,
     take_up,
     unresolved,
 )  # fmt: skip
@@ -121,6 +123,7 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
     least = 0.1 * (np.pi / n) ** 2
     shift = 0.0
     now, length = energy(X)
+    most = max(HALF_TURN, 1.2 * largest_turn(state))
     residual = best = np.inf
     caution = 0
     for _ in range(limit):
@@ -200,6 +203,9 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
                     tally,
                 )  # fmt: skip
                 carry_lifted(net, periodic, boxes, levels, size, step, contacts, count, state, trial, tally)
+                if largest_turn(trial) > most:
+                    step *= 0.5
+                    continue
                 then, length_then = energy(trial[0])
                 price = then
                 for c in range(count):

@@ -11,6 +11,8 @@ from meshwind.surface.tree import nearest_foot
 EVALUATIONS, FEET, SOLVES, ITERATIONS = range(4)
 """Places of a path's counters."""
 
+MOST_STEPS = 200
+"""Steps in which a particle is followed around the body."""
 SINK = 1e-12
 """A particle deeper than this times the part's size has landed."""
 
@@ -131,14 +133,40 @@ def carry_lifted(net, periodic, boxes, levels, size, step, contacts, count, stat
             trial[5][m] = clear[m] - np.sqrt(moved)
             # the gap shrinks by no more than the particle moved: mostly no foot point is needed
             if trial[5][m] <= 0.0:
-                land(net, periodic, boxes, levels, size, trial, m, tally)
+                land(net, periodic, boxes, levels, size, X, trial, m, tally)
         i = j
 
 
 @njit(cache=True)
-def land(net, periodic, boxes, levels, size, trial, m, tally):
-    """Find the foot of lifted particle m; let it touch there if it has sunk (Algorithm 2), else note its gap."""
+def land(net, periodic, boxes, levels, size, X, trial, m, tally):
+    """Find the foot of lifted particle m, which comes from X[m]; let it touch there if it has sunk (Algorithm 2).
+
+    Else its gap is noted.  A particle whose foot is on a side that faces the other way may have gone through the
+    body: its way is then followed, and it touches where it went in.
+    """
     Y, uv, frames, normal, touching, clear = trial
+    facing = np.empty(3)
+    for k in range(3):
+        facing[k] = normal[m, k]
+    u, v = uv[m, 0], uv[m, 1]
+    height, gap = measure_gap(net, periodic, boxes, levels, trial, m, tally)
+    sunk = height < -SINK * size
+    turned = 0.0
+    for k in range(3):
+        turned += facing[k] * normal[m, k]
+    if not sunk and turned < 0.0:
+        sunk = follow(net, periodic, boxes, levels, size, X[m], u, v, trial, m, tally)
+    touching[m] = sunk
+    clear[m] = 0.0 if sunk else gap
+    if sunk:
+        for k in range(3):
+            Y[m, k] = frames[m, S, k]
+
+
+@njit(cache=True)
+def measure_gap(net, periodic, boxes, levels, trial, m, tally):
+    """Height of particle m over its nearest foot, along the normal there, and its distance from it."""
+    Y, uv, frames, normal = trial[0], trial[1], trial[2], trial[3]
     tally[FEET] += 1
     tally[EVALUATIONS] += nearest_foot(net, periodic, boxes, levels, Y[m], uv[m], frames[m])
     unit_normal(frames[m], normal[m])
@@ -148,11 +176,43 @@ def land(net, periodic, boxes, levels, size, trial, m, tally):
         r = Y[m, k] - frames[m, S, k]
         height += r * normal[m, k]
         square += r * r
-    touching[m] = height < -SINK * size
-    clear[m] = 0.0 if touching[m] else np.sqrt(square)
-    if touching[m]:
+    return height, np.sqrt(square)
+
+
+@njit(cache=True)
+def follow(net, periodic, boxes, levels, size, start, u, v, trial, m, tally):
+    """Follow particle m from `start`, whose foot is near (u, v), to where it is; whether it meets the body.
+
+    Each step is as long as the gap, so that none leaps over a thin part.  Leaves the foot where it goes in, or that
+    of its goal.
+    """
+    Y, uv = trial[0], trial[1]
+    goal = np.empty(3)
+    way = 0.0
+    for k in range(3):
+        goal[k] = Y[m, k]
+        way += (goal[k] - start[k]) ** 2
+    way = np.sqrt(way)
+    goal_u, goal_v = uv[m, 0], uv[m, 1]
+    uv[m, 0], uv[m, 1] = u, v
+    t = 0.0
+    met = False
+    for _ in range(MOST_STEPS):
         for k in range(3):
-            Y[m, k] = frames[m, S, k]
+            Y[m, k] = start[k] + t * (goal[k] - start[k])
+        height, gap = measure_gap(net, periodic, boxes, levels, trial, m, tally)
+        if height < -SINK * size:
+            met = True
+            break
+        t += max(gap, 1e-3 * size) / max(way, 1e-300)
+        if t >= 1.0:
+            break
+    for k in range(3):
+        Y[m, k] = goal[k]
+    if not met:
+        uv[m, 0], uv[m, 1] = goal_u, goal_v
+        measure_gap(net, periodic, boxes, levels, trial, m, tally)
+    return met
 
 
 @njit(cache=True)

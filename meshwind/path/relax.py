@@ -31,6 +31,8 @@ DESCENT = 1e-4
 """Armijo's share of the predicted fall."""
 PATIENCE = 60
 """Steps in a row that a path may lean on a rim before it counts as slid off there."""
+HALF_TURN = 0.4
+"""Change of u from particle to particle that only two sides of the body explain."""
 LONGEST_SEGMENT = 2.0
 """A segment on the surface longer than this share of the mean cuts an edge."""
 MOST_FALLS = 5
@@ -54,6 +56,7 @@ def relax(net, periodic, boxes, levels, size, pull_off, tolerance, limit, state,
     kept = np.empty(n, np.bool_)
     shift, least = 0.0, 0.1 * (np.pi / n) ** 2
     now, length = energy(X)
+    most = max(HALF_TURN, 1.2 * largest_turn(state))
     residual = np.inf
     caution = falls = leant = leaning = 0
     for _ in range(limit):
@@ -108,6 +111,9 @@ def relax(net, periodic, boxes, levels, size, pull_off, tolerance, limit, state,
         while step > SMALLEST_STEP:
             move_touching(net, periodic, step, move, contacts, count, state, trial, tally)
             carry_lifted(net, periodic, boxes, levels, size, step, contacts, count, state, trial, tally)
+            if largest_turn(trial) > most:  # neighbours on two sides of the body: one of them went through it
+                step *= 0.5
+                continue
             then, length_then = energy(trial[0])
             # below round-off the energy cannot judge a step, and Newton's is right
             blind = slope <= 1e-13 * now and then <= now * (1.0 + 1e-12)
@@ -224,7 +230,7 @@ def take_up(net, periodic, boxes, levels, size, state, tally):
             touch_down(net, periodic, state, i, uv[i, 0], uv[i, 1])
             tally[EVALUATIONS] += 1
         elif clear[i] <= 0.0:
-            land(net, periodic, boxes, levels, size, state, i, tally)
+            land(net, periodic, boxes, levels, size, state[0], state, i, tally)
 
 
 @njit(cache=True)
@@ -249,14 +255,26 @@ def certify(net, periodic, boxes, levels, state, slip, tally):
 
 @njit(cache=True)
 def unresolved(state):
-    """Whether the path cuts an edge by a segment on the surface much longer than the others."""
+    """Whether the path cuts an edge by a segment on the surface much longer than the others, or the whole body."""
     X, touching = state[0], state[4]
     n = len(X)
+    if largest_turn(state) > HALF_TURN:
+        return True
     _, length = energy(X)
     for i in range(n - 1):
         if touching[i] and touching[i + 1] and distance(X, i, i + 1) > LONGEST_SEGMENT * length / (n - 1):
             return True
     return False
+
+
+@njit(cache=True)
+def largest_turn(state):
+    """Largest change of u from one particle, or its foot, to the next."""
+    uv = state[1]
+    most = 0.0
+    for i in range(len(uv) - 1):
+        most = max(most, abs(uv[i + 1, 0] - uv[i, 0]))
+    return most
 
 
 @njit(cache=True)
