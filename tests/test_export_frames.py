@@ -88,9 +88,16 @@ def test_limits_hold_with_few_frames(written: tuple[Results, Path], tmp_path: Pa
         turn = np.max([np.linalg.norm(np.diff(read[axis], axis=0), axis=1) for axis in ("t*", "n*")], axis=0)
         sharp += int((turn > np.radians(4.0)).sum())
     notes = write_frames(tmp_path, results, step=0.2, angle=4.0)
-    assert notes == ([f"frames: {sharp} steps turn by more than the limit, as the paths do between two particles"]
+    assert notes == ([f"frames: {sharp} steps turn by more than the limit, as no step is made tiny for a sharp edge"]
                      if sharp else [])  # fmt: skip
     assert (sharp > 0) == bool((results.paths.gap > 0.0).any())
+
+
+def test_a_smooth_path_keeps_the_turn_with_few_particles(tmp_path: Path) -> None:
+    """Particles 4 degrees apart and a limit of 5: stations fall between particles, and still no step is too sharp."""
+    results = leave(tmp_path, helices(3, 1.0, 91, cylinder()))
+    assert write_frames(tmp_path, results, step=2.0, angle=5.0) == []
+    assert len(table(tmp_path / "frames" / "path_000.csv")["x"]) == 74
 
 
 @pytest.mark.parametrize("step", [0.3, 0.003])

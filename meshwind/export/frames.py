@@ -17,7 +17,10 @@ FOLDER, ALL = "frames", "all.csv"
 STEP, ANGLE = 0.02, 5.0
 """Longest step over the part's diagonal and largest turn in degrees, where none is given."""
 _SHORTEST = 0.02
-"""No step is shorter than this part of the longest, unless particles are all there is: tiny moves make robots rough."""
+"""Turning makes no step shorter than this part of the longest: tiny moves make robots rough."""
+
+_SAFE = 0.99
+"""Share of the largest turn that is planned for: between two particles a frame turns a little unevenly."""
 
 
 @dataclass(frozen=True)
@@ -80,9 +83,9 @@ def _square(tangent: Floats, normal: Floats) -> tuple[Floats, Floats, Floats]:
 
 def _stations(arc: Floats, tangent: Floats, normal: Floats, step: float, angle: float) -> Floats:
     """Arc lengths (m,) that share out length and turning evenly: both in their limits counted from one to the next."""
-    turns = np.maximum(_turn(tangent), _turn(normal))
+    turns = np.maximum(_turn(tangent), _turn(normal)) / (_SAFE * angle)
     chords = np.diff(arc)
-    effort = np.maximum(chords / step, np.minimum(turns / angle, chords / (_SHORTEST * step)))
+    effort = np.maximum(chords / step, np.minimum(turns, chords / (_SHORTEST * step)))
     spent = np.concatenate([[0.0], np.cumsum(effort)])
     count = max(int(np.ceil(spent[-1] * (1.0 - 1e-12))), 1)
     at = np.interp(np.linspace(0.0, spent[-1], count + 1), spent, arc)
@@ -146,7 +149,7 @@ def _told(results: Results, written: int, sharp: int) -> list[str]:
     if written < len(results.paths):
         notes.append(f"{FOLDER}: left out as not at rest: {len(results.paths) - written} of {len(results.paths)} paths")
     if sharp:
-        notes.append(f"{FOLDER}: {sharp} steps turn by more than the limit, as the paths do between two particles")
+        notes.append(f"{FOLDER}: {sharp} steps turn by more than the limit, as no step is made tiny for a sharp edge")
     if not results.units:
         notes.append(f"{FOLDER}: the run names no unit, so its lengths are taken as mm")
     return notes
