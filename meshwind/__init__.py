@@ -19,7 +19,11 @@ if TYPE_CHECKING:
     from meshwind.layup import Families as Families
     from meshwind.layup import Layup as Layup
     from meshwind.layup import assess as assess
+    from meshwind.layup import choose_revolutions as choose_revolutions
     from meshwind.layup import families as families
+    from meshwind.layup import read_pins as read_pins
+    from meshwind.layup import space_out as space_out
+    from meshwind.layup import windability as windability
     from meshwind.mandrel import Annulus as Annulus
     from meshwind.mandrel import Mesh as Mesh
     from meshwind.mandrel import annulus as annulus
@@ -54,6 +58,7 @@ _HOME = {
     "trace": "path", "traces": "path", "Trace": "path", "Stop": "path",
     "Friction": "path.friction", "friction_from": "path.friction",
     "Families": "layup", "Layup": "layup", "families": "layup", "assess": "layup",
+    "choose_revolutions": "layup", "read_pins": "layup", "space_out": "layup", "windability": "layup",
     "Result": "pipeline", "wind": "pipeline",
 }  # fmt: skip
 

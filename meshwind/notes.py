@@ -6,6 +6,8 @@ import numpy as np
 
 from meshwind.chart import Chart
 from meshwind.errors import BadInputError
+from meshwind.layup.revolutions import FRICTION, WIDER, Revolutions
+from meshwind.layup.spacing import Spaced
 from meshwind.mandrel.ends import place
 from meshwind.output.apart import apart
 from meshwind.output.words import power, quantity, ratio
@@ -21,6 +23,8 @@ UNRESOLVED = 1e-2
 
 SQUEEZED = 8.0
 """Area scale that is this uneven (its 99th percentile over its mean) is the mark of fingers, ears and fins."""
+REVOLUTIONS = "revolutions.png"
+"""The picture of how the revolutions were chosen."""
 FIT_ERROR = "fit_error.png"
 """The picture of how far the surface and the mesh lie apart."""
 _TOLD = 3
@@ -57,6 +61,37 @@ def about_paths(paths: Paths) -> tuple[Note, ...]:
     told = "1 path turns" if cut == 1 else f"{cut} paths turn"
     more = 2 * paths.gap.shape[1] - 1
     return (Note(f"{told} over an edge within one segment, exact to its length there; --particles {more} tells more"),)
+
+
+def about_choice(chosen: Revolutions | None) -> tuple[Note, ...]:
+    """Why so many revolutions were chosen, and what would allow more."""
+    if chosen is None:
+        return ()
+    ways = []
+    if chosen.with_friction > 0.0:
+        ways.append(f"friction {FRICTION:g} would allow {_number(chosen.with_friction)}")
+    if chosen.with_opening > 0.0:
+        ways.append(f"openings {WIDER:g} times as wide {_number(chosen.with_opening)}")
+    more = f"; {', '.join(ways)}" if ways else ""
+    return (Note(f"chose {chosen.why}{more}; see {REVOLUTIONS}", not chosen.holding.any, REVOLUTIONS),)
+
+
+def _number(turns: float) -> str:
+    return f"{turns:.3g}" if np.isfinite(turns) else "any number"
+
+
+def about_spacing(spaced: Spaced | None, units: str = "") -> tuple[Note, ...]:
+    """Where the spacing could not be kept, because no fibre rests between two neighbours."""
+    if spaced is None or not len(spaced.partings):
+        return ()
+    many = len(spaced.partings)
+    where = "1 place no fibre rests between two" if many == 1 else f"{many} places no fibre rests between"
+    return (
+        Note(
+            f"at {where} neighbours, up to {quantity(spaced.widest, units, 2)} apart: they part around a boss, which "
+            "other revolutions or friction may cover"
+        ),
+    )
 
 
 def about_fit(surface: Surface, chart: Chart, tolerance: float, worst_fit: float, units: str = "") -> tuple[Note, ...]:

@@ -9,6 +9,8 @@ from meshwind.mandrel.ends import parse
 
 STEPS_A_TURN = 8
 """Fewest steps of a path in a turn: with fewer a polyline is no picture of the fibre."""
+AUTO = "auto"
+"""In place of the revolutions: they are chosen."""
 FIELD = "field:"
 """Before the name of a scalar field in a mesh file."""
 MEMORY = 4e9
@@ -24,16 +26,18 @@ _MOST_CHOSEN = 1601
 class Options:
     """Options of a run; one that cannot be used raises BadInputError with its value and what it may be.
 
-    paths: a family; revolutions: turns from end to end; particles: a path, None to have them chosen; friction:
-    coefficient, or "field:NAME" for a scalar of the mesh file; component: the piece of the mesh by its rank of
-    area; ends: "auto", "x", "y", "z", two points "x,y,z x,y,z" or two rims "loops 0 1"; opening: radius at a closed
-    end in the mesh's units; tolerance: largest distance of a vertex from the surface over the mesh's diagonal;
+    paths: a family; revolutions: turns from end to end, or "auto"; particles: a path, None to have them chosen;
+    friction: coefficient, or "field:NAME" for a scalar of the mesh file; component: the piece of the mesh by its
+    rank of area; ends: "auto", "x", "y", "z", two points "x,y,z x,y,z" or two rims "loops 0 1"; opening: radius at a
+    closed end in the mesh's units; tolerance: largest distance of a vertex from the surface over the mesh's diagonal;
     worst_fit: largest distance between surface and mesh over the diagonal that is wound at all; units: the name of
-    the mesh's unit, "" if unknown.
+    the mesh's unit, "" if unknown; spacing: largest distance between neighbours, paths are added until it is kept;
+    band_width: of the fibre; linear_density: mass over length of the fibre, per unit of length; pins: a CSV file of
+    the paths' ends.
     """
 
     paths: int = 12
-    revolutions: float = 0.5
+    revolutions: float | str = 0.5
     particles: int | None = 401
     friction: float | str = 0.0
     component: int = 0
@@ -42,6 +46,10 @@ class Options:
     tolerance: float = 1e-5
     worst_fit: float = 0.1
     units: str = ""
+    spacing: float | None = None
+    band_width: float | None = None
+    linear_density: float | None = None
+    pins: str | None = None
 
     def __post_init__(self) -> None:
         set_ = object.__setattr__
@@ -49,8 +57,9 @@ class Options:
         if self.particles is not None:
             set_(self, "particles", _whole(self.particles, "particles", 3))
         most = ((self.particles or _MOST_CHOSEN) - 1) / STEPS_A_TURN
-        set_(self, "revolutions", _number(self.revolutions, "revolutions", 0.0))
-        if self.revolutions > most:
+        if self.revolutions != AUTO:
+            set_(self, "revolutions", _number(self.revolutions, "revolutions", 0.0))
+        if not isinstance(self.revolutions, str) and self.revolutions > most:
             raise BadInputError(
                 f"revolutions is {_told(self.revolutions)}; give a number from 0 to {most:g}, which is as many as "
                 f"{self.particles or _MOST_CHOSEN} particles a path can follow, or more particles"
@@ -63,7 +72,16 @@ class Options:
         set_(self, "tolerance", _number(self.tolerance, "tolerance", 1e-12, 1.0))
         set_(self, "worst_fit", _number(self.worst_fit, "worst_fit", 0.0, above=True))
         _check_units(self.units)
-        _check_memory(self.paths, self.particles or _MOST_CHOSEN, self.revolutions)
+        for name in ("spacing", "band_width", "linear_density"):
+            if getattr(self, name) is not None:
+                set_(self, name, _number(getattr(self, name), name, 0.0, above=True))
+        if self.pins is not None and not (isinstance(self.pins, str) and self.pins.strip()):
+            raise BadInputError(f"pins is {_told(self.pins)}; give the path of a CSV file of the paths' ends")
+        if self.pins is not None and self.spacing is not None:
+            raise BadInputError("pins say where all paths end, and spacing adds paths between them; give one of both")
+        _check_memory(
+            self.paths, self.particles or _MOST_CHOSEN, 1.0 if isinstance(self.revolutions, str) else self.revolutions
+        )
 
 
 def _friction(value: object) -> float | str:

@@ -10,19 +10,24 @@ from typing import Any
 
 from meshwind.chart import Chart, flatten
 from meshwind.errors import BadInputError
-from meshwind.layup.families import families
+from meshwind.layup.families import Families, families
+from meshwind.layup.holding import hoop_revolutions
 from meshwind.layup.layup import Layup, assess
+from meshwind.layup.pins import read_pins
+from meshwind.layup.revolutions import Revolutions, choose_revolutions
+from meshwind.layup.spacing import Spaced, space_out
 from meshwind.mandrel import Mesh, annulus, read
 from meshwind.mandrel.scalars import Scalars, read_scalars
-from meshwind.notes import FIT_ERROR, Note, about_fit, about_paths
-from meshwind.options import FIELD, Options
+from meshwind.notes import FIT_ERROR, Note, about_choice, about_fit, about_paths, about_spacing
+from meshwind.options import AUTO, FIELD, STEPS_A_TURN, Options
 from meshwind.output import driver, folder
 from meshwind.output.fit_scene import fit_scene
 from meshwind.output.report import report, write_report
+from meshwind.output.revolutions_picture import draw_revolutions
 from meshwind.output.scene import scene
 from meshwind.output.write import write_files
 from meshwind.path import Paths, Status, solve
-from meshwind.path.friction import friction_from
+from meshwind.path.friction import Friction, friction_from
 from meshwind.surface import Surface, fit
 
 Tell = Callable[[str], None]
@@ -34,7 +39,7 @@ class Result:
     """A wound part: what every stage made, and what the run cost.
 
     options are those it was wound with; seconds holds each stage's wall time; notes say what the user should
-    know beside the figures.
+    know beside the figures; chosen and spaced: how revolutions and spacing were found, where that was asked for.
     """
 
     mesh: Mesh
@@ -44,6 +49,8 @@ class Result:
     command: str
     seconds: dict[str, float]
     notes: tuple[Note, ...] = ()
+    chosen: Revolutions | None = None
+    spaced: Spaced | None = None
 
     def __repr__(self) -> str:
         at_rest = int((self.paths.status == Status.CONVERGED).sum())
@@ -64,18 +71,26 @@ class Result:
         """Whether every path came to rest."""
         return bool((self.paths.status == Status.CONVERGED).all())
 
+    @property
+    def revolutions(self) -> float:
+        """Turns from end to end: as asked for or, with "auto", as chosen."""
+        return float(self.options.revolutions) if self.chosen is None else self.chosen.choice
+
     def report(self) -> dict[str, Any]:
         """The figures that report.json holds; lengths in the mesh's units, angles in degrees."""
         return report(
             self.layup,
             self.mesh,
             self.chart,
-            revolutions=self.options.revolutions,
+            revolutions=self.revolutions,
             command=self.command,
             units=self.options.units,
             tolerance=self.options.tolerance,
             seconds=self.seconds,
             notes=[str(note) for note in self.notes],
+            chosen=self.chosen,
+            spaced=self.spaced,
+            linear_density=self.options.linear_density,
         )
 
     def write(self, out: str | PathLike[str], render: bool = True) -> "Result":
@@ -108,7 +123,7 @@ def wind(
     mesh: str | PathLike[str] | Mesh,
     *,
     paths: int = 12,
-    revolutions: float = 0.5,
+    revolutions: float | str = 0.5,
     friction: float | str = 0.0,
     component: int = 0,
     ends: str = "auto",
@@ -117,6 +132,10 @@ def wind(
     worst_fit: float = 0.1,
     units: str = "",
     particles: int | None = 401,
+    spacing: float | None = None,
+    band_width: float | None = None,
+    linear_density: float | None = None,
+    pins: str | PathLike[str] | None = None,
     out: str | PathLike[str] | None = None,
     render: bool = True,
     command: str = "",
@@ -124,15 +143,21 @@ def wind(
 ) -> Result:
     """Lay two families of taut paths on a triangle mesh.
 
-    mesh: a file or a `Mesh`; paths: a family; revolutions: turns from end to end; friction: coefficient, or
+    mesh: a file or a `Mesh`; paths: a family; revolutions: turns from end to end, or "auto"; friction: coefficient, or
     "field:NAME" for a scalar of the mesh file; component: which piece of a file, by its rank of area; ends: "auto",
     "x", "y", "z", two points "x,y,z x,y,z" or two rims "loops 0 1"; opening: radius at a closed end in the mesh's
     units; tolerance: largest distance of a vertex from the surface over the mesh's diagonal; worst_fit: largest
     distance between surface and mesh, over the diagonal, that is wound at all; units: the name of the mesh's unit,
-    "" if unknown; particles: a path, None for as many as lengths right to 1e-5 need; out: folder for the files;
+    "" if unknown; particles: a path, None for as many as lengths right to 1e-5 need; spacing: paths are added until
+    neighbours lie no further apart; band_width: of the fibre, by default one layer a family; linear_density: its mass
+    over its length; pins: a CSV file of the paths' ends (`read_pins`); out: folder for the files;
     render: draw the pictures as well. Raises BadInputError, in one line, for whatever the caller can mend.
     """
-    options = Options(paths, revolutions, particles, friction, component, ends, opening, tolerance, worst_fit, units)
+    pinned = fspath(pins) if isinstance(pins, PathLike) else pins
+    options = Options(
+        paths, revolutions, particles, friction, component, ends, opening, tolerance, worst_fit, units,
+        spacing, band_width, linear_density, pinned,
+    )  # fmt: skip
     if not isinstance(mesh, str | PathLike | Mesh):
         raise BadInputError(f"mesh is of type {type(mesh).__name__}; give the path of a mesh file or a meshwind.Mesh")
     clock = _Clock(progress)
@@ -151,22 +176,43 @@ def wind(
     with clock.stage("fit"):
         surface = fit(chart, options.tolerance)
         notes = about_fit(surface, chart, options.tolerance, options.worst_fit, options.units)
-        rough = None if field is None else friction_from(surface, field.points, field.values)
+        rough: float | Friction = float(options.friction) if field is None else friction_from(
+            surface, field.points, field.values
+        )  # fmt: skip
+    chosen = _chosen(surface, options, rough, clock)
+    turns = float(options.revolutions) if chosen is None else chosen.choice
     with clock.stage("wind"):
-        rims = families(surface, options.paths, options.revolutions)
+        rims = _rims(surface, options, turns)
         laid = solve(
-            surface,
-            rims.start,
-            rims.end,
-            family=rims.family,
-            particles=options.particles,
-            friction=rough if rough is not None else float(options.friction),
-        )
-        notes = (*notes, *about_paths(laid))
+            surface, rims.start, rims.end, family=rims.family, particles=options.particles, friction=rough
+        )  # fmt: skip
+        spaced = None if options.spacing is None else space_out(laid, turns, options.spacing, rough)
+        laid = laid if spaced is None else spaced.paths
+        notes = (*notes, *about_paths(laid), *about_choice(chosen), *about_spacing(spaced, options.units))
     with clock.stage("assess"):
-        layup = assess(laid)
-    result = Result(part, chart, layup, options, command, clock.seconds, notes)
+        layup = assess(laid, options.band_width)
+    result = Result(part, chart, layup, options, command, clock.seconds, notes, chosen, spaced)
     return result if target is None else _write(result, target, render, clock)
+
+
+def _rims(surface: Surface, options: Options, turns: float) -> Families:
+    """Where the paths end: on the user's pins, or spread evenly over the rims."""
+    if options.pins is not None:
+        return read_pins(options.pins, surface, turns)
+    return families(surface, options.paths, turns)
+
+
+def _chosen(surface: Surface, options: Options, friction: float | Friction, clock: "_Clock") -> Revolutions | None:
+    """The revolutions, where they are to be chosen."""
+    if options.revolutions != AUTO:
+        return None
+    with clock.stage("choose"):
+        most = hoop_revolutions(surface)
+        if options.particles is not None:
+            most = min(most, (options.particles - 1) / STEPS_A_TURN)
+        return choose_revolutions(
+            surface, paths=options.paths, particles=options.particles, friction=friction, most=most
+        )  # fmt: skip
 
 
 def _field(mesh: str | PathLike[str] | Mesh, friction: float | str) -> Scalars | None:
@@ -189,6 +235,8 @@ def _write(result: Result, out: Path, render: bool, clock: _Clock) -> Result:
     with folder.writing(out) as staging:
         with clock.stage("write"):
             write_files(staging, result.layup, result.mesh)
+            if result.chosen is not None and render:
+                draw_revolutions(staging / "revolutions.png", result.chosen, result.mesh.name)
         if render:
             with clock.stage("render"):
                 missing = driver.paint({staging / name: seen for name, seen in _pictures(result).items()})
@@ -202,7 +250,7 @@ def _write(result: Result, out: Path, render: bool, clock: _Clock) -> Result:
 def _pictures(result: Result) -> dict[str, dict[str, Any]]:
     """What there is to draw, by the name of the file: the winding, and what a warning wants to show."""
     name, options = result.mesh.name, result.options
-    seen = {"winding.png": scene(result.layup, name, options.units, options.revolutions)}
+    seen = {"winding.png": scene(result.layup, name, options.units, result.revolutions)}
     if any(note.picture == FIT_ERROR for note in result.notes):
         seen[FIT_ERROR] = fit_scene(result.surface, result.chart.annulus, name, options.units)
     return seen

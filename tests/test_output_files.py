@@ -154,9 +154,12 @@ def test_surface_grid_and_maps(written: tuple[Layup, Path]) -> None:
         "gaussian_curvature",
         "mean_curvature",
         "windability",
+        "press_direction",
+        "press_reach",
         "class",
         "angle",
         "coverage",
+        "layers",
         "fit_error",
         "stretch",
     }

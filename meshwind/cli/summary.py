@@ -17,6 +17,7 @@ def summary(result: "Result", folder: Path) -> str:
         *_surface(report["surface"], report["mesh"]["diagonal"], result.options.units),
         *_paths(report["paths"], result.options.units),
     ]
+    lines += _layup(report, result.options.units)
     lines += _unsettled(report["paths"]["not_converged"])
     lines += [f"repair    {act}" for act in report["mesh"]["repairs"]]
     lines += [f"{'warning' if note.warning else 'note':<10}{note.text}" for note in result.notes]
@@ -53,6 +54,20 @@ def _paths(paths: dict[str, Any], units: str) -> list[str]:
             f"bridges   {paths['bridges']}, the longest {quantity(paths['longest_bridge'], units)}, "
             f"the largest gap {quantity(paths['max_gap'], units, 3)}"
         )
+    return lines
+
+
+def _layup(report: dict[str, Any], units: str) -> list[str]:
+    """Coverage and spacing; the fibre's mass where it is known."""
+    from meshwind.output.words import quantity
+
+    cover, near, fibre = report["coverage"], report["spacing"]["neighbours"], report["fibre"]
+    shares = ", ".join(f"{name} {100.0 * cover[name]:.0f} %" for name in ("bare", "once", "twice", "more"))
+    lines = [f"coverage  band {quantity(cover['band_width'], units, 3)}: {shares}"]
+    if near["max"] is not None:
+        lines[0] += f"; neighbours up to {quantity(near['max'], units, 3)} apart"
+    if fibre["mass"] is not None:
+        lines.append(f"fibre     {quantity(fibre['length'], units)}, mass {fibre['mass']:.4g}")
     return lines
 
 

@@ -16,12 +16,14 @@ from meshwind.errors import BadInputError
 UNSETTLED = 3
 
 
-def turns(text: str) -> float:
-    """A number or a fraction of whole numbers: 0.5, 5/12."""
+def turns(text: str) -> float | str:
+    """A number or a fraction of whole numbers: 0.5, 5/12; or auto."""
+    if text.strip().lower() == "auto":
+        return "auto"
     try:
         return float(Fraction(text)) if "/" in text else float(text)
     except (ValueError, ZeroDivisionError, OverflowError) as error:
-        raise BadInputError(f"revolutions is {text!r}; give a number as in 0.5 or 5/12") from error
+        raise BadInputError(f"revolutions is {text!r}; give a number as in 0.5 or 5/12, or auto") from error
 
 
 def count(text: str) -> int | None:
@@ -39,7 +41,7 @@ def wind(
     out: Annotated[str | None, typer.Option(help="Folder for the results.  [default: MESH's name + -wound]")] = None,
     paths: Annotated[int, typer.Option(help="Paths a family.")] = 12,
     revolutions: Annotated[
-        str, typer.Option(metavar="TURNS", help="Turns of a path from end to end, as in 0.5 or 5/12.")
+        str, typer.Option(metavar="TURNS", help="Turns of a path from end to end, as in 0.5 or 5/12, or auto.")
     ] = "0.5",
     friction: Annotated[
         str, typer.Option(metavar="MU", help="Friction of fibre on part, or field:NAME for a scalar of MESH.")
@@ -57,7 +59,19 @@ def wind(
     particles: Annotated[
         str, typer.Option(metavar="COUNT", help="Particles a path, or auto: as many as lengths right to 1e-5 need.")
     ] = "401",
-    render: Annotated[bool, typer.Option("--render/--no-render", help="Draw winding.png.")] = True,
+    spacing: Annotated[
+        float | None, typer.Option(help="Add paths until neighbours lie no further apart, in the mesh's units.")
+    ] = None,
+    band_width: Annotated[
+        float | None, typer.Option(help="Width of the fibre, in the mesh's units.  [default: one layer a family]")
+    ] = None,
+    linear_density: Annotated[
+        float | None, typer.Option(help="Mass over length of the fibre, per unit of the mesh; for its mass.")
+    ] = None,
+    pins: Annotated[
+        Path | None, typer.Option(help="CSV of the paths' ends: columns u0,v0,u1,v1 or x0,y0,z0,x1,y1,z1.")
+    ] = None,
+    render: Annotated[bool, typer.Option("--render/--no-render", help="Draw the pictures.")] = True,
 ) -> int:
     """Lay two families of taut fibres on MESH and write paths, bridges, crossings, quads, maps and a report.
 
@@ -83,6 +97,10 @@ def wind(
             worst_fit=worst_fit,
             units=units,
             particles=count(particles),
+            spacing=spacing,
+            band_width=band_width,
+            linear_density=linear_density,
+            pins=pins,
             out=folder,
             render=render,
             command=shlex.join(["meshwind", *sys.argv[1:]]),

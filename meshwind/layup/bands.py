@@ -44,6 +44,12 @@ class Bands:
         """Share of the surface without any band."""
         return self.share(0)
 
+    def at(self, uv: Floats) -> Ints:
+        """Layers at uv (n, 2): those over the middle of the cell that each is in."""
+        nu, nv = self.layers.shape
+        i = np.floor(np.mod(uv[:, 0], 1.0) * nu).astype(np.int64) % nu
+        return np.asarray(self.layers[i, np.clip((uv[:, 1] * nv).astype(np.int64), 0, nv - 1)])
+
     @property
     def balance(self) -> float:
         """The integral of the layers over the footprint: 1 but for what hangs over a rim."""

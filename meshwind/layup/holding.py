@@ -12,6 +12,7 @@ import numpy as np
 from meshwind.cast import Floats
 from meshwind.layup.clairaut import profile
 from meshwind.layup.trials import PATHS, Trial, trial
+from meshwind.path.friction import Friction, friction_of
 from meshwind.surface.interpolate import interpolate
 from meshwind.surface.surface import Surface
 
@@ -46,14 +47,18 @@ class Holding:
 
 
 def holding(
-    surface: Surface, friction: float = 0.0, most: float | None = None, paths: int = PATHS, close: float = 1e-3
+    surface: Surface,
+    friction: float | Friction = 0.0,
+    most: float | None = None,
+    paths: int = PATHS,
+    close: float = 1e-3,
 ) -> Holding:
     """Find the interval, up to `most` revolutions (by default those of a hoop), its ends to `close` revolutions.
 
     paths: of each family, where windings have to be tried.
     """
     most = hoop_revolutions(surface) if most is None else most
-    shape = profile(surface) if friction == 0.0 else None
+    shape = profile(surface) if friction_of(surface, friction).none else None
     if shape is not None:
         bound, narrow = shape.bound(), min(shape.rims)
         if shape.presses(narrow) and np.isfinite(bound):

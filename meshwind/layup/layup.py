@@ -1,12 +1,17 @@
 """What a batch of paths amounts to: crossings, coverage and the quad mesh."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
-from meshwind.cast import Bools
+from meshwind.cast import Bools, Ints
 from meshwind.errors import BadInputError
+from meshwind.layup.bands import Bands, bands
 from meshwind.layup.coverage import Coverage, coverage
-from meshwind.layup.crossings import Crossings, crossings
+from meshwind.layup.crossings import Crossings, crossings, own_crossings
+from meshwind.layup.neighbours import CellSides, Neighbours, cell_sides, neighbours
+from meshwind.layup.quad_quality import QuadQuality, quad_quality
 from meshwind.layup.quads import QuadMesh, quads
+from meshwind.layup.windability import Windability, windability
 from meshwind.path.paths import Paths, Status
 
 _FEWEST = 3
@@ -15,12 +20,45 @@ _FEWEST = 3
 
 @dataclass(frozen=True)
 class Layup:
-    """Paths with their crossings, the quad mesh on them and the coverage of the surface."""
+    """Paths with their crossings, the quad mesh on them and the coverage of the surface.
+
+    What else can be told of them is worked out when it is first asked for.
+    """
 
     paths: Paths
     crossings: Crossings
     quads: QuadMesh
     coverage: Coverage
+
+    @cached_property
+    def bands(self) -> Bands:
+        """Bands of the coverage's width laid on the surface."""
+        return bands(self.paths, self.coverage.width)
+
+    @cached_property
+    def neighbours(self) -> Neighbours:
+        """How far neighbours of a family lie apart."""
+        return neighbours(self.paths)
+
+    @cached_property
+    def sides(self) -> CellSides:
+        """Lengths of fibre between crossings."""
+        return cell_sides(self.paths, self.crossings)
+
+    @cached_property
+    def own_crossings(self) -> Ints:
+        """Pairs (k, 2) of paths of one family that cross."""
+        return own_crossings(self.paths, self.crossings.compared)
+
+    @cached_property
+    def quality(self) -> QuadQuality:
+        """How well shaped the quads are."""
+        return quad_quality(self.quads)
+
+    @cached_property
+    def windability(self) -> Windability:
+        """Where and in which directions a fibre presses on the surface."""
+        return windability(self.paths.surface)
 
 
 def assess(paths: Paths, width: float | None = None) -> Layup:

@@ -9,6 +9,7 @@ from meshwind.errors import BadInputError
 from meshwind.layup.holding import Holding, Wound, holding, hoop_revolutions, opened, square_revolutions
 from meshwind.layup.pressing import Pressing, pressing
 from meshwind.layup.trials import PATHS, Trial, full_trial, trial
+from meshwind.path.friction import Friction, friction_of
 from meshwind.surface.surface import Surface
 
 CANDIDATES = 32
@@ -75,8 +76,8 @@ def choose_revolutions(
     surface: Surface,
     *,
     paths: int = PATHS,
-    particles: int = 401,
-    friction: float = 0.0,
+    particles: int | None = 401,
+    friction: float | Friction = 0.0,
     most: float | None = None,
     further: bool = True,
 ) -> Revolutions:
@@ -178,9 +179,9 @@ def _least(trials: list[Trial]) -> Trial:
     return max(trials, key=lambda each: (each.at_rest, -each.bridged))
 
 
-def _further(surface: Surface, held: Holding, most: float, friction: float) -> tuple[float, float]:
+def _further(surface: Surface, held: Holding, most: float, friction: float | Friction) -> tuple[float, float]:
     """Most revolutions with more friction, and with wider openings; 0 where they gain nothing."""
-    rougher = max(FRICTION, 2.0 * friction)
+    rougher = max(FRICTION, 2.0 * friction_of(surface, friction).largest)
     gained = _rougher(surface, rougher, held.high, min(most, _GAIN * held.high))
     wider = opened(surface, WIDER, held.slides or "both")
     high = 0.0 if wider is None else holding(wider, friction, most, _FEW, 0.02 * held.high).high

@@ -15,6 +15,7 @@ from meshwind.layup.families import places
 from meshwind.layup.joining import chosen, joined
 from meshwind.layup.neighbours import apart, neighbours
 from meshwind.path import Paths, Status, solve
+from meshwind.path.friction import Friction
 
 _ROUNDS = 24
 _MOST = 4000
@@ -79,7 +80,7 @@ class _Ring:
         return np.asarray((off & same).any(axis=1))
 
 
-def space_out(paths: Paths, revolutions: float, spacing: float, friction: float = 0.0) -> Spaced:
+def space_out(paths: Paths, revolutions: float, spacing: float, friction: float | Friction = 0.0) -> Spaced:
     """Add paths to those that `families` spread evenly over the rims, wound by `revolutions`.
 
     spacing: largest distance between neighbours of a family, in the mesh's units; friction as in `solve`.
@@ -104,7 +105,7 @@ def space_out(paths: Paths, revolutions: float, spacing: float, friction: float 
     )  # fmt: skip
 
 
-def _round(ring: _Ring, revolutions: float, spacing: float, friction: float) -> tuple[_Ring, bool]:
+def _round(ring: _Ring, revolutions: float, spacing: float, friction: float | Friction) -> tuple[_Ring, bool]:
     """Put paths between all neighbours that are too far apart; True where there are none."""
     first, second, step, gap = ring.pairs()
     usual = gap / np.maximum(step * float(np.median(gap / step)), 1e-300)
@@ -128,7 +129,7 @@ def _round(ring: _Ring, revolutions: float, spacing: float, friction: float) -> 
 
 def _between(
     ring: _Ring, first: Ints, second: Ints, step: Floats, weight: Floats, blend: Floats, revolutions: float,
-    friction: float,
+    friction: float | Friction,
 ) -> tuple[Paths, Floats]:  # fmt: skip
     """Paths that start at a weight between two neighbours, from a blend of their curves; and their shares."""
     paths = ring.paths

@@ -8,7 +8,7 @@ from meshwind.layup.families import families
 from meshwind.layup.lengths import lengths
 from meshwind.path import Paths, Status, solve
 from meshwind.path.batch import Setting, fresh
-from meshwind.path.friction import friction_of
+from meshwind.path.friction import Friction, friction_of
 from meshwind.path.ladder import fewest, search
 from meshwind.path.solve import as_paths, straight
 from meshwind.surface.surface import Surface
@@ -40,7 +40,7 @@ class Trial:
         return self.at_rest == 1.0
 
 
-def trial(surface: Surface, revolutions: float, friction: float = 0.0, paths: int = PATHS) -> Trial:
+def trial(surface: Surface, revolutions: float, friction: float | Friction = 0.0, paths: int = PATHS) -> Trial:
     """Wind both families with `paths` coarse paths each; those that do not hold are tried anew with more particles."""
     rims = families(surface, paths, revolutions)
     setting = Setting(surface, friction_of(surface, friction), True, _TOLERANCE, _ITERATIONS)
@@ -60,7 +60,9 @@ def trial(surface: Surface, revolutions: float, friction: float = 0.0, paths: in
     return _sum_up(batches, revolutions)
 
 
-def full_trial(surface: Surface, revolutions: float, friction: float, paths: int, particles: int) -> Trial:
+def full_trial(
+    surface: Surface, revolutions: float, friction: float | Friction, paths: int, particles: int | None
+) -> Trial:
     """Wind both families as they are wound in earnest."""
     rims = families(surface, paths, revolutions)
     laid = solve(surface, rims.start, rims.end, particles=particles, family=rims.family, friction=friction)

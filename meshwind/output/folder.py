@@ -11,7 +11,7 @@ from meshwind.errors import BadInputError
 
 RESULTS = frozenset(
     ("paths.vtp", "bridges.vtp", "crossings.vtp", "quads.vtu", "quads.obj", "surface.vtu", "surface.npz")
-    + ("chart.png", "report.json", "winding.png", "fit_error.png")
+    + ("chart.png", "report.json", "winding.png", "fit_error.png", "revolutions.png")
 )
 """All that a run may leave in its folder."""
 

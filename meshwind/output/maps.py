@@ -64,6 +64,7 @@ def maps(on: Grid, layup: Layup, fit_error: Floats | None = None) -> dict[str, F
         "press_reach": np.degrees(press.reach),
         "angle": np.degrees(winding_angle(layup.paths, *on.shape)).ravel(),
         "coverage": layup.coverage.at(on.uv),
+        "layers": layup.bands.at(on.uv),
         "stretch": _stretch(on),
     }
     return data if fit_error is None else data | {"fit_error": fit_error}

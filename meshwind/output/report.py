@@ -9,11 +9,21 @@ from typing import Any
 
 import numpy as np
 
-from meshwind.cast import Floats
 from meshwind.chart.chart import Chart
 from meshwind.layup.layup import Layup
+from meshwind.layup.revolutions import Revolutions
+from meshwind.layup.spacing import Spaced
 from meshwind.mandrel.mesh import Mesh
 from meshwind.output.figures import path_figures
+from meshwind.output.layup_figures import (
+    coverage_figures,
+    crossing_figures,
+    fibre_figures,
+    quad_figures,
+    revolution_figures,
+    spacing_figures,
+    windability_figures,
+)
 from meshwind.path.paths import Paths, Status
 from meshwind.surface.surface import Surface
 
@@ -30,12 +40,16 @@ def report(
     seconds: Mapping[str, float] | None = None,
     notes: Sequence[str] = (),
     model: Mapping[str, Any] | None = None,
+    chosen: Revolutions | None = None,
+    spaced: Spaced | None = None,
+    linear_density: float | None = None,
 ) -> dict[str, Any]:
     """Gather all figures as plain Python values; lengths in the mesh's units, angles in degrees.
 
     chart is None for a surface that was given rather than fitted; `tolerance` that the fit was asked for;
     `seconds` per stage; `notes` for the user; `model` adds to or replaces what the paths themselves tell of the
-    model that the scene needed.  A figure that does not exist (NaN or infinite) is None.
+    model that the scene needed; chosen and spaced: how revolutions and spacing were found; linear_density: mass over
+    length of the fibre.  A figure that does not exist (NaN or infinite) is None.
     """
     paths = layup.paths
     figures = {
@@ -50,19 +64,18 @@ def report(
             "friction": paths.friction,
         },
         "paths": _paths(paths),
-        "crossings": {"count": len(layup.crossings), "angle": _spread(np.degrees(layup.crossings.angle))},
-        "coverage": {
-            "min": layup.coverage.min,
-            "median": layup.coverage.median,
-            "max": layup.coverage.max,
-            "band_width": layup.coverage.width,
-            "cells": list(layup.coverage.layers.shape),
-        },
-        "quads": _quads(layup),
+        "crossings": crossing_figures(layup.crossings, len(layup.own_crossings)),
+        "coverage": coverage_figures(layup),
+        "spacing": spacing_figures(layup, spaced),
+        "windability": windability_figures(layup.windability),
+        "quads": quad_figures(layup),
+        "fibre": fibre_figures(layup, linear_density),
         "model": _model(paths) | dict(model or {}),
         "seconds": dict(seconds or {}),
         "notes": list(notes),
     }
+    if chosen is not None:
+        figures["revolutions"] = revolution_figures(chosen)
     told: dict[str, Any] = plain(figures)
     return told
 
@@ -144,23 +157,6 @@ def _paths(paths: Paths) -> dict[str, Any]:
 def _failure(paths: Paths, path: int) -> dict[str, Any]:
     status = Status(int(paths.status[path]))
     return {"path": path, "status": int(status), "name": status.name.lower(), "why": paths.advice(path)}
-
-
-def _spread(values: Floats) -> dict[str, float | None]:
-    if not len(values):
-        return {"min": None, "median": None, "max": None}
-    return {"min": float(values.min()), "median": float(np.median(values)), "max": float(values.max())}
-
-
-def _quads(layup: Layup) -> dict[str, Any]:
-    mesh = layup.quads
-    return {
-        "faces": len(mesh.quads) + len(mesh.triangles),
-        "quads": len(mesh.quads),
-        "triangles": len(mesh.triangles),
-        "left_out": list(mesh.left_out),
-        "note": mesh.note,
-    }
 
 
 def _model(paths: Paths) -> dict[str, Any]:
