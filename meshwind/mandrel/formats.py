@@ -72,7 +72,7 @@ def by_vtk(path: Path) -> tuple[Floats, Ints]:
     """
     from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
 
-    data = _vtk_output(path)
+    data = vtk_output(path)
     if isinstance(data, vtkPolyData):
         cells, kinds = data.GetPolys(), None
     elif isinstance(data, vtkUnstructuredGrid):
@@ -106,7 +106,7 @@ def _kinds(grid: Any) -> Ints:
     return np.asarray(pyvista.wrap(grid).celltypes, dtype=np.int64)
 
 
-def _vtk_output(path: Path) -> Any:
+def vtk_output(path: Path) -> Any:
     """Run VTK's reader for the file, silently."""
     from vtkmodules.vtkCommonCore import vtkObject
     from vtkmodules.vtkIOLegacy import vtkGenericDataObjectReader

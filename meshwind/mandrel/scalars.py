@@ -5,14 +5,16 @@ Repair and trimming renumber vertices, so scalars keep the places they were give
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from meshwind.cast import Floats, frozen
 from meshwind.errors import BadInputError
+from meshwind.mandrel.formats import reader_errors, vtk_output
 
 _BY_VTK = (".vtk", ".vtp", ".vtu")
-_BY_MESHIO = (".ply", ".msh", ".inp")
+_BY_MESHIO = (".ply", ".msh")
 
 
 @dataclass(frozen=True)
@@ -24,16 +26,23 @@ class Scalars:
 
 
 def read_scalars(path: str | Path, name: str) -> Scalars:
-    """Read the scalar `name` from a VTK, VTP, VTU, PLY, MSH or INP file, of its points or else of its cells.
+    """Read the scalar `name` from a VTK, VTP, VTU, PLY or MSH file, of its points or else of its cells.
 
-    Raises BadInputError where the format cannot hold scalars or the file has none of that name.
+    Raises BadInputError where the format cannot hold scalars, the file cannot be read or has none of that name.
     """
     path = Path(path)
     kind = path.suffix.lower()
     if kind not in _BY_VTK + _BY_MESHIO:
         known = ", ".join(end[1:].upper() for end in _BY_VTK + _BY_MESHIO)
         raise BadInputError(f"{path.name}: this format holds no scalars; save the part with {name!r} as {known}")
-    points, fields = _by_vtk(path) if kind in _BY_VTK else _by_meshio(path)
+    errors: tuple[type[BaseException], ...] = (OSError, ValueError, LookupError, AttributeError, TypeError)
+    errors += reader_errors(".msh")
+    try:
+        points, fields = _by_vtk(path) if kind in _BY_VTK else _by_meshio(path)
+    except errors as error:
+        raise BadInputError(
+            f"{path.name}: its scalars cannot be read; is it a whole {kind[1:].upper()} file?"
+        ) from error
     if name not in fields:
         there = ", ".join(sorted(fields)) or "none"
         raise BadInputError(f"{path.name}: has no scalar {name!r}; it holds: {there}")
@@ -49,17 +58,33 @@ _Fields = dict[str, tuple[Floats | None, Floats]]
 
 
 def _by_vtk(path: Path) -> tuple[Floats, _Fields]:
-    import pyvista
+    """By raw arrays only, as in `formats`: VTK's filters end the process on damaged cells."""
+    from vtkmodules.util import numpy_support
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-    data = pyvista.read(path)
-    points = np.asarray(data.points, dtype=np.float64)
+    path.stat()  # VTK says nothing of a file that is not there
+    data = vtk_output(path)
+    points = numpy_support.vtk_to_numpy(data.GetPoints().GetData()).astype(np.float64)  # type: ignore[no-untyped-call]
+    cells = data.GetPolys() if isinstance(data, vtkPolyData) else data.GetCells()
+    offsets = numpy_support.vtk_to_numpy(cells.GetOffsetsArray()).astype(np.int64)  # type: ignore[no-untyped-call]
+    nodes = numpy_support.vtk_to_numpy(cells.GetConnectivityArray()).astype(np.int64)  # type: ignore[no-untyped-call]
+    sizes = np.diff(offsets)
     fields: _Fields = {}
-    middles = np.asarray(data.cell_centers().points, dtype=np.float64)
-    for name in data.cell_data:
-        _keep(fields, name, data.cell_data[name], middles)
-    for name in data.point_data:
-        _keep(fields, name, data.point_data[name], None)
+    if len(sizes) and (sizes > 0).all() and offsets[0] == 0 and offsets[-1] == len(nodes):
+        middles = np.add.reduceat(points[nodes], offsets[:-1], axis=0) / sizes[:, None]
+        _keep_all(fields, data.GetCellData(), middles)
+    _keep_all(fields, data.GetPointData(), None)
     return points, fields
+
+
+def _keep_all(fields: _Fields, data: Any, places: Floats | None) -> None:
+    """Note the single numbers among VTK's arrays."""
+    from vtkmodules.util import numpy_support
+
+    for k in range(data.GetNumberOfArrays()):
+        array = data.GetArray(k)
+        if array is not None and array.GetName():
+            _keep(fields, array.GetName(), numpy_support.vtk_to_numpy(array), places)  # type: ignore[no-untyped-call]
 
 
 def _by_meshio(path: Path) -> tuple[Floats, _Fields]:

@@ -203,7 +203,7 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
                     tally,
                 )  # fmt: skip
                 carry_lifted(net, periodic, boxes, levels, size, step, contacts, count, state, trial, tally)
-                if largest_turn(trial) > most:
+                if periodic and largest_turn(trial) > most:
                     step *= 0.5
                     continue
                 then, length_then = energy(trial[0])
@@ -282,7 +282,7 @@ def hold_all(
         )
         if final and status[p] != LIFTED:
             certify(net, periodic, boxes, levels, state, slip[p], tally)
-            if status[p] == CONVERGED and unresolved(state):
+            if status[p] == CONVERGED and unresolved(state, periodic):
                 status[p] = TOO_COARSE
 
 

@@ -40,7 +40,7 @@ _ADVICE = {
 }
 
 
-EDGE = 1.7
+EDGE = 1.2
 """Turn of the surface within one segment, in radians, above which the segment cuts an edge."""
 
 
@@ -96,6 +96,8 @@ class Paths:
         """What became of a path and, where it does not hold, what would hold it."""
         status = Status(int(self.status[path]))
         ways = []
+        if status in (Status.CONVERGED, Status.TOO_COARSE):
+            return status.advice
         if self.holding_turns[path] > 0.0:
             ways.append(f"{self.holding_turns[path]:.2g} revolutions")
         if self.holding_friction[path] > 0.0:

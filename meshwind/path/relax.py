@@ -111,7 +111,9 @@ def relax(net, periodic, boxes, levels, size, pull_off, tolerance, limit, state,
         while step > SMALLEST_STEP:
             move_touching(net, periodic, step, move, contacts, count, state, trial, tally)
             carry_lifted(net, periodic, boxes, levels, size, step, contacts, count, state, trial, tally)
-            if largest_turn(trial) > most:  # neighbours on two sides of the body: one of them went through it
+            if (
+                periodic and largest_turn(trial) > most
+            ):  # neighbours on two sides of the body: one of them went through it
                 step *= 0.5
                 continue
             then, length_then = energy(trial[0])
@@ -217,7 +219,7 @@ def relax_all(
         )
         if final and status[p] != LIFTED:
             certify(net, periodic, boxes, levels, state, slip[p], tallies[p])
-            if status[p] == CONVERGED and unresolved(state):
+            if status[p] == CONVERGED and unresolved(state, periodic):
                 status[p] = TOO_COARSE
 
 
@@ -254,11 +256,11 @@ def certify(net, periodic, boxes, levels, state, slip, tally):
 
 
 @njit(cache=True)
-def unresolved(state):
+def unresolved(state, periodic):
     """Whether the path cuts an edge by a segment on the surface much longer than the others, or the whole body."""
     X, touching = state[0], state[4]
     n = len(X)
-    if largest_turn(state) > HALF_TURN:
+    if periodic and largest_turn(state) > HALF_TURN:
         return True
     _, length = energy(X)
     for i in range(n - 1):
