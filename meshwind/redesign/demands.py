@@ -14,13 +14,15 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from meshwind.cast import Bools, Floats
+from meshwind.cast import Bools, Floats, Ints
 from meshwind.path.paths import Paths, Status
 from meshwind.redesign.stencil import along, pitches, weights
-from meshwind.surface.surface import Surface
 
 JUMP = 0.5
 """Spans that neighbouring shadows may lie apart; where they skip the floor of a hollow, points between them count."""
+
+CLOSE, MOST_BETWEEN = 0.5, 4
+"""Neighbouring paths up to a span and this much apart have none between; others get so many at most."""
 
 
 @dataclass(frozen=True)
@@ -62,16 +64,14 @@ def press(paths: Paths, curvature: float) -> Demands:
     Christoffel symbols G of the fibre's direction t; the rows are in lengths, like those of `reach`.
     """
     surface = paths.surface
-    inside = np.zeros(paths.gap.shape, dtype=bool)
-    inside[:, 1:-1] = _counts(paths)
-    uv = paths.uv[inside]
-    chord = np.zeros(paths.points.shape)
-    chord[:, 1:-1] = paths.points[:, 2:] - paths.points[:, :-2]
+    uv, chord = _pressed(paths)
     frames = surface.frames(uv)
     normal = surface.normals(uv)
-    a, b = _components(frames, chord[inside])
+    a, b = _components(frames, chord)
     speed = np.linalg.norm(a[:, None] * frames[:, 1] + b[:, None] * frames[:, 2], axis=1)
-    a, b = a / speed, b / speed
+    sound = speed > 1e-9 * np.linalg.norm(chord, axis=1)
+    uv, frames, normal = uv[sound], frames[sound], normal[sound]
+    a, b = a[sound] / speed[sound], b[sound] / speed[sound]
     turn = (a * a)[:, None] * frames[:, 3] + (2 * a * b)[:, None] * frames[:, 4] + (b * b)[:, None] * frames[:, 5]
     along_u, along_v = _components(frames, turn)
     found, (d_u, d_v, d_uu, d_uv, d_vv) = weights(surface, uv, ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2)))
@@ -80,16 +80,54 @@ def press(paths: Paths, curvature: float) -> Demands:
     length = max(pitches(surface)) ** 2
     matrix = along(found, -length * change, normal, surface.control_points.size // 3)
     least = length * (curvature + (turn * normal).sum(axis=1))
+    return Demands(matrix, least, np.ones(len(least), dtype=bool))
+
+
+def _pressed(paths: Paths) -> tuple[Floats, Floats]:
+    """Where the fibres must press, in the plane (k, 2), and their chords there (k, 3).
+
+    About once a span along each path, and also between neighbours that run further apart than a span: from round
+    to round paths move sideways there, and another start may send one through.
+    """
+    uv, points = paths.uv, paths.points
     spans, run = _travel(paths)
-    chosen = np.zeros(inside.shape, dtype=bool)
+    chosen = np.zeros(paths.gap.shape, dtype=bool)
     chosen[:, 1:] = _new_span(run[:, :-1], spans, np.ones_like(spans), np.ones_like(spans))
     chosen[:, [1, -2]] = True  # curvature runs straight within a span: its ends count, at the rims too
-    return Demands(matrix, least, chosen[inside])
+    chosen &= _counts(paths)
+    chosen[:, [0, -1]] = False
+    chord = np.zeros(points.shape)
+    chord[:, 1:-1] = points[:, 2:] - points[:, :-2]
+    places, chords = [uv[chosen]], [chord[chosen]]
+    left = np.arange(len(paths))
+    right, turns = _neighbours(paths)
+    beside = uv[right] + turns[:, None, None] * [1.0, 0.0]
+    apart = np.abs((beside - uv) * np.array(paths.surface.spans)).max(axis=2)
+    open_ = chosen & chosen[right].any(axis=1, keepdims=True) & (right != left)[:, None]
+    for part in range(1, MOST_BETWEEN + 1):
+        pieces = np.minimum(np.ceil(apart - CLOSE), MOST_BETWEEN) + 1
+        here = open_ & (pieces > part)
+        share = (part / np.maximum(pieces, 1))[here][:, None]
+        places.append((1 - share) * uv[here] + share * beside[here])
+        chords.append((1 - share) * chord[here] + share * chord[right][here])
+    return np.concatenate(places), np.concatenate(chords)
+
+
+def _neighbours(paths: Paths) -> tuple[Ints, Floats]:
+    """The next path around of each path's family (p,), and the turns of u to it (p,)."""
+    right, turns = np.arange(len(paths)), np.zeros(len(paths))
+    if paths.surface.periodic:
+        for family in (1, -1):
+            mine = np.flatnonzero(paths.family == family)
+            order = mine[np.argsort(paths.uv[mine, 0, 0], kind="stable")]
+            right[order] = np.roll(order, -1)
+            turns[order[-1:]] = 1.0
+    return right, turns
 
 
 def _counts(paths: Paths) -> Bools:
     """Mask (p,) of the paths whose place means something, (p, 1) for broadcasting over particles."""
-    return (paths.status != Status.STALLED)[:, None]
+    return ~np.isin(paths.status, (Status.STALLED, Status.LEFT_CHART))[:, None]
 
 
 def _travel(paths: Paths) -> tuple[Floats, Floats]:
@@ -98,8 +136,9 @@ def _travel(paths: Paths) -> tuple[Floats, Floats]:
     return spans, np.concatenate([np.zeros((len(paths), 1)), np.cumsum(spans, axis=1)], axis=1)
 
 
-def _new_span(start: Floats, length: Floats, step: Floats, pieces: Floats) -> Bools:
+def _new_span(start: Floats, length: Floats, step: Floats | Ints, pieces: Floats | Ints) -> Bools:
     """Whether the given piece of a step is the first to cross into another span along the path."""
+    start = start + 1e-6  # particles may lie on knots to round-off, which must not decide
     now, before = start + length * step / pieces, start + length * (step - 1) / pieces
     return np.asarray(np.floor(now) > np.floor(before))
 

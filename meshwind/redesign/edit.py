@@ -7,7 +7,7 @@ import numpy as np
 
 from meshwind.cast import Floats
 from meshwind.errors import BadInputError
-from meshwind.layup.families import Families, families
+from meshwind.layup.families import families
 from meshwind.path import Paths, solve
 from meshwind.redesign.demands import press, reach
 from meshwind.redesign.freedom import Frozen, free_moves, frozen_mask
@@ -16,20 +16,20 @@ from meshwind.redesign.result import Outcome, Round
 from meshwind.redesign.step import Step, energy, step
 from meshwind.surface.surface import Surface
 
-FAIRNESS = 0.2
+FAIRNESS = 0.4
 """Wave length over the part's size at which a change of the net costs as much by its bending as by its size."""
 PRESSING = 0.2
 """Least normal curvature along the fibres, times the part's size: a bow of 1/40 of a chord as long as the part.
 
-A refit of the edited mesh moves the surface by its fit error over waves of some spans; with this much no fibre of the
-sample parts lifts off again.
+A refit of the edited mesh moves the surface by its fit error over waves of some spans; with this much the fibres of
+the sample parts lift off again by less than that error.
 """
 FIRM = 0.3
 """Of the threshold: the rounds go on while a gap is above this, so that what is left has room for the refit."""
 LEAST_GAP = 1e-6
 """Threshold over the part's size where the surface carries no fit error."""
-FAR_SHORT = 0.1
-"""Of the largest gap: a surface that is left further below the fibre cannot reach it."""
+FAR_SHORT = 0.5
+"""Of the largest gap: a surface that is left further below the fibre cannot reach it, and such an edit is not made."""
 PATIENCE = 2
 
 Tell = Callable[[str], None]
@@ -95,6 +95,10 @@ def edit(
         moved = (now.control_points - surface.control_points).reshape(-1, 3)
         curvature = pressing / surface.size
         found = step(reach(laid), press(laid, curvature), cost, moves, moved, bound, limit)
+        if found.shortfall > max(limit, FAR_SHORT * float(laid.gap.max())):
+            outcome = Outcome.OUT_OF_REACH
+            figures.append(_figures(laid, laid, found, now, surface, limit))
+            break
         now = _moved(surface, moved + found.change, bound)
         after = _rewound(now, laid, particles)
         figures.append(_figures(laid, after, found, now, surface, limit))
@@ -102,8 +106,8 @@ def edit(
         better = _worst(laid, limit) < _worst(best[1], limit)
         idle = 0 if better else idle + 1
         best = (now, laid) if better else best
-        outcome = _outcome(laid, found, figures[-1], limit, idle)
-        if outcome not in (Outcome.ROUNDS_SPENT, Outcome.WINDABLE):
+        outcome = _outcome(laid, found, limit, idle)
+        if outcome != Outcome.ROUNDS_SPENT and (outcome != Outcome.WINDABLE or not better):
             break
     now, laid = best
     if laid.gap.max() <= limit:
@@ -167,11 +171,9 @@ def _figures(before: Paths, after: Paths, found: Step, now: Surface, first: Surf
     )
 
 
-def _outcome(laid: Paths, found: Step, figures: Round, limit: float, idle: int) -> Outcome:
+def _outcome(laid: Paths, found: Step, limit: float, idle: int) -> Outcome:
     if laid.gap.max() <= limit:
-        return Outcome.WINDABLE if idle < PATIENCE else Outcome.NO_GAIN
+        return Outcome.WINDABLE
     if max(found.solution.primal, found.solution.dual) > 1e3 * ACCURACY:
         return Outcome.NOT_SOLVED
-    if found.shortfall > max(limit, FAR_SHORT * figures.gap_before):
-        return Outcome.OUT_OF_REACH
     return Outcome.NO_GAIN if idle >= PATIENCE else Outcome.ROUNDS_SPENT

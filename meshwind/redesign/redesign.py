@@ -8,7 +8,7 @@ from meshwind.chart import Chart, flatten
 from meshwind.errors import BadInputError
 from meshwind.mandrel import Mesh, annulus, read
 from meshwind.mandrel.measure import volume
-from meshwind.path import Paths
+from meshwind.path import Paths, Status
 from meshwind.redesign.edit import FAIRNESS, PRESSING, Tell, edit
 from meshwind.redesign.edited_mesh import displaced, displacement, turned_over, volume_change
 from meshwind.redesign.freedom import Frozen
@@ -47,6 +47,11 @@ class Redesign:
     def windable(self) -> bool:
         """Whether nothing bridges any more."""
         return self.outcome == Outcome.WINDABLE
+
+    @property
+    def settled(self) -> bool:
+        """Whether every path came to rest: a part without bridges may still let fibres slide off its ends."""
+        return bool((self.paths.status == Status.CONVERGED).all())
 
     @property
     def bridged(self) -> float:

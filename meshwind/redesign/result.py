@@ -21,11 +21,12 @@ class Outcome(IntEnum):
 
 _ADVICE = {
     Outcome.WINDABLE: "no fibre bridges any more",
-    Outcome.OUT_OF_REACH: "the surface cannot reach the fibre within what may move: allow a larger displacement, freeze "
-    "less of the part or ask for less symmetry, or change the revolutions",
-    Outcome.NO_GAIN: "the bridges no longer shrink: change the revolutions, or allow more rounds, a larger displacement or "
-    "less to be frozen",
-    Outcome.ROUNDS_SPENT: "some fibres still bridge after the last round: allow more rounds, or start from the edited mesh",
+    Outcome.OUT_OF_REACH: "the surface cannot reach the fibre within what may move: allow a larger displacement, "
+    "freeze less of the part or ask for less symmetry, or change the revolutions",
+    Outcome.NO_GAIN: "the bridges no longer shrink: change the revolutions, or allow a larger displacement or less to "
+    "be frozen",
+    Outcome.ROUNDS_SPENT: "some fibres still bridge after the last round: allow more rounds, or start from the edited "
+    "mesh",
     Outcome.NOT_SOLVED: "the quadratic program was not solved to its accuracy: use fewer paths, or a coarser surface "
     "(tolerance 1e-4)",
 }

@@ -2,8 +2,8 @@
 
 The inequalities are elastic: min dC^T (1 + f B) dC + |t|^2 / d subject to M dC + t >= b.  Paths lie closer together
 than control points, so that the rows of (6.10) nearly repeat each other; their multipliers are then not unique, and
-OSQP's iterations crawl (10,000 and more where the elastic form takes 500).  A row gives way by about a hundredth of the
-largest demand, which the margin pays for, and what has no solution shows as a row that gives way by much more.
+OSQP's iterations crawl (10,000 and more where the elastic form takes 500).  A row gives way by one or two hundredths of
+the largest demand, which the margin pays for, and what has no solution shows as a row that gives way by much more.
 """
 
 from dataclasses import dataclass
@@ -18,11 +18,11 @@ from meshwind.redesign.program import Solution, minimise
 from meshwind.redesign.stencil import bending
 from meshwind.surface.surface import Surface
 
-GIVE = 1e-2
+GIVE = 3e-2
 """d, with rows of length 1, change of order 1 and demands up to 1."""
-OWN_SAY = 0.5
-"""A row of `press` of whose length less than this part is free to move is left out: it asks the frozen to move."""
-MARGIN = 0.015
+OWN_SAY = (0.05, 0.5)
+"""A row of `reach` or `press` of whose length less than this part is free is left out: it asks the frozen to move."""
+MARGIN = 0.02
 """Beyond the fibre, as a part of the largest gap: more than a row gives way."""
 ROUNDS, BOUND_ROUNDS = 3, 12
 BOUND_SHARE = 1 - 1e-4
@@ -113,7 +113,7 @@ def assembled(
     free = sparse.csr_array(rows @ moves)
     length, own = _lengths(rows), _lengths(free)
     first = int(kept.sum())
-    sensible = own > np.where(np.arange(len(own)) < first, 1e-6, OWN_SAY) * length
+    sensible = own > np.where(np.arange(len(own)) < first, *OWN_SAY) * length
     free, least, length = free[sensible], least[sensible] / length[sensible], length[sensible]
     unit = float(np.abs(least).max(initial=margin))
     count, size = free.shape

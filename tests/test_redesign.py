@@ -1,0 +1,234 @@
+"""Automatic surface editing: the program's certificate, what may not move, and parts that wind after it."""
+
+from pathlib import Path
+
+import clarabel
+import numpy as np
+import pytest
+import trimesh
+from scipy import sparse
+
+import meshwind as mw
+from meshwind.mandrel import mesh_from
+from meshwind.mandrel.measure import volume
+from meshwind.redesign import Outcome, edit, redesign
+from meshwind.redesign.demands import Demands, press, reach
+from meshwind.redesign.edited_mesh import displacement
+from meshwind.redesign.freedom import free_moves, frozen_mask
+from meshwind.redesign.program import ACCURACY, Solution, certified, minimise
+from meshwind.redesign.step import GIVE, Program, assembled, energy
+from meshwind.surface import Surface, shapes
+
+DATA = Path(__file__).parents[1] / "data"
+
+
+def hyperboloid() -> Surface:
+    return shapes.hyperboloid(1.0, 0.6, 1.5, (16, 16))
+
+
+def straight(surface: Surface, count: int = 8) -> mw.Paths:
+    """Paths along the meridians, which bridge the waist from rim to rim."""
+    u = np.arange(count) / count
+    ends = [np.stack([u, np.full(count, v)], axis=1) for v in (0.0, 1.0)]
+    return mw.solve(surface, ends[0], ends[1], particles=61)
+
+
+def real_program(surface: Surface) -> Program:
+    laid = straight(surface)
+    whole = reach(laid), press(laid, 0.2 / surface.size)
+    moves = free_moves(surface, frozen_mask(surface, None))
+    moved = np.zeros((surface.control_points.size // 3, 3))
+    return assembled(*whole, whole[0].chosen, energy(surface, 0.2), moves, moved, None, 1e-3)
+
+
+def by_osqp(program: Program) -> Solution:
+    return minimise(program.P, program.A, program.low, program.high)
+
+
+def by_clarabel(program: Program) -> float:
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    cones = [clarabel.NonnegativeConeT(len(program.low))]
+    P, A = sparse.csc_matrix(program.P), sparse.csc_matrix(-program.A)
+    solver = clarabel.DefaultSolver(P, np.zeros(P.shape[0]), A, -program.low, cones, settings)
+    return float(solver.solve().obj_val)
+
+
+def test_osqp_and_clarabel_agree_and_the_certificate_holds() -> None:
+    program = real_program(hyperboloid())
+    found = by_osqp(program)
+    assert program.A.shape[0] > 100
+    assert found.primal <= ACCURACY and found.dual <= ACCURACY
+    assert found.objective == pytest.approx(by_clarabel(program), rel=1e-4)
+
+
+def test_the_certificate_sees_a_wrong_answer() -> None:
+    P, A = sparse.csc_array(np.eye(2)), sparse.csc_array(np.array([[1.0, 0.0]]))
+    low, high = np.array([1.0]), np.array([np.inf])
+    right = minimise(P, A, low, high)
+    assert right.solved and right.x == pytest.approx([1.0, 0.0], abs=1e-9)
+    assert right.multipliers == pytest.approx([-1.0], abs=1e-9)
+    assert certified(P, A, low, high, np.array([0.5, 0.0]), np.array([-0.5]), 0).primal == pytest.approx(0.5)
+    assert certified(P, A, low, high, np.array([1.0, 0.3]), np.array([-1.0]), 0).dual == pytest.approx(0.3)
+    assert certified(P, A, low, high, np.array([2.0, 0.0]), np.array([-2.0]), 0).dual == pytest.approx(2.0)
+
+
+def test_one_row_has_the_answer_in_closed_form() -> None:
+    # min |c|^2 / 2 + t^2 / 2 with w.c + sqrt(d) t >= b: c = w b / (w.w + d), along one direction, by the weights
+    surface = hyperboloid()
+    laid = straight(surface, 1)
+    whole = reach(laid)
+    middle = int(np.argmax(whole.least))
+    one = Demands(whole.matrix[[middle]], whole.least[[middle]], np.array([True]))
+    none = Demands(whole.matrix[:0], whole.least[:0], np.zeros(0, dtype=bool))
+    moves = free_moves(surface, frozen_mask(surface, None))
+    moved = np.zeros((surface.control_points.size // 3, 3))
+    program = assembled(one, none, one.chosen, energy(surface, 0.0), moves, moved, None, 0.0)
+    change = by_osqp(program).x[: moved.size] * program.unit
+    weight = one.matrix.toarray()[0]
+    size = float(np.linalg.norm(weight))
+    assert change == pytest.approx(weight / size**2 * one.least[0] / (1 + GIVE), abs=1e-9)
+    # the waist of the hyperboloid lies this far below the chord between the rims
+    assert one.least[0] == pytest.approx(np.sqrt(1 + 0.81) - 1, rel=1e-3)
+
+
+def test_a_row_of_press_is_the_derivative_of_the_normal_curvature() -> None:
+    surface = shapes.ellipsoid(1.0, 0.8, 1.5, 0.8, 2.3, (24, 24))
+    laid = mw.solve(surface, [(0.0, 0.0)], [(0.2, 1.0)], particles=81)
+    rng = np.random.default_rng(3)
+    change = 1e-5 * rng.standard_normal(surface.control_points.shape)
+    asked = press(laid, 0.0)
+    moved = Surface(surface.control_points + change)
+    again = mw.Paths(**{**laid.__dict__, "surface": moved})
+    # rows are scaled by the square of the span's length, which the change moves in its sixth digit
+    predicted = asked.least - asked.matrix @ change.ravel()
+    assert press(again, 0.0).least == pytest.approx(predicted, rel=2e-3, abs=2e-6)
+    assert np.abs(predicted - asked.least).max() > 1e-5
+
+
+def test_a_hyperboloid_becomes_a_barrel_that_the_fibres_press() -> None:
+    surface = hyperboloid()
+    found = edit(surface, revolutions=0.0, paths=8, particles=121)
+    assert found.outcome is Outcome.WINDABLE and len(found.rounds) <= 10
+    assert found.bridged == 0.0 and found.paths.gap.max() <= found.threshold
+    assert found.rounds[0].gap_before == pytest.approx(np.sqrt(1.81) - 1, rel=1e-3)
+    u = np.arange(64) / 64
+    radius = [np.hypot(*found.surface.points(np.stack([u, np.full(64, v)], axis=1))[:, :2].T) for v in (0.0, 0.5, 1.0)]
+    assert (radius[1] > 0.5 * (radius[0] + radius[2])).all()  # at least the straight line between the rims, ...
+    assert (radius[1] < 1.1 * np.sqrt(1.81)).all()  # ... and not much more
+    assert all(max(r.primal, r.dual) <= ACCURACY for r in found.rounds)
+
+
+def test_the_inner_bend_of_an_elbow_comes_up_to_its_chord() -> None:
+    surface = shapes.elbow(3.0, 1.0, np.pi / 4, (16, 16))
+    found = edit(surface, revolutions=0.0, paths=8, particles=121)
+    assert found.outcome is Outcome.WINDABLE
+    start, inner, end = np.hypot(*found.surface.points([[0.5, v] for v in (0.0, 0.5, 1.0)])[:, :2].T)
+    chord = 2.0 * np.cos(np.pi / 8)  # from the bend's axis to the chord of the intrados, whose radius is 2
+    assert chord - 0.03 < inner < chord
+    assert abs(start - 2.0) < 0.01 and abs(end - 2.0) < 0.01
+
+
+def test_frozen_control_points_do_not_move_and_impossible_demands_say_so() -> None:
+    surface = hyperboloid()
+    mask = np.zeros(surface.control_points.shape[:2], dtype=bool)
+    mask[:, 8:11] = True
+    found = edit(surface, revolutions=0.0, paths=8, particles=61, frozen=mask)
+    assert (found.surface.control_points[mask] == surface.control_points[mask]).all()
+    assert found.outcome is Outcome.OUT_OF_REACH and "less of the part" in found.outcome.advice
+    assert found.bridged > 0 and found.rounds[-1].shortfall > 0.3
+    assert (found.surface.control_points == surface.control_points).all()  # what does not help is not done
+    low = edit(surface, revolutions=0.0, paths=8, particles=61, rounds=1, frozen=lambda at: at[:, 2] < -1.6)
+    below = surface.control_points[..., 2] < -1.6
+    assert (low.surface.control_points[below] == surface.control_points[below]).all()
+    assert (low.surface.control_points[~below] != surface.control_points[~below]).any()
+
+
+def test_the_bound_holds_and_is_used() -> None:
+    surface = hyperboloid()
+    options = dict(revolutions=0.0, paths=8, particles=61)
+    free = edit(surface, **options)  # type: ignore[arg-type]
+    held = edit(surface, bound=0.375, **options)  # type: ignore[arg-type]
+    far, near = (np.linalg.norm(e.surface.control_points - surface.control_points, axis=2).max() for e in (free, held))
+    assert far > 0.38 and 0.37 < near <= 0.375
+    assert held.outcome is Outcome.WINDABLE
+    assert edit(surface, bound=0.1, **options).outcome is Outcome.OUT_OF_REACH  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("order", [4, 16])
+def test_symmetry_is_kept_to_round_off(order: int) -> None:
+    surface = hyperboloid()
+    found = edit(surface, revolutions=0.1, paths=3, particles=61, symmetry=order, rounds=2)
+    net, turn = found.surface.control_points, 2 * np.pi / order
+    turned = net @ np.array([[np.cos(turn), np.sin(turn), 0], [-np.sin(turn), np.cos(turn), 0], [0, 0, 1.0]])
+    assert np.abs(np.roll(net, -(16 // order), axis=0) - turned).max() < 1e-12
+    assert np.abs(net - surface.control_points).max() > 0.05
+
+
+def test_a_part_that_presses_everywhere_is_left_alone() -> None:
+    surface = shapes.ellipsoid(1.0, 1.0, 1.5, 0.8, 2.3, (24, 24))
+    found = edit(surface, revolutions=0.2, paths=4, particles=61)
+    assert found.rounds == () and found.outcome is Outcome.WINDABLE
+    assert (found.surface.control_points == surface.control_points).all()
+
+
+def test_the_same_part_in_other_units_gives_the_same_edit() -> None:
+    surface = hyperboloid()
+    large = Surface(1000.0 * surface.control_points)
+    options = dict(revolutions=0.05, paths=4, particles=61, rounds=1)
+    one, other = edit(surface, **options), edit(large, **options)  # type: ignore[arg-type]
+    change = one.surface.control_points - surface.control_points
+    assert other.surface.control_points - large.control_points == pytest.approx(1000.0 * change, abs=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        (dict(symmetry=5), "give one of 1, 2, 4, 8, 16"),
+        (dict(bound=0.0), "give a length above 0"),
+        (dict(rounds=-1), "whole number"),
+        (dict(fairness=-1.0), "number from 0 up"),
+        (dict(frozen=np.zeros((3, 3), dtype=bool)), r"shape \(16, 19\)"),
+        (dict(frozen=np.ones((16, 19), dtype=bool)), "leave some free"),
+    ],
+)
+def test_wrong_options_are_refused_with_advice(wrong: dict[str, object], words: str) -> None:
+    with pytest.raises(mw.BadInputError, match=words):
+        edit(hyperboloid(), revolutions=0.1, **wrong)  # type: ignore[arg-type]
+
+
+def test_the_edited_vase_winds_from_its_file_without_bridges(tmp_path: Path) -> None:
+    found = redesign(DATA / "vase.stl", revolutions=0.8)
+    assert found.windable and found.bridged == 0.0 and len(found.rounds) <= 10
+    original = mw.read(DATA / "vase.stl")
+    assert (found.mesh.faces == original.faces).all()
+    assert (found.mesh.vertices == original.vertices + found.displacement).all()
+    assert found.turned_over == 0
+    assert found.volume_change == pytest.approx(volume(found.mesh.vertices, found.mesh.faces) - found.volume)
+    assert found.volume_change > 0
+    file = tmp_path / "edited.ply"
+    trimesh.Trimesh(found.mesh.vertices, found.mesh.faces, process=False).export(file)
+    before, again = mw.wind(DATA / "vase.stl", revolutions=0.8), mw.wind(file, revolutions=0.8)
+    error = again.surface.error
+    assert error is not None
+    assert before.paths.gap.max() > 10 * error.to_surface_max
+    assert again.paths.gap.max() <= error.to_surface_max and again.settled
+
+
+def test_caps_follow_their_rim_and_die_out_towards_the_pole() -> None:
+    ball = trimesh.creation.icosphere(4, 1.0)
+    part = mesh_from(ball.vertices * [1.0, 1.0, 2.0], ball.faces)
+    chart = mw.flatten(mw.annulus(part, ends="z"))
+    before = mw.fit(chart, 1e-4)
+    outward = before.control_points * [0.05, 0.05, 0.0]
+    after = Surface(before.control_points + outward)
+    moves = displacement(chart, before, after)
+    cap = np.abs(part.vertices[:, 2]) > np.abs(chart.annulus.vertices[:, 2]).max()
+    assert cap.sum() > 10
+    assert moves[~cap] == pytest.approx(part.vertices[~cap] * [0.05, 0.05, 0.0], abs=3e-4)
+    assert (moves[np.abs(part.vertices[:, 2]) > 1.999] == 0).all()
+    edge = part.faces[:, :2]
+    jump = np.linalg.norm(moves[edge[:, 0]] - moves[edge[:, 1]], axis=1)
+    length = np.linalg.norm(part.vertices[edge[:, 0]] - part.vertices[edge[:, 1]], axis=1)
+    assert (jump / length).max() < 0.25  # no tear: the strain stays of the order of the displacement over the fade
+    assert np.linalg.norm(displacement(chart, before, after, 0.02), axis=1).max() <= 0.02 * (1 + 1e-12)
