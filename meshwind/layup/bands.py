@@ -11,7 +11,7 @@ from meshwind.surface.surface import Surface
 
 _ACROSS = 6
 """Samples across a band, where they are not too many."""
-_LEAST, _MOST = 64, 640
+_LEAST, _MOST = 64, 512
 """Fewest and most samples each way."""
 _RIM = 1e-9
 """Closer to v=0 or v=1 than this a path ends on the rim."""

@@ -42,8 +42,11 @@ class QuadMesh:
 def edge_counts(quads: Ints, triangles: Ints) -> tuple[Ints, Ints]:
     """The mesh's undirected edges (e, 2) and how many faces share each (e,)."""
     sides = [np.stack([f, np.roll(f, -1, axis=1)], axis=-1).reshape(-1, 2) for f in (quads, triangles)]
-    edges, counts = np.unique(np.sort(np.concatenate(sides), axis=1), axis=0, return_counts=True)
-    return edges, counts
+    ends = np.sort(np.concatenate(sides), axis=1)
+    most = int(ends.max(initial=0)) + 1
+    # one number an edge: np.unique over rows takes five times as long
+    keys, counts = np.unique(ends[:, 0] * most + ends[:, 1], return_counts=True)
+    return np.stack(np.divmod(keys, most), axis=1), counts
 
 
 def quads(paths: Paths, crossings: Crossings) -> QuadMesh:
