@@ -113,7 +113,7 @@ def relax(net, periodic, boxes, levels, size, pull_off, tolerance, limit, state,
             carry_lifted(net, periodic, boxes, levels, size, step, contacts, count, state, trial, tally)
             if (
                 periodic and largest_turn(trial) > most
-            ):  # neighbours on two sides of the body: one of them went through it
+            ):  # neighbours on two sides: one went through the body
                 step *= 0.5
                 continue
             then, length_then = energy(trial[0])
