@@ -31,7 +31,7 @@ DESCENT = 1e-4
 """Armijo's share of the predicted fall."""
 PATIENCE = 60
 """Steps in a row that a path may lean on a rim before it counts as slid off there."""
-HALF_TURN = 0.4
+HALF_TURN, WHOLE_TURN = 0.4, 0.75
 """Change of u from particle to particle that only two sides of the body explain."""
 LONGEST_SEGMENT = 2.0
 """A segment on the surface longer than this share of the mean cuts an edge."""
@@ -111,9 +111,7 @@ def relax(net, periodic, boxes, levels, size, pull_off, tolerance, limit, state,
         while step > SMALLEST_STEP:
             move_touching(net, periodic, step, move, contacts, count, state, trial, tally)
             carry_lifted(net, periodic, boxes, levels, size, step, contacts, count, state, trial, tally)
-            if (
-                periodic and largest_turn(trial) > most
-            ):  # neighbours on two sides: one went through the body
+            if periodic and largest_turn(trial) > most:  # neighbours on two sides: one went through the body
                 step *= 0.5
                 continue
             then, length_then = energy(trial[0])
@@ -271,11 +269,17 @@ def unresolved(state, periodic):
 
 @njit(cache=True)
 def largest_turn(state):
-    """Largest change of u from one particle, or its foot, to the next."""
-    uv = state[1]
+    """Largest change of u from one particle, or its foot, to the next, where the body may be between the two.
+
+    It is not where their gaps cover the way; a foot leaps from side to side of a hollow, too.  But by a whole turn no
+    foot leaps.
+    """
+    X, uv, clear = state[0], state[1], state[5]
     most = 0.0
     for i in range(len(uv) - 1):
-        most = max(most, abs(uv[i + 1, 0] - uv[i, 0]))
+        turn = abs(uv[i + 1, 0] - uv[i, 0])
+        if turn > WHOLE_TURN or (turn > most and clear[i] + clear[i + 1] < distance(X, i, i + 1)):
+            most = max(most, turn)
     return most
 
 
