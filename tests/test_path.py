@@ -67,7 +67,7 @@ def tangent_contact(end: float, low: float, high: float) -> float:
         return float(-0.35 * 0.75 * np.pi * np.sin(0.75 * np.pi * z + 0.3) + 0.225 * np.cos(2.25 * z))
 
     def miss(z: float) -> float:
-        return float(vase_radius(np.float64(end)) - vase_radius(np.float64(z)) - slope(z) * (end - z))
+        return float(np.diff(vase_radius(np.array([z, end])))[0] - slope(z) * (end - z))
 
     return float(brentq(miss, low, high, xtol=1e-15))
 
