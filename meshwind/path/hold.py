@@ -20,8 +20,10 @@ from meshwind.path.relax import (
     HALF_TURN,
     LIFTED,
     LONGEST_MOVE,
+    MOST_LANDINGS,
     SLID_END,
     SLID_START,
+    STALLED,
     TOO_COARSE,
     certify,
     failure,
@@ -128,7 +130,7 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
     caution = 0
     for _ in range(limit):
         tally[ITERATIONS] += 1
-        spacing = length / (n - 1)
+        spacing = max(length, 1e-300) / (n - 1)
         for i in range(n):
             kept[i] = touching[i]
         released = 0
@@ -277,12 +279,21 @@ def hold_all(
             offset[:] = 0.0
             space_along(net, periodic, curve, state, place[p])
             tally[EVALUATIONS] += 3 * n
-        residual[p], status[p] = hold(
-            net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, curve, state, grip, tally
-        )
-        if final and status[p] != LIFTED:
-            certify(net, periodic, boxes, levels, state, slip[p], tally)
-            if status[p] == CONVERGED and unresolved(state, periodic):
+        inside = 0
+        for _ in range(MOST_LANDINGS):
+            residual[p], status[p] = hold(
+                net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, curve, state, grip, tally
+            )
+            if not final or status[p] == LIFTED:
+                break
+            inside = certify(net, periodic, boxes, levels, size, state, slip[p], tally)
+            if inside == 0 or status[p] != CONVERGED:
+                break
+            take_hold(net, periodic, curve, state, grip, size, tally)
+        if final and status[p] == CONVERGED:
+            if inside > 0:
+                status[p] = STALLED
+            elif unresolved(state, periodic):
                 status[p] = TOO_COARSE
 
 

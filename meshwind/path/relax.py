@@ -12,11 +12,20 @@ from numba import njit
 
 from meshwind.path.block_tridiagonal import solve
 from meshwind.path.contact import lift, link
-from meshwind.path.newton import EVALUATIONS, FEET, ITERATIONS, SOLVES, assemble, carry_lifted, land, move_touching, sag
+from meshwind.path.newton import (
+    EVALUATIONS,
+    ITERATIONS,
+    SOLVES,
+    assemble,
+    carry_lifted,
+    land,
+    measure_gap,
+    move_touching,
+    sag,
+)
 from meshwind.path.paths import Status
 from meshwind.path.state import blank, copy, distance, energy, place, space_evenly, touch_down
-from meshwind.surface.evaluate import S, unit_normal
-from meshwind.surface.tree import nearest_foot
+from meshwind.surface.evaluate import S
 
 CONVERGED, SLID_START, SLID_END, UNSTABLE, STALLED, LEFT_CHART, TOO_COARSE = (int(status) for status in Status)
 LIFTED = TOO_COARSE + 1
@@ -31,10 +40,14 @@ DESCENT = 1e-4
 """Armijo's share of the predicted fall."""
 PATIENCE = 60
 """Steps in a row that a path may lean on a rim before it counts as slid off there."""
+INSIDE = 1e-9
+"""A lifted particle deeper than this times the part's size is inside the body."""
 HALF_TURN, WHOLE_TURN = 0.4, 0.75
 """Change of u from particle to particle that only two sides of the body explain."""
 LONGEST_SEGMENT = 2.0
 """A segment on the surface longer than this share of the mean cuts an edge."""
+MOST_LANDINGS = 4
+"""Times that a path is relaxed anew because its certificate finds a particle inside the body."""
 MOST_FALLS = 5
 """Saddles that a path may leave on its way to rest."""
 
@@ -61,7 +74,7 @@ def relax(net, periodic, boxes, levels, size, pull_off, tolerance, limit, state,
     caution = falls = leant = leaning = 0
     for _ in range(limit):
         tally[ITERATIONS] += 1
-        spacing = length / (n - 1)
+        spacing = max(length, 1e-300) / (n - 1)
         for i in range(n):
             kept[i] = touching[i]
         released = 0
@@ -212,12 +225,20 @@ def relax_all(
             space_evenly(state)
             place(net, periodic, state)
             tallies[p, EVALUATIONS] += 2 * n
-        residual[p], status[p] = relax(
-            net, periodic, boxes, levels, size, pull_off, tolerance, limit, state, tallies[p]
-        )
-        if final and status[p] != LIFTED:
-            certify(net, periodic, boxes, levels, state, slip[p], tallies[p])
-            if status[p] == CONVERGED and unresolved(state, periodic):
+        inside = 0
+        for _ in range(MOST_LANDINGS):
+            residual[p], status[p] = relax(
+                net, periodic, boxes, levels, size, pull_off, tolerance, limit, state, tallies[p]
+            )
+            if not final or status[p] == LIFTED:
+                break
+            inside = certify(net, periodic, boxes, levels, size, state, slip[p], tallies[p])
+            if inside == 0 or status[p] != CONVERGED:
+                break
+        if final and status[p] == CONVERGED:
+            if inside > 0:
+                status[p] = STALLED
+            elif unresolved(state, periodic):
                 status[p] = TOO_COARSE
 
 
@@ -234,23 +255,28 @@ def take_up(net, periodic, boxes, levels, size, state, tally):
 
 
 @njit(cache=True)
-def certify(net, periodic, boxes, levels, state, slip, tally):
-    """True gaps of the lifted particles, and the slip |kg| / kn that each touching one needs."""
+def certify(net, periodic, boxes, levels, size, state, slip, tally):
+    """True gaps of the lifted particles, and the slip |kg| / kn that each touching one needs.
+
+    A lifted particle that turns out to be inside the body lands; returns how many did.
+    """
     X, uv, frames, normal, touching, gap = state
     n = len(X)
+    landed = 0
     for i in range(n):
         slip[i] = np.nan
         if not touching[i]:
-            tally[FEET] += 1
-            tally[EVALUATIONS] += nearest_foot(net, periodic, boxes, levels, X[i], uv[i], frames[i])
-            unit_normal(frames[i], normal[i])
-            square = 0.0
-            for k in range(3):
-                square += (X[i, k] - frames[i, S, k]) ** 2
-            gap[i] = np.sqrt(square)
-        elif 0 < i < n - 1:
+            height, gap[i] = measure_gap(net, periodic, boxes, levels, state, i, tally)
+            if height < -INSIDE * size and 0.0 < uv[i, 1] < 1.0:
+                for k in range(3):
+                    X[i, k] = frames[i, S, k]
+                touching[i], gap[i] = True, 0.0
+                landed += 1
+    for i in range(1, n - 1):
+        if touching[i]:
             gap[i] = 0.0
             slip[i] = needed_slip(X, normal, i)
+    return landed
 
 
 @njit(cache=True)
