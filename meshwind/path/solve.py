@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshwind.cast import Floats, Ints, floats, frozen, ints
+from meshwind.cast import Floats, floats, frozen, ints
 from meshwind.errors import BadInputError
 from meshwind.path.batch import Batch, Setting
 from meshwind.path.friction import Friction, friction_of
@@ -59,13 +59,8 @@ def solve(
     for name, point in (("start", first), ("end", last)):
         if np.any((point[:, 1] < 0) | (point[:, 1] > 1)):
             raise BadInputError(f"a {name} point has v outside [0, 1]; v runs from rim to rim")
-    nowhere: Ints = (
-        np.flatnonzero((np.abs(last - first) <= 1e-9).all(axis=1)) if initial is None else ints([], "ends", -1)
-    )
-    if len(nowhere):
-        raise BadInputError(
-            f"path {nowhere[0]} ends where it starts; give it two ends, or a curve between them as initial"
-        )
+    if initial is None and (nowhere := np.flatnonzero((np.abs(last - first) <= 1e-9).all(axis=1))).size:
+        raise BadInputError(f"path {nowhere[0]} ends where it starts; give it two ends, or a curve as initial")
     curves = straight(first, last, 2) if initial is None else floats(initial, "initial", len(first), -1, 2)
     count = len(curves)
     sense = np.where(last[:, 0] >= first[:, 0], 1, -1) if family is None else ints(family, "family", count)
