@@ -45,7 +45,7 @@ def trial(surface: Surface, revolutions: float, friction: float | Friction = 0.0
     rims = families(surface, paths, revolutions)
     setting = Setting(surface, friction_of(surface, friction), True, _TOLERANCE, _ITERATIONS)
     curves = straight(rims.start, rims.end, 2)
-    least = max(_PARTICLES, fewest(curves))
+    least = max(_PARTICLES, int(fewest(curves).max(initial=0)))
     left, batches = np.arange(len(curves)), []
     for finer in _FINER:
         batch = fresh(curves[left], least * finer + 1)

@@ -15,7 +15,7 @@ from meshwind.surface.tree import nearest_foot
 
 
 @njit(cache=True)
-def feel(net, periodic, boxes, levels, strand, step, width, tally):
+def feel(net, periodic, tree, strand, step, width, tally):
     """Measure the gaps after a move of step * W; particles nearer than `width` touch.
 
     A touching particle's foot is followed from the last one; one that comes down from the air is found with the
@@ -29,7 +29,7 @@ def feel(net, periodic, boxes, levels, strand, step, width, tally):
             gap[i] -= step * np.sqrt(W[i, 0] ** 2 + W[i, 1] ** 2 + W[i, 2] ** 2)
             if gap[i] > width:
                 continue
-            tally[EVALUATIONS] += nearest_foot(net, periodic, boxes, levels, X[i], uv[i], frames[i])
+            tally[EVALUATIONS] += nearest_foot(net, periodic, tree, X[i], uv[i], frames[i])
         tally[FEET] += 1
         unit_normal(frames[i], normal[i])
         height = square = 0.0

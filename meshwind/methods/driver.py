@@ -141,16 +141,6 @@ def _spacing(surface: Surface, uv: Floats) -> float:
     return float(np.linalg.norm(np.diff(surface.points(uv), axis=0), axis=1).mean())
 
 
-def _origin(surface: Surface) -> Floats:
-    """Where the origin is put while solving: on a part that is far from its own, so that no digits are lost."""
-    point = surface.control_points[0, 0]
-    return point if np.linalg.norm(point) > FAR * surface.size else np.zeros(3)
-
-
-def _net(surface: Surface, origin: Floats) -> Floats:
-    return frozen(surface.net - origin) if origin.any() else surface.net
-
-
 def _on_surface(
     method: Method,
     surface: Surface,
@@ -160,11 +150,11 @@ def _on_surface(
     record: Floats,
     tally: Ints,
 ) -> Run:
-    n, origin = len(uv), _origin(surface)
+    n, body, origin = len(uv), surface.centred, surface.middle
     X, V, frames, normal = np.empty((n, 3)), np.zeros((n, 2)), np.empty((n, 6, 3)), np.empty((n, 3))
     touching = np.ones(n, np.bool_)
     chain = X, uv, V, frames, normal, touching, np.zeros(n)
-    ending = march.march(_net(surface, origin), surface.periodic, rules, physics, chain, record, tally)
+    ending = march.march(body.net, body.periodic, rules, physics, chain, record, tally)
     return _result(method, surface, X + origin, uv, touching, ending, record, tally)
 
 
@@ -177,17 +167,15 @@ def _in_space(
     record: Floats,
     tally: Ints,
 ) -> Run:
-    n, origin = len(uv), _origin(surface)
+    n, body, origin = len(uv), surface.centred, surface.middle
     frames = surface.frames(uv)
     X, W, normal = frames[:, S] - origin, np.zeros((n, 3)), np.empty((n, 3))
     touching = np.ones(n, np.bool_)
-    boxes, levels = surface.tree
     strand = X, W, uv, frames, normal, touching, np.zeros(n)
     ending = march_space.march(
-        _net(surface, origin),
-        surface.periodic,
-        frozen(boxes - np.tile(origin, 2)) if origin.any() else boxes,
-        levels,
+        body.net,
+        body.periodic,
+        body.tree,
         contact,
         physics,
         strand,

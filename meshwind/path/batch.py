@@ -1,19 +1,24 @@
 """A batch of paths at work: its arrays, and the setting in which the compiled solvers run."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from meshwind.cast import Bools, Floats, Ints, frozen
+from meshwind.path.ascent import ascend_all
+from meshwind.path.certificate import PULL
 from meshwind.path.friction import Friction
 from meshwind.path.hold import hold_all
 from meshwind.path.refine import refine_all
-from meshwind.path.relax import LIFTED, PULL, relax_all
+from meshwind.path.relax import LIFTED, relax_all
+from meshwind.path.simple import glide_all
 from meshwind.surface.surface import Surface
 from meshwind.threads import spread
 
-NO_TREE = frozen(np.empty((0, 6))), frozen(np.empty((0, 3), np.int64))
+NO_TREE = frozen(np.empty((0, 8, 16))), frozen(np.empty((0, 3), np.int64)), frozen(np.empty((0, 3, 16)))
 """Read-only as the tree itself, so that kernels compile once."""
+COARSE = 1e-6
+"""Unbalanced force that is left on the rungs below the last."""
 
 
 @dataclass
@@ -91,17 +96,41 @@ class Setting:
     final: bool = True
     even: bool = False
 
-    def run(self, batch: Batch, resume: bool, tree: bool = True) -> None:
+    @property
+    def _pull_off(self) -> float:
+        return PULL if self.bridging else np.inf
+
+    def glide(self, batch: Batch) -> None:
+        """Bring those paths of a fresh batch to rest that stay on the surface and are simple; the others are LIFTED."""
+        surface = self.surface.centred
+        spread(glide_all, len(batch), 1, surface.net, surface.periodic, self._pull_off, self.tolerance, batch.starts,
+               batch.X, batch.uv, batch.normal, batch.touching, batch.gap, batch.slip, batch.residual, batch.status,
+               batch.tallies)  # fmt: skip
+
+    def ascend(self, batch: Batch, rungs: list[int]) -> Batch:
+        """The answers of frictionless paths at rest, taken up to the last of `rungs`, numbers of particles."""
+        surface = self.surface.centred
+        fine = fresh(batch.starts, rungs[-1])
+        fine.tallies[:] = batch.tallies
+        spread(ascend_all, len(batch), 1, surface.net, surface.periodic, surface.tree, surface.size,
+               self._pull_off, self.rough.tolerance, self.tolerance, self.iterations, np.array(rungs),
+               batch.X, batch.uv, batch.touching, batch.gap, fine.X, fine.uv, fine.normal, fine.touching, fine.gap,
+               fine.slip, fine.residual, fine.status, fine.tallies)  # fmt: skip
+        return fine
+
+    @property
+    def rough(self) -> "Setting":
+        """The setting for a rung below the last: a looser balance, no certificate."""
+        return replace(self, tolerance=max(self.tolerance, COARSE), final=False)
+
+    def run(self, batch: Batch, resume: bool) -> None:
         """Bring the batch to rest, from its starting curves or, with `resume`, from where it is.
 
         A part that presses everywhere never pays for the search tree, and a frictionless one none for friction.
-        Without `tree` a path that lifts is left with the status LIFTED.
         """
         aloft = ~batch.touching.all(axis=1) if resume else np.zeros(len(batch), np.bool_)
         low = np.flatnonzero(~aloft)
         self._run(batch, low, resume, tree=False)
-        if not tree:
-            return
         lifted = low[batch.status[low] == LIFTED]
         self._run(batch, np.sort(np.concatenate([np.flatnonzero(aloft), lifted])), resume, tree=True)
 
@@ -109,8 +138,6 @@ class Setting:
         if not len(index):
             return
         surface = self.surface.centred
-        boxes, levels = surface.tree if tree else NO_TREE
-        pull_off = PULL if self.bridging else np.inf
         part = batch if len(index) == len(batch) else batch.rows(index)
         before = (
             None if tree else (part.X.copy(), part.uv.copy(), part.touching.copy(), part.place.copy(), part.mode.copy())
@@ -118,10 +145,9 @@ class Setting:
         general = (
             surface.net,
             surface.periodic,
-            boxes,
-            levels,
+            surface.tree if tree else NO_TREE,
             surface.size,
-            pull_off,
+            self._pull_off,
             self.tolerance,
             self.iterations,
             resume,

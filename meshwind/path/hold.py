@@ -11,26 +11,23 @@ import numpy as np
 from numba import njit
 
 from meshwind.path.block_tridiagonal import solve_general
+from meshwind.path.certificate import HALF_TURN, certify, largest_turn, unresolved
 from meshwind.path.contact import lift, link
 from meshwind.path.coulomb import HELD, STUCK, differentiate, weigh
+from meshwind.path.glide import LONGEST_MOVE
 from meshwind.path.grip import locate, slide, space_along, take_hold
 from meshwind.path.newton import EVALUATIONS, ITERATIONS, SOLVES, carry_lifted, sag
 from meshwind.path.relax import (
     CONVERGED,
     DESCENT,
-    HALF_TURN,
     LIFTED,
-    LONGEST_MOVE,
     MOST_LANDINGS,
     SLID_END,
     SLID_START,
     STALLED,
     TOO_COARSE,
-    certify,
     failure,
-    largest_turn,
     take_up,
-    unresolved,
 )  # fmt: skip
 from meshwind.path.state import blank, copy, energy
 
@@ -47,7 +44,7 @@ def blank_balance(n):
 
 
 @njit(cache=True)
-def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, curve, state, grip, tally):
+def hold(net, periodic, tree, size, pull_off, tolerance, limit, table, curve, state, grip, tally):
     """Bring a path that touches as `state` and `grip` say to rest under friction, in place.
 
     Returns (residual, status) as `relax` does.
@@ -82,7 +79,7 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
             released = lift(X, normal, touching, pull_off * spacing, caution == 0, before, after)
         else:
             link(touching, before, after)
-        if released > 0 and len(levels) == 0:
+        if released > 0 and len(tree[1]) == 0:
             return residual, LIFTED
         barred[:] = False
         changed, force = weigh(state, periodic, before, after, table, curve, grip, barred, balance)
@@ -148,7 +145,7 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
                     net, periodic, step, move, contacts, count, curve, balance, state, grip, trial, after_grip, size,
                     tally,
                 )  # fmt: skip
-                carry_lifted(net, periodic, boxes, levels, size, step, contacts, count, state, trial, tally)
+                carry_lifted(net, periodic, tree, size, step, contacts, count, state, trial, tally)
                 if periodic and largest_turn(trial) > most:
                     step *= 0.5
                     continue
@@ -205,7 +202,7 @@ def hold(net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, 
 
 @njit(nogil=True, cache=True)
 def hold_all(
-    first, last, net, periodic, boxes, levels, size, pull_off, tolerance, limit, resume, final,
+    first, last, net, periodic, tree, size, pull_off, tolerance, limit, resume, final,
     table, starts, place, mode, X, uv, normal, touching, gap, slip, residual, status, tallies,
 ):  # fmt: skip
     """Bring paths first to last to rest under friction: from their starting curves, or with `resume` as they are."""
@@ -216,7 +213,7 @@ def hold_all(
         grip = place[p], offset, mode[p]
         curve, tally = starts[p], tallies[p]
         if resume:
-            take_up(net, periodic, boxes, levels, size, state, tally)
+            take_up(net, periodic, tree, size, state, tally)
             take_hold(net, periodic, curve, state, grip, size, tally)
         else:
             mode[p, :] = STUCK
@@ -226,11 +223,11 @@ def hold_all(
         inside = 0
         for _ in range(MOST_LANDINGS):
             residual[p], status[p] = hold(
-                net, periodic, boxes, levels, size, pull_off, tolerance, limit, table, curve, state, grip, tally
+                net, periodic, tree, size, pull_off, tolerance, limit, table, curve, state, grip, tally
             )
             if not final or status[p] == LIFTED:
                 break
-            inside = certify(net, periodic, boxes, levels, size, state, slip[p], tally)
+            inside = certify(net, periodic, tree, size, state, slip[p], tally)
             if inside == 0 or status[p] != CONVERGED:
                 break
             take_hold(net, periodic, curve, state, grip, size, tally)

@@ -8,17 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshwind.cast import Bools, Floats
+from meshwind.cast import Bools, Floats, Ints
 from meshwind.path.batch import Batch, Setting, fresh
 from meshwind.path.friction import Friction
 from meshwind.path.paths import EDGE, Status, sharpest_turn
 
 FEWEST = 96
 """Particles of the lowest rung, at least; and as many a turn."""
-QUICK = 12
-"""Steps that a direct start with all particles may take."""
-COARSE = 1e-6
-"""Unbalanced force that is left on the rungs below the last."""
 MOST = 6401
 """Particles of the highest rung where their number is left open."""
 TRIES = (0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0)
@@ -41,24 +37,55 @@ def climb(
         return choose(setting, curves, accuracy)
     holds = np.zeros(len(curves)), np.zeros(len(curves))
     batch = fresh(curves, particles)
-    if setting.friction.none:  # most paths that stay on the surface settle at once
-        replace(setting, iterations=QUICK).run(batch, resume=False, tree=False)
+    rest = np.arange(len(curves))
+    if setting.friction.none:  # most paths that stay on the surface are simple
+        setting.glide(batch)
         rest = np.flatnonzero(failing(batch))
-    else:
-        rest = np.arange(len(curves))
     if len(rest):
-        rungs = [particles]
-        while (rungs[0] - 1) // 2 >= fewest(curves):
-            rungs.insert(0, (rungs[0] - 1) // 2 + 1)
-        work = fresh(curves[rest], rungs[0])
-        work.tallies[:] = batch.tallies[rest]
-        (setting if len(rungs) == 1 else rough(setting)).run(work, resume=False)
-        for which, found in zip(holds, rescue(setting if len(rungs) == 1 else rough(setting), work), strict=True):
-            which[rest] = found
+        levels = halvings(curves[rest], particles)
+        for level in np.unique(levels):
+            index = rest[levels == level]
+            work, found = climb_from(setting, batch.rows(index), int(level))
+            batch.put(index, work)
+            for which, each in zip(holds, found, strict=True):
+                which[index] = each
+        batch = even_out(setting, batch)
+    return batch, holds
+
+
+def climb_from(setting: Setting, batch: Batch, level: int) -> tuple[Batch, tuple[Floats, Floats]]:
+    """Solve a batch anew, at first with its particles halved `level` times; returns what `climb` does."""
+    rungs = [batch.X.shape[1]]
+    for _ in range(level):
+        rungs.insert(0, (rungs[0] - 1) // 2 + 1)
+    work = fresh(batch.starts, rungs[0])
+    work.tallies[:] = batch.tallies
+    first = setting.rough if level else setting
+    first.run(work, resume=False)
+    holds = rescue(first, work)
+    if not level:
+        return work, holds
+    held = np.flatnonzero(~failing(work)) if setting.friction.none else np.zeros(0, np.int64)
+    top = fresh(batch.starts, rungs[-1])
+    if len(held):
+        top.put(held, setting.ascend(work.rows(held), rungs[1:]))
+    left = np.setdiff1d(np.arange(len(work)), held[~failing(top.rows(held))])
+    if len(left):
+        work = work.rows(left)
         for n in rungs[1:]:
-            work = ascend(setting if n == particles else rough(setting), work, n)
-        batch.put(rest, work)
-    return even_out(setting, batch), holds
+            work = ascend(setting if n == rungs[-1] else setting.rough, work, n)
+        top.put(left, work)
+    return top, holds
+
+
+def halvings(curves: Floats, particles: int) -> Ints:
+    """How often the particles of each path (p,) can be halved so that its lowest rung has enough of them."""
+    count = np.zeros(len(curves), np.int64)
+    least, n = fewest(curves), particles
+    while ((n - 1) // 2 >= least).any():
+        count += (n - 1) // 2 >= least
+        n = (n - 1) // 2 + 1
+    return count
 
 
 def even_out(setting: Setting, batch: Batch) -> Batch:
@@ -83,12 +110,10 @@ def even_out(setting: Setting, batch: Batch) -> Batch:
 
 def choose(setting: Setting, curves: Floats, accuracy: float) -> tuple[Batch, tuple[Floats, Floats]]:
     """As `climb`, with particles doubled until the lengths' relative error falls below `accuracy`, by its estimate."""
-    batch = fresh(curves, fewest(curves) + 1)
-    setting.run(batch, resume=False)
-    holds = rescue(setting, batch)
+    batch, holds = climb(setting, curves, int(fewest(curves).max()) + 1, accuracy)
     length = lengths(batch)
     while batch.X.shape[1] < MOST:
-        batch = even_out(setting, ascend(setting, batch, 2 * batch.X.shape[1] - 1))
+        batch = doubled(setting, batch)
         before, length = length, lengths(batch)
         done = ~failing(batch)
         if (batch.status == Status.TOO_COARSE).any() or (
@@ -101,15 +126,26 @@ def choose(setting: Setting, curves: Floats, accuracy: float) -> tuple[Batch, tu
     return batch, holds
 
 
-def fewest(curves: Floats) -> int:
-    """Segments of the lowest rung: enough for the largest turn."""
-    turn = np.abs(np.diff(curves[:, :, 0], axis=1)).sum(axis=1).max(initial=0.0)
-    return int(FEWEST * max(1.0, turn))
+def doubled(setting: Setting, batch: Batch) -> Batch:
+    """The batch with twice the particles: simple paths from their curves, the others from their answers."""
+    n = 2 * batch.X.shape[1] - 1
+    fine = fresh(batch.starts, n)
+    fine.tallies[:] = batch.tallies
+    rest = np.arange(len(batch))
+    if setting.friction.none:
+        setting.glide(fine)
+        rest = np.flatnonzero(failing(fine))
+    if len(rest):
+        work = batch.rows(rest)
+        work.tallies[:] = fine.tallies[rest]
+        fine.put(rest, even_out(setting, ascend(setting, work, n)))
+    return fine
 
 
-def rough(setting: Setting) -> Setting:
-    """The setting for a rung below the last: a looser balance, no certificate."""
-    return replace(setting, tolerance=max(setting.tolerance, COARSE), final=False)
+def fewest(curves: Floats) -> Ints:
+    """Segments of the lowest rung of each path (p,): enough for its turn."""
+    turn = np.abs(np.diff(curves[:, :, 0], axis=1)).sum(axis=1)
+    return np.asarray(np.maximum(FEWEST, FEWEST * turn)).astype(np.int64)
 
 
 def lengths(batch: Batch) -> Floats:
@@ -184,7 +220,7 @@ def from_few(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
     n = part.X.shape[1]
     few = fresh(part.starts, (n - 1) // 2 + 1)
     few.tallies[:] = part.tallies
-    rough(setting).run(few, resume=False)
+    setting.rough.run(few, resume=False)
     work = few.refined(n)
     found = np.flatnonzero(~failing(few))
     taut = work.rows(found)

@@ -11,7 +11,9 @@ import numpy as np
 from numba import njit
 
 from meshwind.path.block_tridiagonal import solve
+from meshwind.path.certificate import HALF_TURN, certify, largest_turn, unresolved
 from meshwind.path.contact import lift, link
+from meshwind.path.glide import LONGEST_MOVE
 from meshwind.path.newton import (
     EVALUATIONS,
     ITERATIONS,
@@ -19,33 +21,21 @@ from meshwind.path.newton import (
     assemble,
     carry_lifted,
     land,
-    measure_gap,
     move_touching,
     sag,
 )
 from meshwind.path.paths import Status
-from meshwind.path.state import blank, copy, distance, energy, place, space_evenly, touch_down
-from meshwind.surface.evaluate import S
+from meshwind.path.state import blank, copy, energy, place, space_evenly, touch_down
 
 CONVERGED, SLID_START, SLID_END, UNSTABLE, STALLED, LEFT_CHART, TOO_COARSE = (int(status) for status in Status)
 LIFTED = TOO_COARSE + 1
 """The fibre leaves the surface and no search tree was given: start again with one.  No result ever has it."""
 
-PULL = 1e-9
-"""A pull off the surface below this angle (radians) is round-off, not lift."""
 SMALLEST_STEP = 1e-7
-LONGEST_MOVE = 0.25
-"""No step moves a particle further than this in u or v: beyond it the quadratic model means nothing."""
 DESCENT = 1e-4
 """Armijo's share of the predicted fall."""
 PATIENCE = 60
 """Steps in a row that a path may lean on a rim before it counts as slid off there."""
-INSIDE = 1e-9
-"""A lifted particle deeper than this times the part's size is inside the body."""
-HALF_TURN, WHOLE_TURN = 0.4, 0.75
-"""Change of u from particle to particle that only two sides of the body explain."""
-LONGEST_SEGMENT = 2.0
-"""A segment on the surface longer than this share of the mean cuts an edge."""
 MOST_LANDINGS = 4
 """Times that a path is relaxed anew because its certificate finds a particle inside the body."""
 MOST_FALLS = 5
@@ -53,7 +43,7 @@ MOST_FALLS = 5
 
 
 @njit(cache=True)
-def relax(net, periodic, boxes, levels, size, pull_off, tolerance, limit, state, tally):
+def relax(net, periodic, tree, size, pull_off, tolerance, limit, state, tally):
     """Bring a path to rest from `state`, in place.
 
     pull_off: angle (radians) of the pull that lifts a particle, infinite for a fibre that cannot leave the surface.
@@ -82,7 +72,7 @@ def relax(net, periodic, boxes, levels, size, pull_off, tolerance, limit, state,
             released = lift(X, normal, touching, pull_off * spacing, caution == 0, before, after)
         else:
             link(touching, before, after)
-        if released > 0 and len(levels) == 0:
+        if released > 0 and len(tree[1]) == 0:
             return residual, LIFTED
         count, force, leaning = assemble(state, periodic, before, after, contacts, diagonal, upper, metric, right)
         residual = max(force, sag(X, after)) / spacing
@@ -96,7 +86,7 @@ def relax(net, periodic, boxes, levels, size, pull_off, tolerance, limit, state,
                 return residual, UNSTABLE if falls > 0 else leaving_by(uv, leaning)
             falls += 1
             if falls > MOST_FALLS or not fall(
-                net, periodic, boxes, levels, size, state, trial, contacts, count,
+                net, periodic, tree, size, state, trial, contacts, count,
                 diagonal, upper, metric, least, tally,
             ):  # fmt: skip
                 return residual, UNSTABLE
@@ -123,7 +113,7 @@ def relax(net, periodic, boxes, levels, size, pull_off, tolerance, limit, state,
         accepted = False
         while step > SMALLEST_STEP:
             move_touching(net, periodic, step, move, contacts, count, state, trial, tally)
-            carry_lifted(net, periodic, boxes, levels, size, step, contacts, count, state, trial, tally)
+            carry_lifted(net, periodic, tree, size, step, contacts, count, state, trial, tally)
             if periodic and largest_turn(trial) > most:  # neighbours on two sides: one went through the body
                 step *= 0.5
                 continue
@@ -149,7 +139,7 @@ def relax(net, periodic, boxes, levels, size, pull_off, tolerance, limit, state,
 
 
 @njit(cache=True)
-def fall(net, periodic, boxes, levels, size, state, trial, contacts, count, diagonal, upper, metric, least, tally):
+def fall(net, periodic, tree, size, state, trial, contacts, count, diagonal, upper, metric, least, tally):
     """Leave a saddle of the energy along its steepest descending mode, found by inverse iteration.
 
     Writes the lower of the two sides into `trial`; returns False where neither side is lower.
@@ -178,13 +168,13 @@ def fall(net, periodic, boxes, levels, size, state, trial, contacts, count, diag
     chosen = 0.0
     for step in (0.03, -0.03):
         move_touching(net, periodic, step, mode, contacts, count, state, trial, tally)
-        carry_lifted(net, periodic, boxes, levels, size, 0.0, contacts, count, state, trial, tally)
+        carry_lifted(net, periodic, tree, size, 0.0, contacts, count, state, trial, tally)
         then = energy(trial[0])[0]
         if then < best:
             best, chosen = then, step
     if chosen > 0.0:  # the trial holds the other side
         move_touching(net, periodic, chosen, mode, contacts, count, state, trial, tally)
-        carry_lifted(net, periodic, boxes, levels, size, 0.0, contacts, count, state, trial, tally)
+        carry_lifted(net, periodic, tree, size, 0.0, contacts, count, state, trial, tally)
     return chosen != 0.0
 
 
@@ -207,7 +197,7 @@ def leaving_by(uv, i):
 
 @njit(nogil=True, cache=True)
 def relax_all(
-    first, last, net, periodic, boxes, levels, size, pull_off, tolerance, limit, resume, final,
+    first, last, net, periodic, tree, size, pull_off, tolerance, limit, resume, final,
     X, uv, normal, touching, gap, slip, residual, status, tallies,
 ):  # fmt: skip
     """Relax paths first to last: from the curves uv (p, n, 2), or with `resume` from what the arrays hold.
@@ -219,31 +209,42 @@ def relax_all(
     for p in range(first, last):
         state = (X[p], uv[p], frames, normal[p], touching[p], gap[p])
         if resume:
-            take_up(net, periodic, boxes, levels, size, state, tallies[p])
+            take_up(net, periodic, tree, size, state, tallies[p])
         else:
             place(net, periodic, state)
             space_evenly(state)
             place(net, periodic, state)
             tallies[p, EVALUATIONS] += 2 * n
-        inside = 0
-        for _ in range(MOST_LANDINGS):
-            residual[p], status[p] = relax(
-                net, periodic, boxes, levels, size, pull_off, tolerance, limit, state, tallies[p]
-            )
-            if not final or status[p] == LIFTED:
-                break
-            inside = certify(net, periodic, boxes, levels, size, state, slip[p], tallies[p])
-            if inside == 0 or status[p] != CONVERGED:
-                break
-        if final and status[p] == CONVERGED:
-            if inside > 0:
-                status[p] = STALLED
-            elif unresolved(state, periodic):
-                status[p] = TOO_COARSE
+        residual[p], status[p] = settle(
+            net, periodic, tree, size, pull_off, tolerance, limit, final, state, slip[p], tallies[p]
+        )
 
 
 @njit(cache=True)
-def take_up(net, periodic, boxes, levels, size, state, tally):
+def settle(net, periodic, tree, size, pull_off, tolerance, limit, final, state, slip, tally):
+    """Bring a path to rest from `state` and, if the answer is `final`, certify it; what it finds inside lands.
+
+    Returns (residual, status).
+    """
+    inside = 0
+    residual, status = np.inf, STALLED
+    for _ in range(MOST_LANDINGS):
+        residual, status = relax(net, periodic, tree, size, pull_off, tolerance, limit, state, tally)
+        if not final or status == LIFTED:
+            return residual, status
+        inside = certify(net, periodic, tree, size, state, slip, tally)
+        if inside == 0 or status != CONVERGED:
+            break
+    if status == CONVERGED:
+        if inside > 0:
+            status = STALLED
+        elif unresolved(state, periodic):
+            status = TOO_COARSE
+    return residual, status
+
+
+@njit(cache=True)
+def take_up(net, periodic, tree, size, state, tally):
     """Complete a state of which positions, parameters and contacts are known; what is inside the body lands."""
     touching, uv, clear = state[4], state[1], state[5]
     for i in range(len(touching)):
@@ -251,77 +252,4 @@ def take_up(net, periodic, boxes, levels, size, state, tally):
             touch_down(net, periodic, state, i, uv[i, 0], uv[i, 1])
             tally[EVALUATIONS] += 1
         elif clear[i] <= 0.0:
-            land(net, periodic, boxes, levels, size, state[0], state, i, tally)
-
-
-@njit(cache=True)
-def certify(net, periodic, boxes, levels, size, state, slip, tally):
-    """True gaps of the lifted particles, and the slip |kg| / kn that each touching one needs.
-
-    A lifted particle that turns out to be inside the body lands; returns how many did.
-    """
-    X, uv, frames, normal, touching, gap = state
-    n = len(X)
-    landed = 0
-    for i in range(n):
-        slip[i] = np.nan
-        if not touching[i]:
-            height, gap[i] = measure_gap(net, periodic, boxes, levels, state, i, tally)
-            if height < -INSIDE * size and 0.0 < uv[i, 1] < 1.0:
-                for k in range(3):
-                    X[i, k] = frames[i, S, k]
-                touching[i], gap[i] = True, 0.0
-                landed += 1
-    for i in range(1, n - 1):
-        if touching[i]:
-            gap[i] = 0.0
-            slip[i] = needed_slip(X, normal, i)
-    return landed
-
-
-@njit(cache=True)
-def unresolved(state, periodic):
-    """Whether the path cuts an edge by a segment on the surface much longer than the others, or the whole body."""
-    X, touching = state[0], state[4]
-    n = len(X)
-    if periodic and largest_turn(state) > HALF_TURN:
-        return True
-    _, length = energy(X)
-    for i in range(n - 1):
-        if touching[i] and touching[i + 1] and distance(X, i, i + 1) > LONGEST_SEGMENT * length / (n - 1):
-            return True
-    return False
-
-
-@njit(cache=True)
-def largest_turn(state):
-    """Largest change of u from one particle, or its foot, to the next, where the body may be between the two.
-
-    It is not where their gaps cover the way; a foot leaps from side to side of a hollow, too.  But by a whole turn no
-    foot leaps.
-    """
-    X, uv, clear = state[0], state[1], state[5]
-    most = 0.0
-    for i in range(len(uv) - 1):
-        turn = abs(uv[i + 1, 0] - uv[i, 0])
-        if turn > WHOLE_TURN or (turn > most and clear[i] + clear[i + 1] < distance(X, i, i + 1)):
-            most = max(most, turn)
-    return most
-
-
-@njit(cache=True)
-def needed_slip(X, normal, i):
-    """|kg| / kn from the turn of the polyline's unit tangent at particle i; 0 where the fibre runs straight."""
-    before, after = distance(X, i, i - 1), distance(X, i + 1, i)
-    turn, middle = np.empty(3), np.empty(3)
-    for k in range(3):
-        a, e = (X[i, k] - X[i - 1, k]) / max(before, 1e-300), (X[i + 1, k] - X[i, k]) / max(after, 1e-300)
-        turn[k], middle[k] = e - a, e + a
-    n = normal[i]
-    press = side = square = 0.0
-    for k in range(3):
-        press -= turn[k] * n[k]
-        b = n[(k + 1) % 3] * middle[(k + 2) % 3] - n[(k + 2) % 3] * middle[(k + 1) % 3]
-        side += turn[k] * b
-        square += b * b
-    return abs(side) / np.sqrt(max(square, 1e-300)) / press if press > PULL else 0.0
+            land(net, periodic, tree, size, state[0], state, i, tally)

@@ -82,6 +82,25 @@ def frame(net, periodic, u, v, out):
 
 
 @njit(cache=True)
+def tangents(net, periodic, u, v, out):
+    """Write s, s_u, s_v at (u, v) into the first rows of out: bit for bit those of `frame`, a third cheaper."""
+    nu, nv = net.shape[0] - 3, net.shape[1] - 3
+    i, x = locate(u, nu, periodic)
+    j, y = locate(v, nv, False)
+    b, d = basis(x), slope(x, nu)
+    c, f = basis(y), slope(y, nv)
+    for k in range(3):
+        s = su = sv = 0.0
+        for p in range(4):
+            n0, n1, n2, n3 = net[i + p, j, k], net[i + p, j + 1, k], net[i + p, j + 2, k], net[i + p, j + 3, k]
+            q = c[0] * n0 + c[1] * n1 + c[2] * n2 + c[3] * n3
+            s += b[p] * q
+            su += d[p] * q
+            sv += b[p] * (f[0] * n0 + f[1] * n1 + f[2] * n2 + f[3] * n3)
+        out[S, k], out[SU, k], out[SV, k] = s, su, sv
+
+
+@njit(cache=True)
 def position(net, periodic, u, v, out):
     """Write the position alone into out (3,): a third of a frame's cost."""
     nu, nv = net.shape[0] - 3, net.shape[1] - 3

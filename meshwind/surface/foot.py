@@ -7,6 +7,8 @@ from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, S, basis, bend, fra
 
 MAX_STEPS = 40
 """Newton settles in 3 to 6 steps from a near guess; more only where the distance is nearly flat."""
+CLOSE = 1e-8
+"""After a step of this length over that of s_u and s_v what is left is of the order of its square."""
 
 
 @njit(inline="always", cache=True)
@@ -42,7 +44,7 @@ def foot(net, periodic, point, guess, at):
     surface evaluations.  A step is Newton's where the Hessian (5.7) is positive definite, Gauss-Newton's
     otherwise, halved until g falls, so that g never grows.
     """
-    trial = np.empty(3)
+    trial = np.empty((6, 3))
     u, v = guess[0], guess[1]
     frame(net, periodic, u, v, at)
     count = 1
@@ -66,27 +68,39 @@ def foot(net, periodic, point, guess, at):
         if reach <= 1e-13 * scale:
             break
         step = min(1.0, 0.25 / max(abs(du), abs(dv), 1e-300))
+        whole = step == 1.0
         better = False
         for _ in range(30):
             nu_, nv_ = u + step * du, min(max(v + step * dv, 0.0), 1.0)
             if not periodic:
                 nu_ = min(max(nu_, 0.0), 1.0)
-            position(net, periodic, nu_, nv_, trial)
+            if whole:  # it mostly counts, and then its frame is wanted
+                frame(net, periodic, nu_, nv_, trial)
+            else:
+                position(net, periodic, nu_, nv_, trial[S])
             count += 1
             g1 = 0.0
             for k in range(3):
-                g1 += (trial[k] - point[k]) ** 2
+                g1 += (trial[S, k] - point[k]) ** 2
             if g1 < g0:
                 better = True
                 break
             step *= 0.5
+            whole = False
             if step * reach <= 1e-13 * scale:
                 break
         if not better:
             break
         u, v = nu_, nv_
-        frame(net, periodic, u, v, at)
-        count += 1
+        if whole:
+            for row in range(6):
+                for k in range(3):
+                    at[row, k] = trial[row, k]
+            if reach <= CLOSE * scale:
+                break
+        else:
+            frame(net, periodic, u, v, at)
+            count += 1
     guess[0], guess[1] = u, v
     return count
 

@@ -83,10 +83,10 @@ class Surface:
         return tuple(frozen(np.arange(-DEGREE, n + DEGREE + 1) / n) for n in self.spans)  # type: ignore[return-value]
 
     @cached_property
-    def tree(self) -> tuple[Floats, Ints]:
-        """The coarse search tree for foot points, see `meshwind.surface.tree`; built on first use."""
-        boxes, levels = tree.build(self.net, self.periodic, tree.DENSITY)
-        return frozen(boxes), frozen(levels)
+    def tree(self) -> tuple[Floats, Ints, Floats]:
+        """The search tree for foot points, see `meshwind.surface.tree`; built on first use."""
+        discs, levels, samples = tree.build(self.net, self.periodic)
+        return frozen(discs), frozen(levels), frozen(samples)
 
     @cached_property
     def middle(self) -> Floats:
