@@ -5,17 +5,16 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from meshwind.cast import Bools, Floats, Ints, frozen
-from meshwind.path.ascent import ascend_all
 from meshwind.path.certificate import PULL
 from meshwind.path.friction import Friction
 from meshwind.path.hold import hold_all
+from meshwind.path.lay import lay_all
 from meshwind.path.refine import refine_all
 from meshwind.path.relax import LIFTED, relax_all
-from meshwind.path.simple import glide_all
 from meshwind.surface.surface import Surface
 from meshwind.threads import spread
 
-NO_TREE = frozen(np.empty((0, 8, 16))), frozen(np.empty((0, 3), np.int64)), frozen(np.empty((0, 3, 16)))
+NO_TREE = frozen(np.empty((0, 12, 16))), frozen(np.empty((0, 3), np.int64)), frozen(np.empty((0, 3, 16)))
 """Read-only as the tree itself, so that kernels compile once."""
 COARSE = 1e-6
 """Unbalanced force that is left on the rungs below the last."""
@@ -64,18 +63,21 @@ class Batch:
 
 
 def fresh(starts: Floats, particles: int) -> Batch:
-    """A batch that begins on its starting curves (p, m, 2), resampled evenly by parameter."""
-    p, m = starts.shape[:2]
-    at = np.linspace(0.0, m - 1.0, particles)
-    k = np.minimum(at.astype(np.int64), m - 2)
-    x = (at - k)[:, None]
-    uv = (1.0 - x) * starts[:, k] + x * starts[:, k + 1]
-    shape = (p, particles)
+    """A batch that is yet to begin on its starting curves (p, m, 2)."""
+    shape = len(starts), particles
     return Batch(
-        np.array(starts), np.zeros((*shape, 3)), np.ascontiguousarray(uv), np.zeros((*shape, 3)),
-        np.ones(shape, np.bool_), np.zeros(shape), np.full(shape, np.nan), np.zeros(shape), np.zeros(shape, np.int8),
-        np.full(p, np.inf), np.zeros(p, np.int64), np.zeros((p, 4), np.int64),
+        starts.copy(), np.empty((*shape, 3)), np.empty((*shape, 2)), np.zeros((*shape, 3)), np.ones(shape, np.bool_),
+        np.zeros(shape), np.full(shape, np.nan), np.zeros(shape), np.zeros(shape, np.int8),
+        np.full(len(starts), np.inf), np.zeros(len(starts), np.int64), np.zeros((len(starts), 4), np.int64),
     )  # fmt: skip
+
+
+def resampled(curves: Floats, points: int) -> Floats:
+    """Curves (p, m, 2) as polylines of so many points, evenly by parameter."""
+    at = np.linspace(0.0, curves.shape[1] - 1.0, points)
+    k = np.minimum(at.astype(np.int64), curves.shape[1] - 2)
+    x = (at - k)[:, None]
+    return np.ascontiguousarray((1.0 - x) * curves[:, k] + x * curves[:, k + 1])
 
 
 @dataclass(frozen=True)
@@ -100,23 +102,28 @@ class Setting:
     def _pull_off(self) -> float:
         return PULL if self.bridging else np.inf
 
-    def glide(self, batch: Batch) -> None:
-        """Bring those paths of a fresh batch to rest that stay on the surface and are simple; the others are LIFTED."""
-        surface = self.surface.centred
-        spread(glide_all, len(batch), 1, surface.net, surface.periodic, self._pull_off, self.tolerance, batch.starts,
-               batch.X, batch.uv, batch.normal, batch.touching, batch.gap, batch.slip, batch.residual, batch.status,
-               batch.tallies)  # fmt: skip
+    def lay(self, batch: Batch) -> None:
+        """Bring the frictionless paths of a fresh batch to rest, those that need no further thought.
 
-    def ascend(self, batch: Batch, rungs: list[int]) -> Batch:
-        """The answers of frictionless paths at rest, taken up to the last of `rungs`, numbers of particles."""
+        The others have a status other than CONVERGED.  A part that presses everywhere never pays for the search tree.
+        """
         surface = self.surface.centred
-        fine = fresh(batch.starts, rungs[-1])
-        fine.tallies[:] = batch.tallies
-        spread(ascend_all, len(batch), 1, surface.net, surface.periodic, surface.tree, surface.size,
-               self._pull_off, self.rough.tolerance, self.tolerance, self.iterations, np.array(rungs),
-               batch.X, batch.uv, batch.touching, batch.gap, fine.X, fine.uv, fine.normal, fine.touching, fine.gap,
-               fine.slip, fine.residual, fine.status, fine.tallies)  # fmt: skip
-        return fine
+        if "tree" in vars(surface):
+            self._lay(batch, surface.tree)
+            return
+        self._lay(batch, NO_TREE)
+        lifted = np.flatnonzero(batch.status == LIFTED)
+        if len(lifted):
+            part = fresh(batch.starts[lifted], batch.X.shape[1])
+            part.tallies[:] = batch.tallies[lifted]
+            self._lay(part, surface.tree)
+            batch.put(lifted, part)
+
+    def _lay(self, batch: Batch, tree: tuple[Floats, Ints, Floats]) -> None:
+        surface = self.surface.centred
+        spread(lay_all, len(batch), 1, surface.net, surface.periodic, tree, surface.size, self._pull_off,
+               max(self.tolerance, COARSE), self.tolerance, self.iterations, batch.starts, batch.X, batch.uv,
+               batch.normal, batch.touching, batch.gap, batch.slip, batch.residual, batch.status, batch.tallies)  # fmt: skip
 
     @property
     def rough(self) -> "Setting":
@@ -156,7 +163,7 @@ class Setting:
         places = part.X, part.uv, part.normal, part.touching, part.gap, part.slip
         results = part.residual, part.status, part.tallies
         if self.friction.none and not self.even:
-            spread(relax_all, len(part), 1, *general, *places, *results)
+            spread(relax_all, len(part), 1, *general, part.starts, *places, *results)
         else:
             spread(hold_all, len(part), 1, *general, self.friction.table, part.starts, part.place, part.mode, *places,
                    *results)  # fmt: skip

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -24,12 +25,12 @@ class Friction:
 
     table: Floats
 
-    @property
+    @cached_property
     def none(self) -> bool:
         """Whether there is no friction at all."""
         return not self.table.any()
 
-    @property
+    @cached_property
     def largest(self) -> float:
         """The largest coefficient anywhere."""
         return float(self.table.max())
@@ -62,6 +63,8 @@ def friction_of(
     """Take friction as a number, a table (rows, columns), or a function of points (n, 3) that returns (n,)."""
     if isinstance(given, Friction):
         return given
+    if isinstance(given, int | float):
+        return uniform(float(given))
     if callable(given):
         u = np.arange(grid) / grid if surface.periodic else np.linspace(0.0, 1.0, grid)
         places = np.stack(np.meshgrid(u, np.linspace(0.0, 1.0, grid), indexing="ij"), axis=-1).reshape(-1, 2)
@@ -71,9 +74,19 @@ def friction_of(
         table = values.reshape(grid, grid)
     else:
         table = np.asarray(given, dtype=np.float64)
-        table = table.reshape(1, 1) if table.ndim == 0 else floats(given, "friction", -1, -1)
+        table = table.reshape(1, 1) if table.ndim == 0 else floats(table, "friction", -1, -1)
         if table.shape != (1, 1) and min(table.shape) < 2:
             raise BadInputError(f"friction has shape {table.shape}; give a number or a table of at least 2 by 2")
+    return _checked(table)
+
+
+@cache
+def uniform(coefficient: float) -> Friction:
+    """The same friction all over."""
+    return _checked(np.full((1, 1), coefficient))
+
+
+def _checked(table: Floats) -> Friction:
     if not np.isfinite(table).all() or table.min() < 0.0 or table.max() > LARGEST:
         raise BadInputError(f"friction goes from {table.min():g} to {table.max():g}; give coefficients from 0 to 10")
     return Friction(frozen(table))

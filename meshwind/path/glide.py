@@ -207,7 +207,7 @@ def spread_along(net, periodic, curve, uv, frames, tally):
 
 
 @njit(cache=True)
-def refine(coarse, uv):
+def resample(coarse, uv):
     """Fill uv (n, 2) with the cubic through the four nearest of `coarse` (m, 2), m at least 4, evenly by index."""
     m, n = len(coarse), len(uv)
     for i in range(n):

@@ -9,12 +9,12 @@ from dataclasses import replace
 import numpy as np
 
 from meshwind.cast import Bools, Floats, Ints
-from meshwind.path.batch import Batch, Setting, fresh
-from meshwind.path.friction import Friction
+from meshwind.path.batch import Batch, Setting, fresh, resampled
+from meshwind.path.friction import Friction, uniform
+from meshwind.path.lay import FEWEST, halvings, turn_of
 from meshwind.path.paths import EDGE, Status, sharpest_turn
 
-FEWEST = 96
-"""Particles of the lowest rung, at least; and as many a turn."""
+REST, CUT = int(Status.CONVERGED), int(Status.TOO_COARSE)
 MOST = 6401
 """Particles of the highest rung where their number is left open."""
 TRIES = (0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0)
@@ -38,54 +38,32 @@ def climb(
     holds = np.zeros(len(curves)), np.zeros(len(curves))
     batch = fresh(curves, particles)
     rest = np.arange(len(curves))
-    if setting.friction.none:  # most paths that stay on the surface are simple
-        setting.glide(batch)
+    if setting.friction.none:
+        setting.lay(batch)
         rest = np.flatnonzero(failing(batch))
-    if len(rest):
-        levels = halvings(curves[rest], particles)
-        for level in np.unique(levels):
-            index = rest[levels == level]
-            work, found = climb_from(setting, batch.rows(index), int(level))
-            batch.put(index, work)
-            for which, each in zip(holds, found, strict=True):
-                which[index] = each
-        batch = even_out(setting, batch)
-    return batch, holds
+        if not len(rest) and not (batch.status == CUT).any():
+            return batch, holds
+    levels = np.array([halvings(curve, particles) for curve in curves[rest]], np.int64)
+    for level in np.unique(levels):
+        index = rest[levels == level]
+        work, found = climb_from(setting, batch.rows(index), int(level))
+        batch.put(index, work)
+        for which, each in zip(holds, found, strict=True):
+            which[index] = each
+    return even_out(setting, batch), holds
 
 
 def climb_from(setting: Setting, batch: Batch, level: int) -> tuple[Batch, tuple[Floats, Floats]]:
     """Solve a batch anew, at first with its particles halved `level` times; returns what `climb` does."""
-    rungs = [batch.X.shape[1]]
-    for _ in range(level):
-        rungs.insert(0, (rungs[0] - 1) // 2 + 1)
-    work = fresh(batch.starts, rungs[0])
+    n = batch.X.shape[1]
+    work = fresh(batch.starts, ((n - 1) >> level) + 1)
     work.tallies[:] = batch.tallies
     first = setting.rough if level else setting
     first.run(work, resume=False)
     holds = rescue(first, work)
-    if not level:
-        return work, holds
-    held = np.flatnonzero(~failing(work)) if setting.friction.none else np.zeros(0, np.int64)
-    top = fresh(batch.starts, rungs[-1])
-    if len(held):
-        top.put(held, setting.ascend(work.rows(held), rungs[1:]))
-    left = np.setdiff1d(np.arange(len(work)), held[~failing(top.rows(held))])
-    if len(left):
-        work = work.rows(left)
-        for n in rungs[1:]:
-            work = ascend(setting if n == rungs[-1] else setting.rough, work, n)
-        top.put(left, work)
-    return top, holds
-
-
-def halvings(curves: Floats, particles: int) -> Ints:
-    """How often the particles of each path (p,) can be halved so that its lowest rung has enough of them."""
-    count = np.zeros(len(curves), np.int64)
-    least, n = fewest(curves), particles
-    while ((n - 1) // 2 >= least).any():
-        count += (n - 1) // 2 >= least
-        n = (n - 1) // 2 + 1
-    return count
+    for k in range(level - 1, -1, -1):
+        work = ascend(setting.rough if k else setting, work, ((n - 1) >> k) + 1)
+    return work, holds
 
 
 def even_out(setting: Setting, batch: Batch) -> Batch:
@@ -113,7 +91,7 @@ def choose(setting: Setting, curves: Floats, accuracy: float) -> tuple[Batch, tu
     batch, holds = climb(setting, curves, int(fewest(curves).max()) + 1, accuracy)
     length = lengths(batch)
     while batch.X.shape[1] < MOST:
-        batch = doubled(setting, batch)
+        batch = even_out(setting, ascend(setting, batch, 2 * batch.X.shape[1] - 1))
         before, length = length, lengths(batch)
         done = ~failing(batch)
         if (batch.status == Status.TOO_COARSE).any() or (
@@ -126,26 +104,9 @@ def choose(setting: Setting, curves: Floats, accuracy: float) -> tuple[Batch, tu
     return batch, holds
 
 
-def doubled(setting: Setting, batch: Batch) -> Batch:
-    """The batch with twice the particles: simple paths from their curves, the others from their answers."""
-    n = 2 * batch.X.shape[1] - 1
-    fine = fresh(batch.starts, n)
-    fine.tallies[:] = batch.tallies
-    rest = np.arange(len(batch))
-    if setting.friction.none:
-        setting.glide(fine)
-        rest = np.flatnonzero(failing(fine))
-    if len(rest):
-        work = batch.rows(rest)
-        work.tallies[:] = fine.tallies[rest]
-        fine.put(rest, even_out(setting, ascend(setting, work, n)))
-    return fine
-
-
 def fewest(curves: Floats) -> Ints:
     """Segments of the lowest rung of each path (p,): enough for its turn."""
-    turn = np.abs(np.diff(curves[:, :, 0], axis=1)).sum(axis=1)
-    return np.asarray(np.maximum(FEWEST, FEWEST * turn)).astype(np.int64)
+    return np.array([FEWEST * max(1.0, turn_of(curve)) for curve in curves], dtype=np.int64)
 
 
 def lengths(batch: Batch) -> Floats:
@@ -181,7 +142,7 @@ def ascend(setting: Setting, batch: Batch, particles: int) -> Batch:
 
 def failing(batch: Batch) -> Bools:
     """Which paths are not at rest; one that cuts an edge is."""
-    return np.asarray((batch.status != Status.CONVERGED) & (batch.status != Status.TOO_COARSE))
+    return np.asarray((batch.status != REST) & (batch.status != CUT))
 
 
 def rescue(setting: Setting, batch: Batch) -> tuple[Floats, Floats]:
@@ -193,7 +154,7 @@ def rescue(setting: Setting, batch: Batch) -> tuple[Floats, Floats]:
         rest = index[coefficients[index] == 0.0]
         if mu <= setting.friction.largest or not len(rest):
             continue
-        rougher = replace(setting, friction=Friction(np.full((1, 1), mu)))
+        rougher = replace(setting, friction=uniform(mu))
         probe = fresh(batch.starts[rest], batch.X.shape[1])
         rougher.run(probe, resume=False)
         batch.tallies[rest] += probe.tallies
@@ -234,7 +195,7 @@ def from_smooth(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
     """Try again from where the fibres would rest without friction."""
     work = fresh(part.starts, part.X.shape[1])
     work.tallies[:] = part.tallies
-    replace(setting, friction=Friction(np.zeros((1, 1)))).run(work, resume=False)
+    replace(setting, friction=uniform(0.0)).run(work, resume=False)
     ramp = np.linspace(0.0, part.starts.shape[1] - 1.0, part.X.shape[1])
     work.place[:] = ramp
     work.mode[:] = 1
@@ -264,6 +225,7 @@ def wind_up(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
     share = np.zeros(count)
     goal = np.full(count, 1.0 / SHARES)
     work = fresh(part.starts, n)
+    work.uv[:] = resampled(part.starts, n)
     work.uv[:, :, 0] -= turn[:, None] * ramp * (1.0 - goal)[:, None]
     work.tallies[:] = part.tallies
     best = work.rows(np.arange(count))

@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 from meshwind.path.contact import pull
-from meshwind.path.state import copy_particle, touch_down
+from meshwind.path.state import copy_lifted, copy_particle, touch_down
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, S, unit_normal
 from meshwind.surface.tree import nearest_foot
 
@@ -121,7 +121,7 @@ def carry_lifted(net, periodic, tree, size, step, contacts, count, state, trial,
         j = contacts[c] if c < count else len(X) - 1
         for m in range(i + 1, j):
             t = (m - i) / (j - i)
-            copy_particle(state, trial, m)
+            copy_lifted(state, trial, m)
             moved = 0.0
             for k in range(3):
                 chord = (1.0 - t) * X[i, k] + t * X[j, k]

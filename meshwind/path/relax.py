@@ -13,7 +13,7 @@ from numba import njit
 from meshwind.path.block_tridiagonal import solve
 from meshwind.path.certificate import HALF_TURN, certify, largest_turn, unresolved
 from meshwind.path.contact import lift, link
-from meshwind.path.glide import LONGEST_MOVE
+from meshwind.path.glide import LONGEST_MOVE, spread_along
 from meshwind.path.newton import (
     EVALUATIONS,
     ITERATIONS,
@@ -25,7 +25,7 @@ from meshwind.path.newton import (
     sag,
 )
 from meshwind.path.paths import Status
-from meshwind.path.state import blank, copy, energy, place, space_evenly, touch_down
+from meshwind.path.state import blank, copy, energy, place, touch_down
 
 CONVERGED, SLID_START, SLID_END, UNSTABLE, STALLED, LEFT_CHART, TOO_COARSE = (int(status) for status in Status)
 LIFTED = TOO_COARSE + 1
@@ -49,21 +49,31 @@ def relax(net, periodic, tree, size, pull_off, tolerance, limit, state, tally):
     pull_off: angle (radians) of the pull that lifts a particle, infinite for a fibre that cannot leave the surface.
     Returns (residual, status): residual is the largest unbalanced force over the tension, an angle in radians.
     """
-    X, uv, frames, normal, touching, clear = state
-    n = len(X)
-    trial = blank(n)
+    trial = blank(len(state[0]))
+    residual, status, odd = descend(net, periodic, tree, size, pull_off, tolerance, limit, state, trial, tally)
+    if odd:
+        copy(trial, state)
+    return residual, status
+
+
+@njit(cache=True)
+def descend(net, periodic, tree, size, pull_off, tolerance, limit, state, trial, tally):
+    """As `relax`; the answer is left in `state` or, where the third result says so, in `trial`."""
+    n = len(state[0])
+    odd = False
     contacts = np.empty(n, np.int64)
     before, after = np.zeros(n, np.int64), np.zeros(n, np.int64)
     diagonal, upper, metric = np.empty((n, 3)), np.empty((n, 2, 2)), np.empty((n, 3))
     right, move, work = np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 3))
     kept = np.empty(n, np.bool_)
     shift, least = 0.0, 0.1 * (np.pi / n) ** 2
-    now, length = energy(X)
+    now, length = energy(state[0])
     most = max(HALF_TURN, 1.2 * largest_turn(state))
     residual = np.inf
     caution = falls = leant = leaning = 0
     for _ in range(limit):
         tally[ITERATIONS] += 1
+        X, uv, frames, normal, touching, clear = state
         spacing = max(length, 1e-300) / (n - 1)
         for i in range(n):
             kept[i] = touching[i]
@@ -73,7 +83,7 @@ def relax(net, periodic, tree, size, pull_off, tolerance, limit, state, tally):
         else:
             link(touching, before, after)
         if released > 0 and len(tree[1]) == 0:
-            return residual, LIFTED
+            return residual, LIFTED, odd
         count, force, leaning = assemble(state, periodic, before, after, contacts, diagonal, upper, metric, right)
         residual = max(force, sag(X, after)) / spacing
         if released == 0 and residual <= tolerance:
@@ -82,20 +92,20 @@ def relax(net, periodic, tree, size, pull_off, tolerance, limit, state, tally):
             tally[SOLVES] += 1
             if solve(diagonal, upper, metric, 0.0, right, count, move, work):
                 if leaning == 0:
-                    return residual, CONVERGED
-                return residual, UNSTABLE if falls > 0 else leaving_by(uv, leaning)
+                    return residual, CONVERGED, odd
+                return residual, UNSTABLE if falls > 0 else leaving_by(uv, leaning), odd
             falls += 1
             if falls > MOST_FALLS or not fall(
                 net, periodic, tree, size, state, trial, contacts, count,
                 diagonal, upper, metric, least, tally,
             ):  # fmt: skip
-                return residual, UNSTABLE
-            copy(trial, state)
-            now, length = energy(X)
+                return residual, UNSTABLE, odd
+            state, trial, odd = trial, state, not odd
+            now, length = energy(state[0])
             continue
         leant = leant + 1 if leaning > 0 else 0
         if leant > PATIENCE:
-            return residual, leaving_by(uv, leaning)
+            return residual, leaving_by(uv, leaning), odd
         definite = False
         while not definite and shift < 1.0 / least:
             tally[SOLVES] += 1
@@ -125,7 +135,7 @@ def relax(net, periodic, tree, size, pull_off, tolerance, limit, state, tally):
                 break
             step *= 0.5
         if accepted:
-            copy(trial, state)
+            state, trial, odd = trial, state, not odd
             now, length = then, length_then
             caution = 0
             shift = 0.25 * shift if shift > least else 0.0
@@ -135,7 +145,7 @@ def relax(net, periodic, tree, size, pull_off, tolerance, limit, state, tally):
             if caution == 2:
                 break
             caution += 1
-    return residual, failure(uv, periodic)
+    return residual, failure(state[1], periodic), odd
 
 
 @njit(cache=True)
@@ -197,10 +207,10 @@ def leaving_by(uv, i):
 
 @njit(nogil=True, cache=True)
 def relax_all(
-    first, last, net, periodic, tree, size, pull_off, tolerance, limit, resume, final,
+    first, last, net, periodic, tree, size, pull_off, tolerance, limit, resume, final, starts,
     X, uv, normal, touching, gap, slip, residual, status, tallies,
 ):  # fmt: skip
-    """Relax paths first to last: from the curves uv (p, n, 2), or with `resume` from what the arrays hold.
+    """Relax paths first to last: from their starting curves (p, m, 2), or with `resume` from what the arrays hold.
 
     Only a `final` answer pays for its certificate; others leave lower bounds of the gaps.
     """
@@ -211,13 +221,18 @@ def relax_all(
         if resume:
             take_up(net, periodic, tree, size, state, tallies[p])
         else:
-            place(net, periodic, state)
-            space_evenly(state)
-            place(net, periodic, state)
-            tallies[p, EVALUATIONS] += 2 * n
+            begin(net, periodic, starts[p], state, tallies[p])
         residual[p], status[p] = settle(
             net, periodic, tree, size, pull_off, tolerance, limit, final, state, slip[p], tallies[p]
         )
+
+
+@njit(cache=True)
+def begin(net, periodic, curve, state, tally):
+    """Put a path on its starting curve (m, 2), evenly spaced by length."""
+    spread_along(net, periodic, curve, state[1], state[2], tally)
+    place(net, periodic, state)
+    tally[EVALUATIONS] += len(state[1])
 
 
 @njit(cache=True)

@@ -22,6 +22,8 @@ ACCURACY = 1e-5
 
 def straight(start: Floats, end: Floats, particles: int) -> Floats:
     """Straight lines in the parametric plane (6.2): curves (p, particles, 2) from start to end (p, 2)."""
+    if particles == 2:
+        return np.stack([start, end], axis=1)
     t = np.linspace(0.0, 1.0, particles)[None, :, None]
     return np.asarray((1.0 - t) * start[:, None] + t * end[:, None])
 
@@ -57,7 +59,7 @@ def solve(
     if len(first) != len(last):
         raise BadInputError(f"{len(first)} start points but {len(last)} end points; give as many of each")
     for name, point in (("start", first), ("end", last)):
-        if np.any((point[:, 1] < 0) | (point[:, 1] > 1)):
+        if point.size and (point[:, 1].min() < 0.0 or point[:, 1].max() > 1.0):
             raise BadInputError(f"a {name} point has v outside [0, 1]; v runs from rim to rim")
     if initial is None and (nowhere := np.flatnonzero((np.abs(last - first) <= 1e-9).all(axis=1))).size:
         raise BadInputError(f"path {nowhere[0]} ends where it starts; give it two ends, or a curve as initial")

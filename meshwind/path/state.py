@@ -13,11 +13,11 @@ from meshwind.surface.evaluate import S, frame, unit_normal
 
 @njit(cache=True)
 def blank(n):
-    """A state of n particles, all touching."""
+    """A state of n particles, all touching somewhere; their normals, not yet known, are zero."""
     return (
-        np.zeros((n, 3)),
-        np.zeros((n, 2)),
-        np.zeros((n, 6, 3)),
+        np.empty((n, 3)),
+        np.empty((n, 2)),
+        np.empty((n, 6, 3)),
         np.zeros((n, 3)),
         np.ones(n, np.bool_),
         np.zeros(n),
@@ -45,6 +45,17 @@ def copy_particle(source, target, i):
 
 
 @njit(cache=True)
+def copy_lifted(source, target, i):
+    """Copy lifted particle i of a state into another, but for its frame: whoever wants that asks for the foot."""
+    for k in range(3):
+        target[0][i, k] = source[0][i, k]
+        target[3][i, k] = source[3][i, k]
+    target[1][i, 0], target[1][i, 1] = source[1][i, 0], source[1][i, 1]
+    target[4][i] = source[4][i]
+    target[5][i] = source[5][i]
+
+
+@njit(cache=True)
 def touch_down(net, periodic, state, i, u, v):
     """Put particle i on the surface at (u, v)."""
     X, uv, frames, normal, touching, clear = state
@@ -63,25 +74,6 @@ def place(net, periodic, state):
     uv = state[1]
     for i in range(len(uv)):
         touch_down(net, periodic, state, i, uv[i, 0], uv[i, 1])
-
-
-@njit(cache=True)
-def space_evenly(state):
-    """Slide the particles along the polyline uv so that they are evenly spaced by length in space."""
-    X, uv = state[0], state[1]
-    n = len(X)
-    s = np.zeros(n)
-    for i in range(1, n):
-        s[i] = s[i - 1] + distance(X, i, i - 1)
-    old = uv.copy()
-    j = 0
-    for i in range(1, n - 1):
-        want = s[n - 1] * i / (n - 1)
-        while j < n - 2 and s[j + 1] < want:
-            j += 1
-        t = (want - s[j]) / max(s[j + 1] - s[j], 1e-300)
-        uv[i, 0] = old[j, 0] + t * (old[j + 1, 0] - old[j, 0])
-        uv[i, 1] = old[j, 1] + t * (old[j + 1, 1] - old[j, 1])
 
 
 @njit(inline="always", cache=True)

@@ -85,8 +85,8 @@ class Surface:
     @cached_property
     def tree(self) -> tuple[Floats, Ints, Floats]:
         """The search tree for foot points, see `meshwind.surface.tree`; built on first use."""
-        discs, levels, samples = tree.build(self.net, self.periodic)
-        return frozen(discs), frozen(levels), frozen(samples)
+        boxes, levels, samples = tree.build(self.net, self.periodic)
+        return frozen(boxes), frozen(levels), frozen(samples)
 
     @cached_property
     def middle(self) -> Floats:

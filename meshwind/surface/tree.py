@@ -1,14 +1,15 @@
 """A search tree over the surface: where Newton for foot points must start.
 
 A local foot stays on the near flank of a thin rib while the true nearest point is on the other, and may even stop
-at a saddle of the distance.  The tree's leaves are the surface's polynomial pieces, each in a flat disc that its
-Bezier points fill; above them is a pyramid of discs, each around four.  Asked for a piece that may come nearer than the
-foot at hand, it answers at once where that foot is right: then no disc but those about the foot itself reaches into
-the ball.  Discs lie along the surface, so that they part from the ball far sooner than boxes do (3 to 5 times fewer).
+at a saddle of the distance.  The tree's leaves are the surface's polynomial pieces, each in a flat box along it that
+its Bezier points fill; above them is a pyramid of such boxes, each around sixteen.  Asked for a piece that may come
+nearer than the foot at hand, it answers at once where that foot is right: then no box but those about the foot itself
+reaches into the ball.
 
-A tree is (discs, levels, samples).  discs (k, 8, 16) are the children of every node, the pieces' parents first, as
-centre, unit normal, radius and half thickness, each for all 16 children at once so that the compiler takes them in
-vectors; levels (l, 3) as (first node, rows, columns); samples (m, 3, 16) of every piece, 4 x 4 with its edges.
+A tree is (boxes, levels, samples).  boxes (k, 12, 16) are the children of every node, the pieces' parents first, as
+centre, unit normal, unit vector along u and half extents along u, across and along the normal, each for all 16 children
+at once so that the compiler takes them in vectors; levels (l, 3) as (first node, rows, columns); samples (m, 3, 16) of
+every piece, 4 x 4 with its edges.
 """
 
 import numpy as np
@@ -26,7 +27,7 @@ DENSITY = 3
 ROUNDS = 4
 """Feet that are tried at most: one from the guess, then one a piece that may be nearer."""
 REACH = 0.36
-"""No point of a piece is further than this share of its disc's radius from a sample, and a tenth."""
+"""No point of a piece is further from a sample than this share of its box's half extents, with a tenth to spare."""
 
 
 @njit(cache=True)
@@ -34,14 +35,14 @@ def build(net, periodic):
     """The search tree of a surface."""
     spans_u, spans_v = net.shape[0] - 3, net.shape[1] - 3
     levels = shape(spans_u, spans_v)
-    discs = np.zeros((levels[-1, 0] + 1, 8, WIDE * WIDE))
-    discs[:, :3] = FAR
+    boxes = np.zeros((levels[-1, 0] + 1, 12, WIDE * WIDE))
+    boxes[:, :3], boxes[:, 5], boxes[:, 6] = FAR, 1.0, 1.0
     samples = np.empty((spans_u * spans_v, 3, 16))
     corners, at = np.empty((16, 3)), np.empty(3)
     for i in range(spans_u):
         for j in range(spans_v):
             bezier(net, i, j, corners)
-            enclose(corners, discs[parent(levels[0], i, j)], child(i, j))
+            enclose(corners, boxes[parent(levels[0], i, j)], child(i, j))
             for a in range(4):
                 for b in range(4):
                     place = (i + a / DENSITY) / spans_u, (j + b / DENSITY) / spans_v
@@ -52,8 +53,8 @@ def build(net, periodic):
         below, rows, columns = levels[level - 1]
         for i in range(rows):
             for j in range(columns):
-                around(discs[below + i * columns + j], discs[parent(levels[level], i, j)], child(i, j))
-    return discs, levels, samples
+                around(boxes[below + i * columns + j], boxes[parent(levels[level], i, j)], child(i, j))
+    return boxes, levels, samples
 
 
 @njit(inline="always", cache=True)
@@ -99,83 +100,110 @@ def bezier(net, i, j, out):
 
 
 @njit(cache=True)
-def enclose(corners, discs, c):
-    """Write the disc of a piece as child c, from its Bezier points (16, 3): across its two diagonals."""
+def enclose(corners, boxes, c):
+    """Write the box of a piece as child c, from its Bezier points (16, 3): across its two diagonals, along u."""
     for k in range(3):
         e, f = (k + 1) % 3, (k + 2) % 3
-        discs[k, c] = 0.25 * (corners[0, k] + corners[3, k] + corners[12, k] + corners[15, k])
-        discs[3 + k, c] = (corners[15, e] - corners[0, e]) * (corners[3, f] - corners[12, f])
-        discs[3 + k, c] -= (corners[15, f] - corners[0, f]) * (corners[3, e] - corners[12, e])
-    turn_to_unit(discs, c)
-    low, high = np.inf, -np.inf
+        boxes[k, c] = 0.25 * (corners[0, k] + corners[3, k] + corners[12, k] + corners[15, k])
+        boxes[3 + k, c] = (corners[15, e] - corners[0, e]) * (corners[3, f] - corners[12, f])
+        boxes[3 + k, c] -= (corners[15, f] - corners[0, f]) * (corners[3, e] - corners[12, e])
+        boxes[6 + k, c] = corners[15, k] + corners[12, k] - corners[3, k] - corners[0, k]
+    square_up(boxes, c)
+    axes, low, high = axes_of(boxes, c), np.full(3, np.inf), np.full(3, -np.inf)
     for p in range(16):
-        height = 0.0
-        for k in range(3):
-            height += (corners[p, k] - discs[k, c]) * discs[3 + k, c]
-        low, high = min(low, height), max(high, height)
-    widest = 0.0
-    for k in range(3):
-        discs[k, c] += 0.5 * (low + high) * discs[3 + k, c]
-    for p in range(16):
-        square = height = 0.0
-        for k in range(3):
-            away = corners[p, k] - discs[k, c]
-            square, height = square + away * away, height + away * discs[3 + k, c]
-        widest = max(widest, square - height * height)
-    discs[6, c], discs[7, c] = np.sqrt(widest), 0.5 * (high - low)
+        for a in range(3):
+            at = 0.0
+            for k in range(3):
+                at += (corners[p, k] - boxes[k, c]) * axes[a, k]
+            low[a], high[a] = min(low[a], at), max(high[a], at)
+    fit(boxes, c, axes, low, high)
 
 
 @njit(cache=True)
-def turn_to_unit(discs, c):
-    """Make a child's normal a unit vector; where there is none any will do."""
-    size = np.sqrt(discs[3, c] ** 2 + discs[4, c] ** 2 + discs[5, c] ** 2)
+def fit(boxes, c, axes, low, high):
+    """Set child c's centre and half extents from how far its contents reach along its axes (3, 3)."""
+    for a in range(3):
+        for k in range(3):
+            boxes[k, c] += 0.5 * (low[a] + high[a]) * axes[a, k]
+        boxes[9 + a, c] = 0.5 * (high[a] - low[a])
+
+
+@njit(cache=True)
+def square_up(boxes, c):
+    """Make a child's normal and its direction along u unit vectors and square; where there is none any will do."""
+    n, e = boxes[3:6, c], boxes[6:9, c]
+    size = np.sqrt(n[0] ** 2 + n[1] ** 2 + n[2] ** 2)
     if size > 0.0:
-        for k in range(3, 6):
-            discs[k, c] /= size
+        for k in range(3):
+            n[k] /= size
     else:
-        discs[5, c] = 1.0
+        n[2] = 1.0
+    out = e[0] * n[0] + e[1] * n[1] + e[2] * n[2]
+    for k in range(3):
+        e[k] -= out * n[k]
+    size = np.sqrt(e[0] ** 2 + e[1] ** 2 + e[2] ** 2)
+    if size > 0.0:
+        for k in range(3):
+            e[k] /= size
+        return
+    k = np.abs(n).argmin()  # square to the normal, whichever way
+    e[k], e[(k + 1) % 3], e[(k + 2) % 3] = 0.0, n[(k + 2) % 3], -n[(k + 1) % 3]
+    size = np.sqrt((e * e).sum())
+    for k in range(3):
+        e[k] /= size
 
 
 @njit(cache=True)
-def around(node, discs, c):
-    """Write the disc around all children of a node as child c of its parent."""
-    for k in range(6):
+def axes_of(boxes, c):
+    """A child's axes (3, 3): along u, across, along the normal."""
+    axes = np.empty((3, 3))
+    for k in range(3):
+        i, j = (k + 1) % 3, (k + 2) % 3
+        axes[0, k], axes[2, k] = boxes[6 + k, c], boxes[3 + k, c]
+        axes[1, k] = boxes[3 + i, c] * boxes[6 + j, c] - boxes[3 + j, c] * boxes[6 + i, c]
+    return axes
+
+
+@njit(cache=True)
+def around(node, boxes, c):
+    """Write the box around all children of a node as child c of its parent."""
+    for k in range(9):
         total, count = 0.0, 0
         for m in range(WIDE * WIDE):
             if node[0, m] < FAR:
                 total += node[k, m]
                 count += 1
-        discs[k, c] = total / count
-    turn_to_unit(discs, c)
-    low, high, widest = np.inf, -np.inf, 0.0
+        boxes[k, c] = total / count
+    square_up(boxes, c)
+    axes, low, high = axes_of(boxes, c), np.full(3, np.inf), np.full(3, -np.inf)
     for m in range(WIDE * WIDE):
         if node[0, m] == FAR:
             continue
-        square = height = cosine = 0.0
-        for k in range(3):
-            away = node[k, m] - discs[k, c]
-            square, height = square + away * away, height + away * discs[3 + k, c]
-            cosine += node[3 + k, m] * discs[3 + k, c]
-        sine = np.sqrt(max(1.0 - cosine * cosine, 0.0))
-        reach = node[6, m] * sine + node[7, m] * abs(cosine)
-        low, high = min(low, height - reach), max(high, height + reach)
-        widest = max(widest, np.sqrt(max(square - height * height, 0.0)) + node[6, m] + node[7, m] * sine)
-    for k in range(3):
-        discs[k, c] += 0.5 * (low + high) * discs[3 + k, c]
-    discs[6, c], discs[7, c] = widest, 0.5 * (high - low)
+        own = axes_of(node, m)
+        for a in range(3):
+            at = reach = 0.0
+            for k in range(3):
+                at += (node[k, m] - boxes[k, c]) * axes[a, k]
+            for b in range(3):
+                cosine = own[b, 0] * axes[a, 0] + own[b, 1] * axes[a, 1] + own[b, 2] * axes[a, 2]
+                reach += node[9 + b, m] * abs(cosine)
+            low[a], high[a] = min(low[a], at - reach), max(high[a], at + reach)
+    fit(boxes, c, axes, low, high)
 
 
 @njit(cache=True)
-def to_discs(discs, point, out):
-    """Squared distances (16,) of a point to the discs of a node's children, at most those to what is in them."""
+def to_boxes(boxes, point, out):
+    """Squared distances (16,) of a point to the boxes of a node's children."""
     x, y, z = point[0], point[1], point[2]
     for c in range(WIDE * WIDE):
-        a, b, d = x - discs[0, c], y - discs[1, c], z - discs[2, c]
-        height = a * discs[3, c] + b * discs[4, c] + d * discs[5, c]
-        aside = np.sqrt(abs(a * a + b * b + d * d - height * height)) - discs[6, c]
-        above = abs(height) - discs[7, c]
-        aside, above = 0.5 * (aside + abs(aside)), 0.5 * (above + abs(above))
-        out[c] = aside * aside + above * above
+        a, b, d = x - boxes[0, c], y - boxes[1, c], z - boxes[2, c]
+        n0, n1, n2 = boxes[3, c], boxes[4, c], boxes[5, c]
+        e0, e1, e2 = boxes[6, c], boxes[7, c], boxes[8, c]
+        along = abs(a * e0 + b * e1 + d * e2) - boxes[9, c]
+        across = abs(a * (n1 * e2 - n2 * e1) + b * (n2 * e0 - n0 * e2) + d * (n0 * e1 - n1 * e0)) - boxes[10, c]
+        above = abs(a * n0 + b * n1 + d * n2) - boxes[11, c]
+        along, across, above = along + abs(along), across + abs(across), above + abs(above)
+        out[c] = 0.25 * (along * along + across * across + above * above)
 
 
 @njit(cache=True)
@@ -194,7 +222,7 @@ def rival(tree, rows, columns, periodic, point, square, u, v):
     Pieces next to (u, v), where the foot at hand is, are judged by their samples; from others a nearer foot may hide
     between samples, and these count by the nearest that it may be.  Pieces are numbered by rows of `columns`.
     """
-    discs, levels, samples = tree
+    boxes, levels, samples = tree
     here_i = int(np.floor((u - np.floor(u)) * rows if periodic else u * rows))
     here_j = int(v * columns)
     best, piece, sample = square, -1, -1
@@ -205,7 +233,7 @@ def rival(tree, rows, columns, periodic, point, square, u, v):
     while size > 0:
         size -= 1
         level, i, j = stack[size, 0], WIDE * stack[size, 1], WIDE * stack[size, 2]
-        to_discs(discs[parent(levels[level], i, j)], point, away)
+        to_boxes(boxes[parent(levels[level], i, j)], point, away)
         for c in range(WIDE * WIDE):
             if away[c] >= best:
                 continue
@@ -219,7 +247,8 @@ def rival(tree, rows, columns, periodic, point, square, u, v):
                 apart = min(apart, rows - apart)
             hidden = 0.0
             if apart > 1 or abs(b - here_j) > 1:
-                hidden = (REACH * discs[parent(levels[0], a, b), 6, c]) ** 2
+                box = boxes[parent(levels[0], a, b)]
+                hidden = REACH**2 * (box[9, c] ** 2 + box[10, c] ** 2)
             to_samples(samples[a * columns + b], point, near)
             for m in range(16):
                 if near[m] - hidden < best:
