@@ -53,6 +53,15 @@ class Batch:
         for f in fields(self):
             getattr(self, f.name)[index] = getattr(part, f.name)
 
+    def reversed(self) -> "Batch":
+        """A copy of the paths that runs from end to start."""
+        back = self.rows(np.arange(len(self)))
+        for name in ("starts", "X", "uv", "normal", "touching", "gap", "slip", "place", "mode"):
+            getattr(back, name)[:] = getattr(self, name)[:, ::-1]
+        back.place[:] = self.starts.shape[1] - 1.0 - back.place
+        back.mode[np.abs(back.mode) == 1] *= -1
+        return back
+
     def refined(self, particles: int) -> "Batch":
         """The same paths with more particles, those between on the old ones' curve; counters go on."""
         fine = fresh(self.starts, particles)

@@ -21,6 +21,8 @@ TRIES = (0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0)
 """Coefficients of friction that are tried on a path that slides off."""
 RAMP = (6.0, 4.0, 3.0, 2.2, 1.7, 1.4, 1.2, 1.08, 1.0)
 """Factors of friction through which a path is lowered that does not settle directly."""
+RISES = 8
+"""Steps in which friction is raised from none."""
 SHARES = 8
 """Steps in which the turn of a path that slides off is built up."""
 
@@ -165,7 +167,7 @@ def rescue(setting: Setting, batch: Batch) -> tuple[Floats, Floats]:
 def search(setting: Setting, batch: Batch) -> Floats:
     """Try the paths that are not at rest in other ways, in place; returns the change of u that holds, 0 if unknown."""
     turns = np.zeros(len(batch))
-    for start in (from_few, wind_up) if setting.friction.none else (from_few, from_smooth, from_rough):
+    for start in (from_few, from_back, wind_up) if setting.friction.none else (from_few, from_back, from_smooth, from_rough):
         index = np.flatnonzero(failing(batch))
         if len(index):
             work, held = start(setting, batch.rows(index))
@@ -192,15 +194,36 @@ def from_few(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
 
 
 def from_smooth(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
-    """Try again from where the fibres would rest without friction."""
-    work = fresh(part.starts, part.X.shape[1])
-    work.tallies[:] = part.tallies
-    replace(setting, friction=uniform(0.0)).run(work, resume=False)
-    ramp = np.linspace(0.0, part.starts.shape[1] - 1.0, part.X.shape[1])
-    work.place[:] = ramp
-    work.mode[:] = 1
-    setting.run(work, resume=True)
-    return work, np.zeros(len(work))
+    """Try again from where the fibres would rest without friction: at once, and then by raising it step by step."""
+    n = part.X.shape[1]
+    smooth = fresh(part.starts, n)
+    smooth.tallies[:] = part.tallies
+    free = replace(setting, friction=uniform(0.0))
+    free.run(smooth, resume=False)
+    search(free, smooth)
+    smooth.place[:] = np.linspace(0.0, part.starts.shape[1] - 1.0, n)
+    smooth.mode[:] = 1
+    best = smooth.rows(np.arange(len(part)))
+    best.status[:] = part.status
+    left = np.flatnonzero(~failing(smooth))
+    for steps in (1, RISES):
+        if not len(left):
+            break
+        work = smooth.rows(left)
+        work.tallies[:] = best.tallies[left]
+        for k in range(1, steps + 1):
+            table = setting.friction.table * (k / steps)
+            replace(setting, friction=Friction(table), final=k == steps and setting.final).run(work, resume=True)
+        best.put(left, work)
+        left = left[failing(work)]
+    return best, np.zeros(len(best))
+
+
+def from_back(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
+    """Try again with start and end exchanged: what a search meets first can decide where it ends."""
+    work = part.reversed()
+    setting.run(work, resume=False)
+    return work.reversed(), np.zeros(len(work))
 
 
 def from_rough(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
