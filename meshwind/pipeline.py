@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from os import PathLike, fspath
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from time import perf_counter
 from typing import Any
 
@@ -20,14 +21,19 @@ from meshwind.mandrel import Mesh, annulus, read
 from meshwind.mandrel.scalars import Scalars, read_scalars
 from meshwind.notes import FIT_ERROR, Note, about_choice, about_fit, about_paths, about_spacing
 from meshwind.options import AUTO, FIELD, STEPS_A_TURN, Options
-from meshwind.output import driver, folder
-from meshwind.output.fit_scene import fit_scene
+from meshwind.output import folder
 from meshwind.output.report import report, write_report
-from meshwind.output.revolutions_picture import draw_revolutions
-from meshwind.output.scene import scene
 from meshwind.output.write import write_files
 from meshwind.path import Paths, Status, solve
 from meshwind.path.friction import Friction, friction_from
+from meshwind.pictures import driver
+from meshwind.pictures.fit_scene import fit_scene
+from meshwind.pictures.kinds import SHEET, scenes_of
+from meshwind.pictures.page import Page
+from meshwind.pictures.render import placed
+from meshwind.pictures.revolutions_picture import draw_revolutions
+from meshwind.pictures.sheet import write_sheet
+from meshwind.pictures.subject import subject_in
 from meshwind.surface import Surface, fit
 
 Tell = Callable[[str], None]
@@ -239,7 +245,7 @@ def _write(result: Result, out: Path, render: bool, clock: _Clock) -> Result:
                 draw_revolutions(staging / "revolutions.png", result.chosen, result.mesh.name)
         if render:
             with clock.stage("render"):
-                missing = driver.paint({staging / name: seen for name, seen in _pictures(result).items()})
+                missing = _draw(result, staging)
             notes = (*notes, Note(missing)) if missing else notes
         notes = tuple(note.shown((staging / note.picture).is_file()) for note in notes)
         result = replace(result, seconds=result.seconds | clock.seconds, notes=notes)
@@ -247,10 +253,16 @@ def _write(result: Result, out: Path, render: bool, clock: _Clock) -> Result:
     return result
 
 
-def _pictures(result: Result) -> dict[str, dict[str, Any]]:
-    """What there is to draw, by the name of the file: the winding, and what a warning wants to show."""
-    name, options = result.mesh.name, result.options
-    seen = {"winding.png": scene(result.layup, name, options.units, result.revolutions)}
-    if any(note.picture == FIT_ERROR for note in result.notes):
-        seen[FIT_ERROR] = fit_scene(result.surface, result.chart.annulus, name, options.units)
-    return seen
+def _draw(result: Result, out: Path) -> str:
+    """Draw the winding, what a warning wants to show and the contact sheet; return "" or what is missing and why."""
+    name, units = result.mesh.name, result.options.units
+    of = subject_in(out, result.layup, name, units, result.revolutions)
+    with TemporaryDirectory() as cells:
+        pictures = placed(scenes_of(of), ("winding", SHEET), Page(), out, Path(cells))
+        work = dict(pictures)
+        if any(note.picture == FIT_ERROR for note in result.notes):
+            work[out / FIT_ERROR] = fit_scene(result.surface, result.chart.annulus, name, units)
+        missing = driver.paint(work)
+        if not missing:
+            write_sheet(out / f"{SHEET}.png", list(pictures))
+    return missing

@@ -21,6 +21,7 @@ ORDER = [
     "redesign",
     "output",
     "export",
+    "pictures",
     "options",
     "notes",
     "pipeline",

@@ -11,7 +11,7 @@ import meshwind as mw
 from meshwind.cli.wind import turns
 from meshwind.errors import BadInputError
 from meshwind.layup.revolutions import choose_revolutions
-from meshwind.output.revolutions_picture import draw_revolutions
+from meshwind.pictures.revolutions_picture import draw_revolutions
 from meshwind.surface import shapes
 
 DATA = Path(__file__).parents[1] / "data"

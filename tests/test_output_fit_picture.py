@@ -16,11 +16,12 @@ from meshwind.layup.layup import assess
 from meshwind.mandrel import mesh_from
 from meshwind.mandrel.ends import place
 from meshwind.notes import FIT_ERROR, Note
-from meshwind.output import driver
 from meshwind.output.apart import Apart, apart
-from meshwind.output.fit_scene import fit_scene
-from meshwind.output.scene import scene
 from meshwind.output.view import around, place_view
+from meshwind.pictures import driver
+from meshwind.pictures.fit_scene import fit_scene
+from meshwind.pictures.subject import subject
+from meshwind.pictures.winding_scene import winding_scene
 from meshwind.surface import shapes
 
 AROUND, ALONG, HEIGHT = 48, 40, 4.0
@@ -157,7 +158,7 @@ def test_a_fit_without_any_error_can_be_drawn(tmp_path: Path) -> None:
 
 
 def test_one_process_draws_both_and_says_which_one_fails(tmp_path: Path) -> None:
-    wound, fit = scene(assess(bridged()), "waist"), fit_scene(*bumped({row(0.5, 2.0): 0.5}), "tube")
+    wound, fit = winding_scene(subject(assess(bridged()), "waist")), fit_scene(*bumped({row(0.5, 2.0): 0.5}), "tube")
     note = driver.paint({tmp_path / "winding.png": wound, tmp_path / "fit_error.png": fit})
     drawn = sorted(file.name for file in tmp_path.iterdir())
     assert drawn == ([] if note else ["fit_error.png", "winding.png"])
@@ -170,9 +171,9 @@ def test_one_process_draws_both_and_says_which_one_fails(tmp_path: Path) -> None
 
 def test_the_title_tells_the_revolutions_that_were_asked_for() -> None:
     layup = assess(bridged())
-    assert "0.8 revolutions" in scene(layup, "waist", revolutions=0.8)["title"]
+    assert "0.8 revolutions" in winding_scene(subject(layup, "waist", revolutions=0.8))["title"]
     mean = float(np.abs(layup.paths.uv[:, -1, 0] - layup.paths.uv[:, 0, 0]).mean())
-    assert f"{mean:.4g} revolutions" in scene(layup, "waist")["title"]
+    assert f"{mean:.4g} revolutions" in winding_scene(subject(layup, "waist"))["title"]
 
 
 def test_a_note_names_its_picture_only_where_it_is() -> None:
@@ -219,5 +220,5 @@ def test_without_a_driver_one_line_is_told_for_both_pictures(tmp_path: Path, mon
     monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
     result = mw.wind(horned(), paths=3, revolutions=0.2, worst_fit=0.5, out=tmp_path / "out")
     assert [note.text for note in result.notes].count(driver.NO_DRIVER) == 1
-    assert not list((tmp_path / "out").glob("[wf]*.png"))
+    assert not list((tmp_path / "out").glob("[wfs]*.png"))
     assert not any("fit_error.png" in note.text for note in result.notes)

@@ -13,12 +13,13 @@ from PIL import Image
 from meshwind.layup.layup import assess
 from meshwind.layup.lengths import bridges
 from meshwind.mandrel.mesh import Mesh
-from meshwind.output import driver
 from meshwind.output.maps import grid
 from meshwind.output.report import report
-from meshwind.output.scene import lifts, scene
 from meshwind.output.view import best_view
 from meshwind.output.words import quantity
+from meshwind.pictures import driver
+from meshwind.pictures.subject import subject
+from meshwind.pictures.winding_scene import lifts, winding_scene
 from meshwind.surface import shapes
 
 
@@ -76,7 +77,7 @@ def test_writing_alone_does_not_load_vtk() -> None:
         [
             sys.executable,
             "-c",
-            "import sys, meshwind.output, meshwind.output.driver, meshwind.output.folder\n"
+            "import sys, meshwind.output, meshwind.pictures.driver, meshwind.output.folder\n"
             "print(sorted({name.split('.')[0] for name in sys.modules} & {'vtkmodules', 'vtk', 'pyvista', 'meshio'}))",
         ],
         capture_output=True,
@@ -150,7 +151,7 @@ def test_picture_and_report_tell_the_same_figures(failed: list[int]) -> None:
         status[:] = 2
     layup = assess(replace(paths, status=status))
     figures = report(layup, Mesh(np.eye(3), np.array([[0, 1, 2]])), None, revolutions=0.5)
-    seen = scene(layup, "waist", "in")
+    seen = winding_scene(subject(layup, "waist", "in"))
     told = figures["paths"]
     assert f"bridged {100 * told['bridged_fraction']:.1f} %" in seen["subtitle"]
     assert f"length {quantity(told['length_total'], 'in')}" in seen["subtitle"]
@@ -162,7 +163,7 @@ def test_picture_and_report_tell_the_same_figures(failed: list[int]) -> None:
 
 def test_a_picture_without_a_unit_names_none(tmp_path: Path) -> None:
     layup = assess(bridged())
-    assert "in" not in scene(layup, "waist")["subtitle"].split()
+    assert "in" not in winding_scene(subject(layup, "waist"))["subtitle"].split()
     images = []
     for units in ("", "in"):
         driver.start_probe()
@@ -177,7 +178,7 @@ def test_a_picture_without_a_unit_names_none(tmp_path: Path) -> None:
 
 def test_thinning_keeps_the_ends_of_paths_and_bridges() -> None:
     layup = assess(bridged(particles=801))
-    seen = scene(layup, "waist")
+    seen = winding_scene(subject(layup, "waist"))
     assert seen["paths"].shape[1] <= 252
     assert np.array_equal(seen["paths"][:, [0, -1]], layup.paths.points[:, [0, -1]])
     ends = np.cumsum(seen["bridge_sizes"])

@@ -28,6 +28,21 @@ def display() -> Iterator[Callable[[str], None]]:
             bars.update(task, total=1, completed=1)
 
 
+@contextmanager
+def counter(what: str) -> Iterator[Callable[[str, int, int], None]]:
+    """Yield a function that is told of each thing done, how many are and how many there are: a bar on a terminal."""
+    if sys.stderr is None or not sys.stderr.isatty():
+        _plain(what)
+        yield lambda _name, _done, _total: None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True)) as bars:
+        task = bars.add_task(what, total=None)
+        yield lambda _name, done, total: bars.update(task, completed=done, total=total)
+
+
 def _plain(stage: str) -> None:
     """One line a stage; a run does not end because nobody can read its progress."""
     if sys.stderr is not None:

@@ -13,6 +13,13 @@ _BEND = 8.0
 """Weight of the bend: one that strays by 5% of the part's size outweighs the bridges."""
 
 
+NAMED = {
+    "x": (1.0, 0.0, 0.0), "-x": (-1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "-y": (0.0, -1.0, 0.0), "z": (0.0, 0.0, 1.0),
+    "-z": (0.0, 0.0, -1.0), "iso": (1.0, -1.0, 1.0),
+}  # fmt: skip
+"""Where to look from, by name."""
+
+
 @dataclass(frozen=True)
 class View:
     """A parallel projection: unit vectors towards the right, the top and the eye (3,), centre, extents.
@@ -79,6 +86,15 @@ def place_view(points: Floats, faces: Ints, eyes: Floats, merit: Floats) -> View
         return _framed(points, np.cross(up, eye), up, eye)
     right = along if np.cross(eye, along)[2] >= 0.0 else -along
     return _framed(points, right, np.cross(eye, right), eye)
+
+
+def named_view(points: Floats, name: str) -> View:
+    """Look at points (n, 3) from one of `NAMED`, z upward or, along z, y upward."""
+    eye = np.array(NAMED[name]) / np.linalg.norm(NAMED[name])
+    start = np.array([0.0, 1.0, 0.0]) if abs(eye[2]) > 0.9 else np.array([0.0, 0.0, 1.0])
+    up = start - (start @ eye) * eye
+    up /= np.linalg.norm(up)
+    return _framed(points, np.cross(up, eye), up, eye)
 
 
 def around(count: int) -> Floats:

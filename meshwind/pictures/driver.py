@@ -9,17 +9,22 @@ import io
 import os
 import subprocess
 import sys
-from collections.abc import Mapping
+import tempfile
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from os import PathLike
 from pathlib import Path
+from threading import Timer
 from typing import Any
 
 import numpy as np
 
 from meshwind.layup.layup import Layup
 from meshwind.mandrel.annulus import Annulus
-from meshwind.output.fit_scene import fit_scene
-from meshwind.output.scene import scene
+from meshwind.pictures.fit_scene import fit_scene
+from meshwind.pictures.page import Page
+from meshwind.pictures.subject import subject
+from meshwind.pictures.winding_scene import winding_scene
 from meshwind.surface.surface import Surface
 
 NO_DRIVER = (
@@ -27,7 +32,10 @@ NO_DRIVER = (
     "(Debian: apt-get install libegl1 libgl1-mesa-dri)"
 )
 _PATIENCE = 120.0
-"""Seconds after which a picture is given up."""
+"""Seconds without a sign of life after which a picture is given up."""
+
+Told = Callable[[str], None]
+"""Called with the name of each picture, or "frame", as it is done."""
 
 _waiting: "list[Painter]" = []
 """The renderer that was started and has not drawn yet; there is never more than one."""
@@ -41,13 +49,15 @@ class Painter:
         if sys.platform.startswith("linux"):
             environment.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
         script = Path(__file__).with_name("renderer.py")
+        # a file, not a pipe: what VTK complains of must not fill a pipe that nobody empties while it draws
+        self._complaint = tempfile.TemporaryFile()  # noqa: SIM115
         # -P keeps this folder off the process's import path, where its module names could shadow others.
         self._process = subprocess.Popen(
             [sys.executable, "-P", str(script)],
             env=environment,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
+            stderr=self._complaint,
         )
 
     def close(self) -> None:
@@ -55,8 +65,9 @@ class Painter:
         if self._process.returncode is None:
             self._process.kill()
             self._process.communicate()
+        self._complaint.close()
 
-    def paint(self, scenes: Mapping[Path, dict[str, Any]]) -> str:
+    def paint(self, scenes: Mapping[Path, dict[str, Any]], tell: Told | None = None) -> str:
         """Draw a scene into each file; return "" or one line that says which picture there is not, and why."""
         packed = io.BytesIO()
         arrays: dict[str, Any] = {}
@@ -65,19 +76,47 @@ class Painter:
             arrays |= {f"{number}/{key}": value for key, value in told.items()}
         np.savez(packed, **arrays)
         names = [picture.name for picture in scenes]
-        try:
-            said, complaint = self._process.communicate(packed.getvalue(), timeout=_PATIENCE)
-        except subprocess.TimeoutExpired:
-            self.close()
-            return f"no {' and '.join(names)}: drawing took more than {_PATIENCE:.0f} s"
+        words, late = self._work(packed.getvalue(), tell)
+        complaint = self._complained()
+        self.close()
+        missing = " and ".join(name for name in names if name not in words)
+        if late:
+            return f"no {missing}: drawing took more than {_PATIENCE:.0f} s"
         if self._process.returncode == 0:
             return ""
-        words = said.decode(errors="replace").split("\n")
-        if "ready" not in words and (self._process.returncode < 0 or b"OpenGL" in complaint):
+        if "ready" not in words and (self._process.returncode < 0 or "OpenGL" in complaint):
             return NO_DRIVER
-        last = complaint.decode(errors="replace").strip().splitlines()[-1:]
-        missing = " and ".join(name for name in names if name not in words)
+        last = complaint.strip().splitlines()[-1:]
         return f"no {missing or 'picture'}: {''.join(last) or 'the renderer stopped'}"
+
+    def _work(self, packed: bytes, tell: Told | None) -> tuple[list[str], bool]:
+        """Hand the scenes over and follow the process to its end: what it said, and whether it had to be ended."""
+        process, words, late = self._process, [], False
+        stdin, stdout = process.stdin, process.stdout
+        assert stdin is not None and stdout is not None
+        watch = Timer(_PATIENCE, process.kill)
+        watch.start()
+        try:
+            for send in (lambda: stdin.write(packed), stdin.close):
+                with suppress(BrokenPipeError):  # it has crashed: what it said and how it ended tell why
+                    send()
+            for line in stdout:
+                words.append(line.decode(errors="replace").strip())
+                watch.cancel()
+                watch = Timer(_PATIENCE, process.kill)
+                watch.start()
+                if tell is not None and words[-1] != "ready":
+                    tell(words[-1])
+            process.wait()
+        finally:
+            late = watch.finished.is_set()
+            watch.cancel()
+            stdout.close()
+        return words, late
+
+    def _complained(self) -> str:
+        self._complaint.seek(0)
+        return self._complaint.read().decode(errors="replace")
 
 
 def start_probe() -> None:
@@ -99,7 +138,7 @@ def draw(
 
     revolutions: what was asked for, for the title.
     """
-    return paint({Path(picture): scene(layup, name, units, revolutions)})
+    return paint({Path(picture): winding_scene(subject(layup, name, units, revolutions))})
 
 
 def draw_fit(picture: str | PathLike[str], surface: Surface, annulus: Annulus, name: str = "", units: str = "") -> str:
@@ -110,10 +149,11 @@ def draw_fit(picture: str | PathLike[str], surface: Surface, annulus: Annulus, n
     return paint({Path(picture): fit_scene(surface, annulus, name or annulus.mesh.name, units)})
 
 
-def paint(scenes: Mapping[Path, dict[str, Any]]) -> str:
+def paint(scenes: Mapping[Path, dict[str, Any]], page: Page | None = None, tell: Told | None = None) -> str:
     """Draw scenes into .png files by one process; return "" or one line that says what is not there, and why."""
     start_probe()
-    return _waiting.pop().paint(scenes)
+    looks = {} if page is None else page.told
+    return _waiting.pop().paint({picture: scene | looks for picture, scene in scenes.items()}, tell)
 
 
 atexit.register(stop)

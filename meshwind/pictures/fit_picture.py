@@ -6,25 +6,10 @@ import numpy as np
 import pyvista as pv
 from matplotlib import colormaps
 from matplotlib.colors import ListedColormap
-from PIL import Image
 
-from meshwind.output.canvas import (
-    BOTTOM,
-    FAINT,
-    INK,
-    LEFT,
-    PAPER,
-    RIGHT,
-    SIZE,
-    TOP,
-    aim,
-    axes,
-    colour_bar,
-    face,
-    ruler,
-    shot,
-    titled,
-)  # fmt: skip
+from meshwind.pictures import canvas
+from meshwind.pictures.canvas import FAINT, INK, PAPER, Box, face
+from meshwind.pictures.page import Page, page_of
 
 DISTANCES = ListedColormap(colormaps["magma_r"](np.linspace(0.04, 0.86, 256)))
 """Pale where surface and mesh agree, dark where they do not; even to the eye, in greys too."""
@@ -39,16 +24,16 @@ RING = 17
 LEGIBLE = 14.0
 """Pixels that an edge of the mesh must be long for a net of them not to hide all else."""
 
-Box = tuple[float, float, float, float]
-
 
 def draw(window: Any, scene: dict[str, Any]) -> Any:
     """Three views from one side, with words."""
-    image = Image.new("RGB", SIZE, PAPER)
-    pen = titled(image, scene)
-    boxes = cells(scene["extent"])
-    whole = max(float(scene["extent"][k]) / (boxes[0][2 + k] - (40, HEAD)[k]) for k in (0, 1))
-    near = 2.0 * float(scene["close_up"]) / min(boxes[2][2], boxes[2][3] - HEAD)
+    page = page_of(scene)
+    image = canvas.blank(page)
+    pen = canvas.titled(image, page, scene)
+    boxes = cells(page, scene["extent"])
+    inner = [below(page, box) for box in boxes]
+    whole = max(float(scene["extent"][k]) / (inner[0][2 + k] - (40, 0)[k] * page.unit) for k in (0, 1))
+    near = 2.0 * float(scene["close_up"]) / min(inner[2][2:])
     middle = scene["places"][0].mean(axis=0)
     views = (
         ("the mesh", ("mesh",), scene["centre"], whole, 0),
@@ -56,45 +41,48 @@ def draw(window: Any, scene: dict[str, Any]) -> Any:
         ("place 1, lost mesh in blue", ("surface", "lost"), middle, near, 1),
     )
     for k, (name, bodies, target, scale, side) in enumerate(views):
-        view(window, image, scene, boxes[k], bodies, target, scale)
-        pen.text(boxes[k][:2], name, INK, font=face(25))
+        view(window, image, scene, inner[k], bodies, target, scale)
+        pen.text(boxes[k][:2], name, INK, font=face(page, 25))
         seen = scene["seen"][:, side] | (np.arange(len(scene["places"])) == 0)
         shown = np.flatnonzero(seen) if k < 2 else np.array([0])
-        rings(pen, boxes[k], spots(scene, boxes[k], target, scale, scene["places"][shown, side]), shown + 1)
+        rings(pen, page, inner[k], spots(scene, inner[k], target, scale, scene["places"][shown, side]), shown + 1)
     legend(image, pen, scene)
     units = str(scene["units"])
-    ruler(pen, whole, units)
-    ruler(pen, near, f"{units} at place 1".strip(), 0.5 * (SIZE[0] + LEFT - RIGHT) + 60)
-    axes(pen, scene)
+    canvas.ruler(pen, page, whole, units)
+    half = 0.5 * (page.width / page.unit + canvas.LEFT - canvas.RIGHT) + 60
+    canvas.ruler(pen, page, near, f"{units} at place 1".strip(), half)
+    canvas.axes(pen, page, scene)
     return image
 
 
-def cells(extent: Any) -> list[Box]:
+def cells(page: Page, extent: Any) -> list[Box]:
     """Left, top, width and height of three boxes: in a row, in a column, or two over one; as the part is largest."""
-    width, height = SIZE[0] - LEFT - RIGHT, SIZE[1] - TOP - BOTTOM
-    w, h = (width - 2 * GAP) / 3, (height - 2 * GAP) / 3
-    row: list[Box] = [(LEFT + k * (w + GAP), TOP, w, height) for k in range(3)]
-    column: list[Box] = [(LEFT, TOP + k * (h + GAP), width, h) for k in range(3)]
-    w, h = (width - GAP) / 2, (height - GAP) / 2
-    over: list[Box] = [(LEFT, TOP, w, h), (LEFT + w + GAP, TOP, w, h), (LEFT, TOP + h + GAP, width, h)]
-    return max((row, column, over), key=lambda boxes: min(boxes[0][2] / extent[0], (boxes[0][3] - HEAD) / extent[1]))
+    left, top, width, height = canvas.room(page)
+    gap, head = page.unit * GAP, page.unit * HEAD
+    w, h = (width - 2 * gap) / 3, (height - 2 * gap) / 3
+    row: list[Box] = [(left + k * (w + gap), top, w, height) for k in range(3)]
+    column: list[Box] = [(left, top + k * (h + gap), width, h) for k in range(3)]
+    w, h = (width - gap) / 2, (height - gap) / 2
+    over: list[Box] = [(left, top, w, h), (left + w + gap, top, w, h), (left, top + h + gap, width, h)]
+    return max((row, column, over), key=lambda boxes: min(boxes[0][2] / extent[0], (boxes[0][3] - head) / extent[1]))
 
 
-def view(window: Any, image: Any, scene: Any, box: Any, bodies: Any, target: Any, scale: float) -> None:
+def below(page: Page, box: Box) -> Box:
+    """What its name leaves of a box."""
+    left, top, width, height = box
+    head = page.unit * HEAD
+    return left, top + head, width, height - head
+
+
+def view(window: Any, image: Any, scene: Any, box: Box, bodies: Any, target: Any, scale: float) -> None:
     """One view, its target in the middle of its box."""
+    page = page_of(scene)
     left, top, width, height = (round(x) for x in box)
     window.clear_actors()
     for body in bodies:
         add(window, scene, body, scale)
-    aim(window, scene, target, middle_of(box), scale)
-    frame = left, top + HEAD, left + width, top + height
-    image.paste(shot(window).crop(frame), frame[:2])
-
-
-def middle_of(box: Any) -> tuple[float, float]:
-    """The middle in pixels of a box below its name."""
-    left, top, width, height = box
-    return left + 0.5 * width, top + HEAD + 0.5 * (height - HEAD)
+    canvas.aim(window, page, scene, target, canvas.middle(box), scale)
+    image.paste(canvas.shot(window, page).crop((left, top, left + width, top + height)), (left, top))
 
 
 def add(window: Any, scene: Any, body: str, scale: float) -> None:
@@ -116,32 +104,37 @@ def add(window: Any, scene: Any, body: str, scale: float) -> None:
 def spots(scene: Any, box: Box, target: Any, scale: float, points: Any) -> Any:
     """Where points (k, 3) come to lie in a view, in pixels (k, 2)."""
     flat = (points - target) @ np.stack([scene["right"], -scene["up"]], axis=1) / scale
-    return flat + np.array(middle_of(box))
+    return flat + np.array(canvas.middle(box))
 
 
-def rings(pen: Any, box: Box, at: Any, numbers: Any) -> None:
+def rings(pen: Any, page: Page, box: Box, at: Any, numbers: Any) -> None:
     """A ring about each place in a view, then the numbers beside them: to the left where the view ends."""
+    s = page.unit
     for x, y in at:
         for width, colour in ((7, PAPER), (3, MARK)):
-            reach = RING + width / 2
-            pen.ellipse((x - reach, y - reach, x + reach, y + reach), outline=colour, width=width)
-    look: dict[str, Any] = {"font": face(28), "anchor": "mm", "stroke_width": 4, "stroke_fill": PAPER}
+            reach = s * (RING + width / 2)
+            pen.ellipse((x - reach, y - reach, x + reach, y + reach), outline=colour, width=max(round(s * width), 1))
+    look: dict[str, Any] = {"font": face(page, 28), "anchor": "mm", "stroke_width": round(4 * s), "stroke_fill": PAPER}
     for (x, y), number in zip(at, numbers, strict=True):
-        side = -1 if x + 2 * RING + 16 > box[0] + box[2] else 1
-        pen.text((x + side * (RING + 16), y - RING - 8), str(number), MARK, **look)
+        side = -1 if x + s * (2 * RING + 16) > box[0] + box[2] else 1
+        pen.text((x + side * s * (RING + 16), y - s * (RING + 8)), str(number), MARK, **look)
 
 
 def legend(image: Any, pen: Any, scene: Any) -> None:
     """The places by number with their distance, and the scale of colours."""
-    x, y = SIZE[0] - RIGHT + 20, TOP + 6
+    page = page_of(scene)
+    s = page.unit
+    x, y = canvas.legend_left(page), s * (canvas.TOP + 6)
     for k, away in enumerate(scene["away"]):
-        hidden = not scene["seen"][k].any()
-        pen.text((x, y + 38 * k), f"{k + 1}", MARK, font=face(25))
-        pen.text((x + 30, y + 38 * k + 2), told(scene, float(away)), FAINT if hidden else INK, font=face(21))
+        shade = INK if scene["seen"][k].any() else FAINT
+        pen.text((x, y + s * 38 * k), f"{k + 1}", MARK, font=face(page, 25))
+        pen.text((x + s * 30, y + s * (38 * k + 2)), told(scene, float(away)), shade, font=face(page, 21))
     if not scene["seen"].any(axis=1).all():
-        pen.text((x, y + 38 * len(scene["away"]) + 2), "grey: out of sight", FAINT, font=face(21))
+        last = y + s * (38 * len(scene["away"]) + 2)
+        pen.text((x, last), "grey: out of sight", FAINT, font=face(page, 21))
     units = str(scene["units"])
-    colour_bar(image, pen, DISTANCES, ["distance" + (f" in {units}" if units else ""), "(% of the part)"], marks(scene))
+    words = ["distance" + (f" in {units}" if units else ""), "(% of the part)"]
+    canvas.colour_bar(image, pen, page, DISTANCES, words, marks(scene))
 
 
 def marks(scene: Any) -> list[tuple[float, str]]:

@@ -1,0 +1,1 @@
+"""Pictures of a winding, drawn off the screen."""

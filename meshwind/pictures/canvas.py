@@ -1,0 +1,192 @@
+"""What the pictures share: colours, typeface, light, legend, ruler and axes."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+from matplotlib import get_data_path
+from PIL import Image, ImageDraw, ImageFont
+
+from meshwind.output.looks import round_below
+from meshwind.pictures.page import DESIGNED, Page
+
+LEFT, RIGHT, TOP, BOTTOM = 60, 285, 150, 120
+"""Margins around the part, for a page of 1600 x 1200: title above, ruler below, legend to the right."""
+PAPER, INK, FAINT = "#ffffff", "#1c1c1c", "#5a5a5a"
+PART, INSIDE = "#e6e2da", "#8f8a82"
+_BAR_TOP, _BAR_BOTTOM, _BAR_WIDTH = 470, 930, 34
+_ANGLE = np.radians(15.0)
+"""Half the angle of view in perspective."""
+
+Box = tuple[float, float, float, float]
+"""Left, top, width and height in pixels."""
+
+
+def plotter() -> Any:
+    """An empty window off the screen, its graphics proved to work."""
+    window = pv.Plotter(off_screen=True, window_size=list(DESIGNED), lighting="none")
+    window.add_mesh(pv.Sphere(theta_resolution=4, phi_resolution=4))
+    window.enable_anti_aliasing("msaa", multi_samples=4)
+    window.show(auto_close=False)
+    return window
+
+
+def room(page: Page) -> Box:
+    """The box that the part is drawn in."""
+    s = page.unit
+    return s * LEFT, s * TOP, page.width - s * (LEFT + RIGHT), page.height - s * (TOP + BOTTOM)
+
+
+def legend_left(page: Page) -> float:
+    """Where words to the right of the part begin."""
+    return page.width - page.unit * (RIGHT - 20)
+
+
+def fitting(page: Page, scene: dict[str, Any]) -> float:
+    """Mesh units a pixel, so that the part fills the room for it."""
+    _, _, width, height = room(page)
+    return float(max(scene["extent"][0] / width, scene["extent"][1] / height))
+
+
+def middle(box: Box) -> tuple[float, float]:
+    """The middle of a box."""
+    return box[0] + 0.5 * box[2], box[1] + 0.5 * box[3]
+
+
+def add_smooth(window: Any, mesh: Any, **look: Any) -> None:
+    """Add a mesh that brings its normals: `smooth_shading` would compute them anew, a third of the time."""
+    actor = window.add_mesh(mesh, render=False, **look)
+    actor.prop.interpolation = "Phong"
+
+
+def aim(window: Any, page: Page, scene: dict[str, Any], target: Any, at: tuple[float, float], scale: float) -> None:
+    """Look at a target (3,) so that it comes to a place in pixels, at so many mesh units a pixel."""
+    right, up, eye = scene["right"], scene["up"], scene["eye"]
+    off = 0.5 * page.width - at[0], at[1] - 0.5 * page.height
+    focus = target + scale * (off[0] * right + off[1] * up)
+    half = 0.5 * page.height * scale
+    reach = 4.0 * float(np.linalg.norm(scene["extent"]))
+    if page.perspective:  # what is nearest to the eye comes out as large as in parallel, so that nothing is cut off
+        reach = half / np.tan(_ANGLE) + 0.5 * float(np.ptp(scene["points"] @ eye))
+    window.camera_position = [focus + reach * eye, focus, up]
+    if page.perspective:
+        window.disable_parallel_projection()
+        window.camera.view_angle = float(np.degrees(2.0 * _ANGLE))
+    else:
+        window.enable_parallel_projection()
+        window.parallel_scale = half
+    window.set_background(PAPER)
+    window.remove_all_lights()
+    for x, y, strength in ((-0.6, 0.6, 0.68), (0.9, 0.0, 0.35)):  # a key from the upper left, a fill
+        light = pv.Light(position=focus + reach * (eye + x * right + y * up), focal_point=focus, intensity=strength)
+        light.positional = False
+        window.add_light(light)
+    window.reset_camera_clipping_range()
+
+
+def shot(window: Any, page: Page) -> Any:
+    """The picture as it stands."""
+    size = [page.width, page.height]
+    if list(window.window_size) != size:
+        window.window_size = size
+    window.render()
+    return Image.fromarray(window.screenshot(return_img=True, transparent_background=page.transparent))
+
+
+def blank(page: Page) -> Any:
+    """An empty picture."""
+    mode, colour = ("RGBA", f"{PAPER}00") if page.transparent else ("RGB", PAPER)
+    return Image.new(mode, (page.width, page.height), colour)
+
+
+def titled(image: Any, page: Page, scene: dict[str, Any]) -> Any:
+    """A pen for the image, its title and subtitle written, small enough for the page."""
+    drawn, s = pen(image), page.unit
+    for words, top, size, colour in ((str(scene["title"]), 36, 38, INK), (str(scene["subtitle"]), 88, 25, FAINT)):
+        wide = drawn.textlength(words, font=face(page, size)) / (page.width - 2.0 * s * LEFT)
+        drawn.text((s * LEFT, s * top), words, colour, font=face(page, size / max(wide, 1.0)))
+    return drawn
+
+
+def pen(image: Any) -> Any:
+    """A pen for an image."""
+    return ImageDraw.Draw(image)
+
+
+def face(page: Page, size: float) -> Any:
+    """The typeface that comes with Matplotlib, so that the picture is the same on every machine."""
+    return ImageFont.truetype(str(Path(get_data_path(), "fonts", "ttf", "DejaVuSans.ttf")), max(size * page.unit, 1.0))
+
+
+def legend(pen: Any, page: Page, rows: list[tuple[str, str]]) -> None:
+    """Which colour is what: a stroke and its words, a row each."""
+    s = page.unit
+    x, y = legend_left(page), s * (TOP + 40)
+    for k, (colour, words) in enumerate(rows):
+        pen.rectangle((x, y + s * (44 * k + 10), x + s * 44, y + s * (44 * k + 17)), fill=colour)
+        pen.text((x + s * 58, y + s * 44 * k), words, INK, font=face(page, 25))
+
+
+def colour_bar(
+    image: Any, pen: Any, page: Page, colours: Any, words: list[str], marks: list[tuple[float, str]]
+) -> None:
+    """A scale of colours with lines of words above it and marks at shares of its height, 0 below."""
+    s = page.unit
+    x, width, top = legend_left(page), s * _BAR_WIDTH, s * _BAR_TOP
+    bottom = max(page.height - s * (DESIGNED[1] - _BAR_BOTTOM), top + 40.0 * s)
+    shade = colours(np.linspace(1.0, 0.0, round(bottom) - round(top)))[:, None, :3]
+    bar = np.repeat((255 * shade).astype(np.uint8), round(width), axis=1)
+    image.paste(Image.fromarray(bar), (round(x), round(top)))
+    pen.rectangle((round(x), round(top), round(x) + round(width), round(bottom)), outline=INK)
+    for k, line in enumerate(words):
+        pen.text((x, top - s * (50 + 34 * (len(words) - 1 - k))), line, INK, font=face(page, 25))
+    for share, told in marks:
+        y = bottom - (bottom - top) * share
+        pen.line((x + width, y, x + width + 8 * s, y), fill=INK)
+        pen.text((x + width + 16 * s, y), told, INK, font=face(page, 21), anchor="lm")
+
+
+def ruler(
+    pen: Any, page: Page, scale: float, units: str, left: float = LEFT, base: float = 52.0, most: float = 320.0
+) -> None:
+    """A bar of a round length, at most so long and so far from the page's left and lower rims, if one is wished.
+
+    scale: mesh units a pixel; left, base and most for a page of 1600 x 1200.
+    """
+    if not page.ruled:
+        return
+    s = page.unit
+    x, y = s * left, page.height - s * base
+    length = round_below(most * s * scale)
+    reach = length / scale
+    pen.rectangle((x, y - 4 * s, x + reach, y + 4 * s), fill=INK)
+    pen.text((x + reach + 16 * s, y), f"{length:g} {units}".strip(), INK, font=face(page, 25), anchor="lm")
+
+
+def axes(pen: Any, page: Page, scene: dict[str, Any]) -> None:
+    """The model's axes as they point on the picture, the one towards the eye drawn last."""
+    toward, s = scene["eye"], page.unit
+    centre, reach = np.array([page.width - s * (RIGHT - 110.0), page.height - s * 110.0]), 62.0 * s
+    flat = np.stack([scene["right"], -scene["up"]], axis=1)
+    labels: list[Any] = []
+    for axis in np.argsort(toward):
+        tip = centre + reach * flat[axis]
+        colour = INK if toward[axis] > -0.2 else FAINT
+        pen.line((*centre, *tip), fill=colour, width=max(round(4 * s), 1))
+        # an axis that points at the eye is all but a dot: its name goes where the other two are not
+        plain = bool(np.linalg.norm(flat[axis]) > 0.2)
+        away = flat[axis] if plain else -flat.sum(axis=0)
+        away = away / max(float(np.linalg.norm(away)), 1e-300)
+        label = (tip if plain else centre) + 22.0 * s * away
+        if any(np.linalg.norm(label - other) < 24.0 * s for other in labels):  # two axes that look like one
+            label = label + 24.0 * s * np.array([-away[1], away[0]])
+        labels.append(label)
+        pen.text(tuple(label), "xyz"[axis], colour, font=face(page, 25), anchor="mm")
+
+
+def note(pen: Any, page: Page, lines: list[str]) -> None:
+    """A few words where the legend stands on other pictures."""
+    s = page.unit
+    for k, line in enumerate(lines):
+        pen.text((legend_left(page), s * (TOP + 40 + 32 * k)), line, INK, font=face(page, 23))

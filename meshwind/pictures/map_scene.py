@@ -1,0 +1,82 @@
+"""What is to be seen on the pictures of a map: coverage, windability, distance to the mesh."""
+
+from typing import Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from meshwind.cast import Floats, Ints
+from meshwind.layup.windability import CONCAVE, CONVEX, SADDLE
+from meshwind.output.looks import MAPS
+from meshwind.output.words import quantity
+from meshwind.pictures.subject import Subject
+
+_GLYPHS = 26
+"""Glyphs along the longer side of the picture."""
+_ALL_BUT = 80.0
+"""Where a fibre presses up to so many degrees to both sides, a glyph would be all but a full circle."""
+
+
+def map_scene(of: Subject, name: str, title: str, subtitle: str) -> dict[str, Any]:
+    """The surface coloured by the map of this name."""
+    values = of.maps[name].astype(np.float64)
+    scale = MAPS[name].scale(values, of.units)
+    return of.framed("map", f"{of.name}: {title}", subtitle) | scale.told | {"shares": scale.shares(values)}
+
+
+def coverage_scene(of: Subject) -> dict[str, Any]:
+    """How many layers of fibre lie over each place."""
+    bands = of.layup.bands
+    shares = [("bare", bands.bare), ("once", bands.share(1)), ("twice", bands.share(2))]
+    more = max(1.0 - sum(share for _, share in shares), 0.0)
+    told = ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in [*shares, ("more often", more)])
+    width = quantity(bands.width, of.units, 3)
+    return map_scene(of, "coverage", "coverage", f"band {width} wide; area covered: {told}")
+
+
+def fit_map_scene(of: Subject) -> dict[str, Any]:
+    """How far the surface lies from the mesh's facets, on a logarithmic scale."""
+    away = of.maps["fit_error"]
+    told = [("median", float(np.median(away))), ("99 % below", float(np.quantile(away, 0.99))), ("largest", away.max())]
+    subtitle = "  ·  ".join(f"{word} {quantity(float(value), of.units, 2)}" for word, value in told)
+    return map_scene(of, "fit_error", "distance of the surface to the mesh's facets", subtitle)
+
+
+def windability_scene(of: Subject) -> dict[str, Any]:
+    """In what share of the directions a taut fibre presses, with a fan of those directions where not all do."""
+    kind, area = of.maps["class"], _areas(of)
+    share = {each: 100.0 * float(area[kind == each].sum() / area.sum()) for each in (CONVEX, SADDLE, CONCAVE)}
+    subtitle = (
+        f"a fibre presses in every direction on {share[CONVEX]:.0f} % of the area, in some on {share[SADDLE]:.0f} %, "
+        f"in none on {share[CONCAVE]:.0f} %"
+    )
+    seen = map_scene(of, "windability", "where a taut fibre presses", subtitle)
+    apart = max(of.view.width, of.view.height) / _GLYPHS
+    some = np.flatnonzero((kind == SADDLE) & (of.maps["press_reach"] < _ALL_BUT))
+    chosen = some[spread_out(of.points[some], apart)]
+    return seen | {
+        "glyph_points": of.points[chosen],
+        "glyph_normals": of.normals[chosen],
+        "glyph_directions": of.maps["press_direction"][chosen],
+        "glyph_reach": np.radians(of.maps["press_reach"][chosen]),
+        "glyph_size": 0.42 * apart,
+    }
+
+
+def spread_out(points: Floats, apart: float) -> Ints:
+    """Numbers of points (n, 3) no two of which are closer than a distance, and none of which can be added."""
+    if not len(points):
+        return np.zeros(0, dtype=np.int64)
+    tree, free, chosen = cKDTree(points), np.ones(len(points), dtype=bool), []
+    for k in range(len(points)):
+        if free[k]:
+            chosen.append(k)
+            free[tree.query_ball_point(points[k], apart)] = False
+    return np.array(chosen)
+
+
+def _areas(of: Subject) -> Floats:
+    """The area that each of the surface's points stands for."""
+    corner = of.points[of.quads]
+    area = 0.5 * np.linalg.norm(np.cross(corner[:, 2] - corner[:, 0], corner[:, 3] - corner[:, 1]), axis=1)
+    return np.bincount(of.quads.ravel(), np.repeat(0.25 * area, 4), len(of.points)).astype(np.float64)

@@ -1,0 +1,65 @@
+"""The page that a picture is drawn on: its size in pixels and what may be asked of it."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from meshwind.errors import BadInputError
+
+LEAST, MOST = 320, 8192
+"""Fewest pixels of a side that words can be read on, most that graphics can be trusted to draw."""
+DESIGNED = 1600, 1200
+"""The size that all measures of the drawing code are told for; other pages scale them."""
+
+
+@dataclass(frozen=True)
+class Page:
+    """How pictures are drawn: width and height in pixels, with or without paper, in parallel or in perspective.
+
+    view: "auto" for the part's best side, or one of `view.NAMED`.  scale_bar: None for one with parallel projection
+    only, as lengths in perspective are true at the middle of the part alone.
+    Raises BadInputError for a size that cannot be drawn.
+    """
+
+    width: int = DESIGNED[0]
+    height: int = DESIGNED[1]
+    transparent: bool = False
+    perspective: bool = False
+    scale_bar: bool | None = None
+    view: str = "auto"
+
+    def __post_init__(self) -> None:
+        if not (LEAST <= self.width <= MOST and LEAST <= self.height <= MOST):
+            raise BadInputError(f"size is {self.width}x{self.height}; give two numbers of pixels, {LEAST} to {MOST}")
+
+    @property
+    def unit(self) -> float:
+        """Pixels for one of the page of 1600 x 1200."""
+        return min(self.width / DESIGNED[0], self.height / DESIGNED[1])
+
+    @property
+    def ruled(self) -> bool:
+        """Whether there is a scale bar."""
+        return not self.perspective if self.scale_bar is None else self.scale_bar
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """What the process that draws has to know, as arrays."""
+        return {"page": np.array([self.width, self.height, self.transparent, self.perspective, self.ruled])}
+
+
+def page_of(scene: dict[str, Any]) -> Page:
+    """The page of a scene that came with `Page.told`, else the usual one."""
+    if "page" not in scene:
+        return Page()
+    width, height, transparent, perspective, ruled = (int(value) for value in scene["page"])
+    return Page(width, height, bool(transparent), bool(perspective), bool(ruled))
+
+
+def parse_size(text: str) -> tuple[int, int]:
+    """Width and height in pixels from words as in 1920x1080; raises BadInputError where they are none."""
+    sides = text.lower().replace("×", "x").split("x")
+    if len(sides) != 2 or not all(side.strip().isdecimal() for side in sides):
+        raise BadInputError(f"size is {text!r}; give width and height in pixels, as in 1920x1080")
+    return int(sides[0]), int(sides[1])

@@ -1,0 +1,55 @@
+"""redesign.png: a part before and after it was changed, the second coloured by how far it moved."""
+
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+
+from meshwind.pictures import canvas, map_picture
+from meshwind.pictures.page import Page, page_of
+
+_GAP, _HEAD = 24, 44
+"""Pixels between the views, and above each for its name."""
+
+
+def draw(window: Any, scene: dict[str, Any]) -> Any:
+    """The two views from one side, with words."""
+    page = page_of(scene)
+    image = canvas.blank(page)
+    pen = canvas.titled(image, page, scene)
+    boxes = halves(page, scene["extent"])
+    head = page.unit * _HEAD
+    scale = max(float(scene["extent"][k]) / (boxes[0][2 + k] - (0.0, head)[k]) for k in (0, 1))
+    for box, name in zip(boxes, ("before", "after"), strict=True):
+        left, top, width, height = box[0], box[1] + head, box[2], box[3] - head
+        window.clear_actors()
+        add(window, scene, name)
+        canvas.aim(window, page, scene, scene["centre"], canvas.middle((left, top, width, height)), scale)
+        edges = round(left), round(top), round(left + width), round(top + height)
+        image.paste(canvas.shot(window, page).crop(edges), edges[:2])
+        pen.text(box[:2], name, canvas.INK, font=canvas.face(page, 25))
+    map_picture.bar(image, pen, scene)
+    canvas.ruler(pen, page, scale, str(scene["units"]))
+    canvas.axes(pen, page, scene)
+    return image
+
+
+def halves(page: Page, extent: Any) -> list[canvas.Box]:
+    """Two boxes side by side or one above the other, as the part comes out larger."""
+    left, top, width, height = canvas.room(page)
+    gap, head = page.unit * _GAP, page.unit * _HEAD
+    w, h = (width - gap) / 2, (height - gap) / 2
+    beside: list[canvas.Box] = [(left, top, w, height), (left + w + gap, top, w, height)]
+    above: list[canvas.Box] = [(left, top, width, h), (left, top + h + gap, width, h)]
+    return max((beside, above), key=lambda boxes: min(boxes[0][2] / extent[0], (boxes[0][3] - head) / extent[1]))
+
+
+def add(window: Any, scene: dict[str, Any], name: str) -> None:
+    """The part before, plain, or after, coloured."""
+    part = pv.PolyData.from_regular_faces(scene[name], scene["faces"])
+    part.point_data["shares"] = np.asarray(scene["shares"])
+    look: dict[str, Any] = {"color": canvas.PART, "ambient": 0.3, "diffuse": 0.8}
+    if name == "after":
+        colours = map_picture.named(str(scene["colours"]))
+        look = {"scalars": "shares", "cmap": colours, "clim": [0.0, 1.0], "ambient": 0.55, "diffuse": 0.5}
+    window.add_mesh(part, show_scalar_bar=False, render=False, **look)

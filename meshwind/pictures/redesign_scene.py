@@ -1,0 +1,82 @@
+"""What is to be seen on redesign.png: a part before and after it was changed, and by how much."""
+
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import igl
+import numpy as np
+
+from meshwind.cast import Floats, Ints, floats, ints
+from meshwind.errors import BadInputError
+from meshwind.export.vtk_reading import read_faces
+from meshwind.output.looks import DIVERGING, Look, both_ways
+from meshwind.output.view import around, named_view, place_view
+from meshwind.output.words import quantity
+from meshwind.pictures import driver
+from meshwind.pictures.page import Page
+
+EDITED = "edited.vtu"
+"""A redesign's folder is one that holds this: the edited mesh as triangles, with the point data `displacement`."""
+_MOVES = Look("displacement", "moved outward\n(red) or\ninward (blue)", "{u}", DIVERGING, both_ways)
+_EYES = 240
+
+
+def draw_redesign(
+    picture: str | PathLike[str],
+    before: Floats,
+    moves: Floats,
+    faces: Ints,
+    name: str,
+    units: str = "",
+    page: Page | None = None,
+) -> str:
+    """Draw a mesh before and after a redesign into a .png; return "" or one line that says why there is no picture.
+
+    before (n, 3): the vertices as they were; moves (n, 3): how far each is moved; faces (m, 3), outward; lengths in
+    the mesh's units, which are named for the legend.  Raises BadInputError where the arrays do not belong together.
+    """
+    return driver.paint({Path(picture): redesign_scene(before, moves, faces, name, units)}, page)
+
+
+def redesign_in(folder: Path, name: str, units: str = "", seen_from: str = "auto") -> dict[str, Any]:
+    """The scene of a redesign's folder; raises BadInputError where its edited mesh is none."""
+    read = read_faces(folder / EDITED)
+    moves = read.point_data.get("displacement")
+    if moves is None or not len(read.triangles):
+        raise BadInputError(f"{folder / EDITED} holds no triangles with a displacement; run `meshwind redesign` again")
+    return redesign_scene(read.points - moves, moves, read.triangles, name, units, seen_from)
+
+
+def redesign_scene(
+    before: Floats, moves: Floats, faces: Ints, name: str, units: str = "", seen_from: str = "auto"
+) -> dict[str, Any]:
+    """The mesh before and after, seen from where most of the change is in sight, coloured by its outward part."""
+    vertices, moved = floats(before, "before", -1, 3), floats(moves, "moves", len(before), 3)
+    corners = ints(faces, "faces", -1, 3)
+    normals = np.asarray(igl.per_vertex_normals(np.array(vertices), np.array(corners)))
+    outward = (moved * normals).sum(axis=1)
+    size = np.linalg.norm(moved, axis=1)
+    scale = _MOVES.scale(outward, units)
+    eyes = around(_EYES)
+    shown = np.maximum(eyes @ normals.T, 0.0) @ size
+    merit = 2.0 * shown / max(float(shown.max()), 1e-300) - 1e-3 * eyes[:, 1]
+    both = np.concatenate([vertices, vertices + moved])
+    view = place_view(vertices, corners, eyes, merit) if seen_from == "auto" else named_view(both, seen_from)
+    changed = 100.0 * float((size > 0.01 * max(float(size.max()), 1e-300)).mean())
+    return {
+        "kind": "redesign",
+        "title": f"{name}: before and after the redesign",
+        "subtitle": f"vertices move by up to {quantity(float(size.max()), units, 3)}; {changed:.0f} % of them move",
+        "units": units,
+        "points": both,
+        "before": vertices,
+        "after": vertices + moved,
+        "faces": corners,
+        "shares": scale.shares(outward),
+        "right": view.right,
+        "up": view.up,
+        "eye": view.eye,
+        "centre": view.centre,
+        "extent": np.array([view.width, view.height]),
+    } | scale.told

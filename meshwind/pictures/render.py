@@ -1,0 +1,123 @@
+"""Draw a results folder: all that is needed is in it."""
+
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from meshwind.errors import BadInputError
+from meshwind.export.place import beside
+from meshwind.export.results import read_results
+from meshwind.output.view import NAMED
+from meshwind.pictures import driver
+from meshwind.pictures.animation_scene import animation_scene
+from meshwind.pictures.encoder import encoder
+from meshwind.pictures.kinds import ANIMATION, MOVIES, PICTURES, REDESIGN, SHEET, scenes_of
+from meshwind.pictures.page import Page
+from meshwind.pictures.redesign_scene import EDITED, redesign_in
+from meshwind.pictures.sheet import cell, write_sheet
+from meshwind.pictures.subject import Subject, subject_of
+
+Scenes = dict[str, dict[str, Any]]
+Tell = Callable[[str, int, int], None]
+"""Called with what was drawn, how many pictures and frames are done, and how many there are."""
+
+
+@dataclass(frozen=True)
+class Rendered:
+    """The files that were drawn."""
+
+    files: tuple[Path, ...]
+
+
+def render(
+    folder: str | PathLike[str],
+    only: Sequence[str] = (),
+    page: Page | None = None,
+    animate: Sequence[str] = (),
+    seconds: float = 5.0,
+    out: str | PathLike[str] | None = None,
+    tell: Tell | None = None,
+) -> Rendered:
+    """Draw what a run or a redesign left in a folder, into `out`, by default the folder itself.
+
+    only: names of `PICTURES`, "redesign" or "sheet"; without them all there are, or none where there is a movie to
+    draw.  animate: "gif", "mp4"; seconds: how long the fibres take to be laid in it.  All files appear, or none.
+    Raises BadInputError for what is not known, for a folder without results, and where this machine cannot draw.
+    """
+    paper = page or Page()
+    _check(only, animate, paper)
+    movie = encoder() if "mp4" in animate else ""
+    source, target = Path(folder), Path(folder if out is None else out)
+    driver.start_probe()
+    try:
+        of = _subject(source, paper)
+        scenes = _scenes(source, of, paper)
+        lacking = [name for name in only if name != SHEET and name not in scenes]
+        if lacking or (animate and of is None):
+            raise BadInputError(f"{source} holds nothing to draw {(lacking or list(animate))[0]} from; leave it out")
+        with beside(target) as staging, tempfile.TemporaryDirectory() as cells:
+            work = placed(scenes, only or (() if animate else (*scenes, SHEET)), paper, staging, Path(cells))
+            pictures = list(work)
+            if animate and of is not None:
+                files = [staging / f"{ANIMATION}.{kind}" for kind in dict.fromkeys(animate)]
+                work[files[0]] = animation_scene(of, seconds, files, movie) | replace(paper, transparent=False).told
+            _paint(work, tell)
+            if SHEET in only or not (only or animate):
+                write_sheet(staging / f"{SHEET}.png", pictures, paper.transparent)
+            names = sorted(path.name for path in staging.iterdir())
+    finally:
+        driver.stop()
+    return Rendered(tuple(target / name for name in names))
+
+
+def placed(scenes: Scenes, names: Sequence[str], page: Page, out: Path, cells: Path) -> dict[Path, dict[str, Any]]:
+    """Where to draw each scene: those of the names into `out` and, for a sheet, all others into `cells`, small."""
+    work = {}
+    for name, scene in scenes.items():
+        if name in names:
+            work[out / f"{name}.png"] = scene | page.told
+        elif SHEET in names:
+            work[cells / f"{name}.png"] = scene | cell(page).told
+    return work
+
+
+def _check(only: Sequence[str], animate: Sequence[str], page: Page) -> None:
+    views = "auto", *NAMED
+    choices = ("picture", only, (*PICTURES, REDESIGN, SHEET)), ("movie", animate, MOVIES), ("view", [page.view], views)
+    for what, names, known in choices:
+        strange = [name for name in names if name not in known]
+        if strange:
+            raise BadInputError(f"{what} {strange[0]!r} is not known; give {', '.join(known)}")
+
+
+def _subject(source: Path, page: Page) -> Subject | None:
+    """The winding in a folder; None where there is but a redesign."""
+    if (source / EDITED).is_file() and not (source / "paths.vtp").is_file():
+        return None
+    return subject_of(read_results(source), page.view)
+
+
+def _scenes(source: Path, of: Subject | None, page: Page) -> Scenes:
+    scenes = {} if of is None else scenes_of(of)
+    if (source / EDITED).is_file():
+        name, units = (source.name, "") if of is None else (of.name, of.units)
+        scenes[REDESIGN] = redesign_in(source, name, units, page.view)
+    return scenes
+
+
+def _paint(work: dict[Path, dict[str, Any]], tell: Tell | None) -> None:
+    total = sum(int(scene.get("frames", 0)) + 1 for scene in work.values())
+    done = 0
+
+    def count(word: str) -> None:
+        nonlocal done
+        done += 1
+        if tell is not None:
+            tell(word, done, total)
+
+    missing = driver.paint(work, tell=count)
+    if missing:
+        raise BadInputError(missing)

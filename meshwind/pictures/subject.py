@@ -1,0 +1,127 @@
+"""What the pictures of a winding are of: its layup, the maps on its surface, and the side to look at it from."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshwind.cast import Bools, Floats, Ints
+from meshwind.export.results import Results
+from meshwind.export.vtk_reading import read_faces
+from meshwind.layup.layup import Layup
+from meshwind.layup.lengths import lengths
+from meshwind.output.figures import PathFigures, path_figures
+from meshwind.output.maps import grid
+from meshwind.output.view import View, best_view, named_view
+from meshwind.path.paths import Paths, Status
+
+_MOST_POINTS = 250
+"""Points of a path that are drawn; more do not show."""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A layup and its surface as outward quads (q, 4) between points (k, 3) with normals (k, 3) and maps (k,).
+
+    name and units of the part for titles and legends; revolutions: what was asked for, None if that is not known.
+    """
+
+    layup: Layup
+    points: Floats
+    quads: Ints
+    normals: Floats
+    name: str
+    units: str = ""
+    revolutions: float | None = None
+    maps: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+    seen_from: str = "auto"
+
+    @property
+    def paths(self) -> Paths:
+        """All paths."""
+        return self.layup.paths
+
+    @property
+    def taut(self) -> Bools:
+        """Which paths (p,) came to rest."""
+        return np.asarray(self.paths.status == Status.CONVERGED)
+
+    @cached_property
+    def figures(self) -> PathFigures:
+        """The report's figures of the paths."""
+        return path_figures(self.paths)
+
+    @cached_property
+    def view(self) -> View:
+        """Square onto the long side that shows most of the part, its bend and its bridges, or the side asked for."""
+        paths = self.paths
+        if self.seen_from != "auto":
+            return named_view(np.concatenate([self.points, paths.points.reshape(-1, 3)]), self.seen_from)
+        v = np.linspace(0.0, 1.0, 65)
+        uv = np.stack(np.meshgrid(np.arange(32) / 32, v, indexing="ij"), axis=2).reshape(-1, 2)
+        axis = paths.surface.points(uv).reshape(32, 65, 3).mean(axis=0)
+        marks = paths.points.reshape(-1, 3), paths.normal.reshape(-1, 3), paths.gap.ravel()
+        return best_view(self.points, self.quads, axis, *marks)
+
+    @cached_property
+    def kept(self) -> Ints:
+        """Numbers of the particles that are drawn: evenly, the last among them."""
+        count = self.paths.gap.shape[1]
+        return np.unique(np.r_[np.arange(0, count, self.stride), count - 1])
+
+    @property
+    def stride(self) -> int:
+        """Every so many-th particle is drawn."""
+        return -(-self.paths.gap.shape[1] // _MOST_POINTS)
+
+    @property
+    def pitch(self) -> float:
+        """Mean distance from fibre to fibre of a family, in mesh units."""
+        each = lengths(self.paths).length.sum() / len(np.unique(self.paths.family))
+        return float(self.layup.coverage.area.sum() / max(each, 1e-300))
+
+    def framed(self, kind: str, title: str, subtitle: str) -> dict[str, Any]:
+        """What every scene of the part holds: words, surface, view."""
+        view = self.view
+        return {
+            "kind": kind,
+            "title": title,
+            "subtitle": subtitle,
+            "units": self.units,
+            "points": self.points,
+            "quads": self.quads,
+            "normals": self.normals,
+            "pitch": self.pitch,
+            "right": view.right,
+            "up": view.up,
+            "eye": view.eye,
+            "centre": view.centre,
+            "extent": np.array([view.width, view.height]),
+        }
+
+
+def subject(layup: Layup, name: str, units: str = "", revolutions: float | None = None) -> Subject:
+    """A layup to draw, without maps."""
+    on = grid(layup.paths.surface)
+    normals = np.cross(on.frames[:, 1], on.frames[:, 2])
+    return Subject(layup, on.points, on.quads, normals, name, units, revolutions)
+
+
+def subject_in(
+    folder: Path, layup: Layup, name: str, units: str = "", revolutions: float | None = None, seen_from: str = "auto"
+) -> Subject:
+    """A layup to draw with the maps of the surface.vtu in a folder; raises BadInputError where there is none."""
+    skin = read_faces(folder / "surface.vtu")
+    maps = dict(skin.point_data)
+    normals = maps.pop("normal")
+    return Subject(layup, skin.points, skin.quads, normals, name, units, revolutions, maps, seen_from)
+
+
+def subject_of(results: Results, seen_from: str = "auto") -> Subject:
+    """A results folder to draw."""
+    turns = results.report.get("winding", {}).get("revolutions")
+    return subject_in(results.folder, results.layup, results.name, results.units, turns, seen_from)

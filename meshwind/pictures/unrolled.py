@@ -1,0 +1,66 @@
+"""unrolled.png: the chart as an image, a pixel's colour being its place in space, with the fibres on it."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from PIL import Image
+
+from meshwind.pictures import bodies, canvas
+from meshwind.pictures.page import page_of
+
+_PALE = 0.55
+"""How far the image is led towards white, so that the fibres stand out."""
+_DPI = 100.0
+
+
+def draw(window: Any, scene: dict[str, Any]) -> Any:
+    """The picture of the chart; the window is not needed."""
+    del window
+    page = page_of(scene)
+    s = page.unit
+    figure = Figure(figsize=(page.width / _DPI, page.height / _DPI), dpi=_DPI, facecolor="none")
+    agg = FigureCanvasAgg(figure)
+    left, top = s * (canvas.LEFT + 90), s * canvas.TOP
+    width, height = page.width - left - s * (canvas.RIGHT + 10), page.height - top - s * 110
+    axes = figure.add_axes(
+        (left / page.width, 1.0 - (top + height) / page.height, width / page.width, height / page.height)
+    )
+    _fill(axes, scene, s)
+    agg.draw()
+    drawn = Image.fromarray(np.asarray(agg.buffer_rgba()))
+    image = canvas.blank(page)
+    image.paste(drawn, (0, 0), drawn) if not page.transparent else image.alpha_composite(drawn)
+    pen = canvas.titled(image, page, scene)
+    rows = [(bodies.FAMILY[name], words) for name, words in bodies.NAMES.items()]
+    rows += [("#b0127b", "bridging")] if scene["bridging"].any() else []
+    canvas.legend(pen, page, rows if scene["taut"].all() else [*rows, (bodies.LOOSE, "not at rest")])
+    return image
+
+
+def _fill(axes: Any, scene: dict[str, Any], s: float) -> None:
+    """The image, the fibres, the words of the axes."""
+    axes.imshow(_PALE + (1.0 - _PALE) * scene["image"], extent=(0.0, 1.0, 0.0, 1.0), origin="lower", aspect="auto")
+    for path, (uv, family) in enumerate(zip(scene["uv"], scene["family"], strict=True)):
+        colour = bodies.FAMILY[int(family)] if scene["taut"][path] else bodies.LOOSE
+        axes.plot(*_wrapped(uv), color=colour, linewidth=1.6 * s)
+        off = np.where(scene["bridging"][path][:, None], uv, np.nan)
+        if scene["bridging"][path].any():
+            axes.plot(*_wrapped(off), color="#b0127b", linewidth=3.0 * s)
+    axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
+    axes.set_xlabel("u: turns around the part", fontsize=18 * s, color=canvas.INK)
+    axes.set_ylabel("v: from end to end", fontsize=18 * s, color=canvas.INK)
+    axes.tick_params(labelsize=15 * s, length=6 * s, width=s, colors=canvas.INK)
+
+
+def _wrapped(uv: Any) -> tuple[Any, Any]:
+    """A path (n, 2) whose u is unwrapped, drawn in [0, 1]: broken where it leaves one side and enters the other."""
+    turn = np.floor(uv[:, 0])
+    parts = []
+    known = turn[np.isfinite(turn)]
+    for k in np.arange(known.min(), known.max() + 1.0):
+        near = (uv[:, 0] > k - 0.5) & (uv[:, 0] < k + 1.5)
+        parts += [np.where(near[:, None], uv - [k, 0.0], np.nan), np.full((1, 2), np.nan)]
+    both = np.concatenate(parts)
+    return both[:, 0], both[:, 1]

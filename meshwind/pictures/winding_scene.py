@@ -1,0 +1,95 @@
+"""What is to be seen on winding.png, gathered as arrays for the process that draws it."""
+
+from typing import Any
+
+import numpy as np
+
+from meshwind.cast import Floats, Ints
+from meshwind.layup.lengths import Bridges, bridges, lengths
+from meshwind.output.words import quantity
+from meshwind.path.paths import Paths
+from meshwind.pictures.subject import Subject
+
+
+def winding_scene(of: Subject) -> dict[str, Any]:
+    """The part, the fibres, the bridges, the view and the words."""
+    title = f"{of.name}: {_families(of.paths)} fibres, {_turns(of):.4g} revolutions"
+    seen = of.framed("winding", title, _subtitle(of))
+    return seen | {"max_gap": of.figures.max_gap} | fibres(of) | _bridges(of)
+
+
+def fibres(of: Subject) -> dict[str, Any]:
+    """The fibres as points (p, n, 3) and where to lift them (p, n, 3), in radii of the tube; which are at rest."""
+    return {
+        "paths": of.paths.points[:, of.kept],
+        "path_lift": lifts(of.paths)[:, of.kept],
+        "family": of.paths.family,
+        "taut": of.taut,
+    }
+
+
+def lifts(paths: Paths) -> Floats:
+    """Where to lift the particles so that tubes lie on the part (p, n, 3), in radii of the tube.
+
+    Along the normal on the surface.  Along a bridge evenly from one end's normal to the other's: it is straight
+    and stays so, which lifting along the normals below it would bend.
+    """
+    spans = bridges(paths)
+    row, column, share = _inside(paths, spans)
+    size = spans.last - spans.first + 1
+    first, last = (np.repeat(paths.normal[spans.path, end], size, axis=0) for end in (spans.first, spans.last))
+    lift = np.array(paths.normal)
+    lift[row, column] = (1.0 - share)[:, None] * first + share[:, None] * last
+    return lift
+
+
+def _inside(paths: Paths, spans: Bridges) -> tuple[Ints, Ints, Floats]:
+    """Path, number and share of the way along its bridge of every particle of every bridge, ends included."""
+    size = spans.last - spans.first + 1
+    begin = np.cumsum(size) - size
+    row = np.repeat(spans.path, size)
+    column = np.arange(size.sum()) - np.repeat(begin - spans.first, size)
+    arc = lengths(paths).arc_length
+    start = np.repeat(arc[spans.path, spans.first], size)
+    return row, column, (arc[row, column] - start) / np.repeat(spans.length, size)
+
+
+def _bridges(of: Subject) -> dict[str, Any]:
+    """The bridges as polylines one after the other: every stride-th point and both ends."""
+    paths, spans = of.paths, of.figures.spans
+    row, column, _ = _inside(paths, spans)
+    size = spans.last - spans.first + 1
+    begin = np.cumsum(size) - size
+    step = np.arange(len(row)) - np.repeat(begin, size)
+    keep = (step % of.stride == 0) | (step == np.repeat(size - 1, size))
+    sizes = np.add.reduceat(keep.astype(np.int64), begin) if len(begin) else begin
+    row, column = row[keep], column[keep]
+    return {
+        "bridges": paths.points[row, column],
+        "bridge_lift": lifts(paths)[row, column],
+        "bridge_gap": paths.gap[row, column],
+        "bridge_path": row,
+        "bridge_particle": column,
+        "bridge_sizes": sizes,
+    }
+
+
+def _families(paths: Paths) -> str:
+    return " + ".join(str(int((paths.family == family).sum())) for family in (1, -1))
+
+
+def _turns(of: Subject) -> float:
+    """Turns asked for; without them the paths' mean, which bent rims shift a little."""
+    mean = float(np.abs(of.paths.uv[:, -1, 0] - of.paths.uv[:, 0, 0]).mean())
+    return mean if of.revolutions is None else of.revolutions
+
+
+def _subtitle(of: Subject) -> str:
+    """The report's figures in a line."""
+    figures, paths = of.figures, of.paths
+    bridged = f"bridged {100.0 * figures.bridged_fraction:.1f} %" if len(figures.spans) else "no bridges"
+    parts = [f"fibre length {quantity(figures.length, of.units)}", bridged, f"{len(of.layup.crossings)} crossings"]
+    if figures.at_rest < len(paths):
+        whose = "these" if figures.at_rest else "all"
+        parts[0] = f"{figures.at_rest} of {len(paths)} at rest; {whose}: {parts[0]}"
+    return "  ·  ".join(parts)
