@@ -8,7 +8,9 @@ import typer
 
 def export(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `meshwind wind --out DIR` left.")],
-    to: Annotated[str, typer.Option(metavar="LIST", help="What to write, by commas: inp, fibers, frames, step.")] = "",
+    to: Annotated[
+        str, typer.Option(metavar="LIST", help="What to write, by commas: inp, fibers, frames, step, viewer.")
+    ] = "",
     formats: Annotated[
         str,
         typer.Option(metavar="LIST", help="Mesh formats for all results, by commas: vtu, vtk, xdmf, ply, obj, gmsh."),
@@ -39,6 +41,7 @@ def export(
 
     inp: shell.inp for CalculiX, shell_s4r.inp for Abaqus.  fibers: fibers.vtu and .vtk, the fibre directions a cell.
     frames: frames/*.csv for robots, in mm.  step: surface.step for CAD (needs meshwind[cad]).
+    viewer: viewer.html, one page that a browser turns offline (needs meshwind[viewer]).
 
     Example: meshwind export part-wound --to inp,fibers,frames
     """

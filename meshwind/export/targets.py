@@ -17,6 +17,7 @@ from meshwind.export.plies import plies
 from meshwind.export.results import Results, read_results
 from meshwind.export.shell_deck import Deck, write_decks
 from meshwind.export.step import write_step
+from meshwind.export.viewer import write_viewer
 
 GRID, QUADS = "grid", "quads"
 
@@ -118,4 +119,15 @@ def _step(folder: Path, results: Results, wishes: Wishes) -> list[str]:
     return write_step(folder, results)
 
 
-TARGETS: dict[str, Writer] = {"inp": _deck, "fibers": _fibers, "frames": _frames, "step": _step}
+def _viewer(folder: Path, results: Results, wishes: Wishes) -> list[str]:
+    del wishes  # what the page shows is set in the page
+    return write_viewer(folder, results)
+
+
+TARGETS: dict[str, Writer] = {
+    "inp": _deck,
+    "fibers": _fibers,
+    "frames": _frames,
+    "step": _step,
+    "viewer": _viewer,
+}

@@ -14,15 +14,21 @@ TUBE = 3.0, 0.16
 """Radius of a tube: so many pixels, but no more than this part of the pitch."""
 
 
-def add_part(window: Any, scene: dict[str, Any], **look: Any) -> None:
-    """The fitted surface, matt, darker inside; look overrides how the outside is drawn."""
+def add_part(window: Any, scene: dict[str, Any]) -> None:
+    """The fitted surface, matt, darker inside."""
     part = body(scene["points"], scene["quads"], scene["normals"])
-    outside = {"color": PART, "ambient": 0.3, "diffuse": 0.8} | look
-    if "scalars" in look:
-        del outside["color"]
-        part.point_data[look["scalars"]] = scene[look["scalars"]]
     inside = {"color": INSIDE, "ambient": 0.25, "interpolation": "Phong"}
-    add_smooth(window, part, backface_params=inside, **outside)
+    add_smooth(window, part, backface_params=inside, color=PART, ambient=0.3, diffuse=0.8)
+
+
+def add_map(window: Any, scene: dict[str, Any], colours: Any) -> None:
+    """The fitted surface coloured by the scene's shares, plain inside: there colours would be read as the outside's."""
+    part = body(scene["points"], scene["quads"], scene["normals"])
+    add_smooth(window, part, color=INSIDE, ambient=0.25, culling="front")
+    outside = part.copy()
+    outside.point_data["shares"] = scene["shares"]
+    look = {"scalars": "shares", "cmap": colours, "clim": [0.0, 1.0], "show_scalar_bar": False}
+    add_smooth(window, outside, ambient=0.55, diffuse=0.5, culling="back", **look)
 
 
 def body(points: Any, faces: Any, normals: Any) -> Any:

@@ -70,12 +70,9 @@ def aim(window: Any, page: Page, scene: dict[str, Any], target: Any, at: tuple[f
     if page.perspective:  # what is nearest to the eye comes out as large as in parallel, so that nothing is cut off
         reach = half / np.tan(_ANGLE) + 0.5 * float(np.ptp(scene["points"] @ eye))
     window.camera_position = [focus + reach * eye, focus, up]
-    if page.perspective:
-        window.disable_parallel_projection()
-        window.camera.view_angle = float(np.degrees(2.0 * _ANGLE))
-    else:
-        window.enable_parallel_projection()
-        window.parallel_scale = half
+    window.camera.parallel_projection = not page.perspective  # the window's own switch would move the camera
+    window.camera.parallel_scale = half
+    window.camera.view_angle = float(np.degrees(2.0 * _ANGLE))
     window.set_background(PAPER)
     window.remove_all_lights()
     for x, y, strength in ((-0.6, 0.6, 0.68), (0.9, 0.0, 0.35)):  # a key from the upper left, a fill

@@ -19,9 +19,7 @@ def draw(window: Any, scene: dict[str, Any]) -> Any:
     page = page_of(scene)
     scale = canvas.fitting(page, scene)
     colours = named(str(scene["colours"]))
-    bodies.add_part(
-        window, scene, scalars="shares", cmap=colours, clim=[0.0, 1.0], show_scalar_bar=False, ambient=0.55, diffuse=0.5
-    )
+    bodies.add_map(window, scene, colours)
     if "glyph_points" in scene:
         add_fans(window, scene)
     canvas.aim(window, page, scene, scene["centre"], canvas.middle(canvas.room(page)), scale)
@@ -60,7 +58,7 @@ def add_fans(window: Any, scene: dict[str, Any]) -> None:
     turn = scene["glyph_reach"][:, None] * np.linspace(-1.0, 1.0, _ARC + 1)
     arc = np.cos(turn)[..., None] * ahead[:, None] + np.sin(turn)[..., None] * aside[:, None]
     size = float(scene["glyph_size"])
-    tip = scene["glyph_points"] + 0.12 * size * normal
+    tip = scene["glyph_points"] + size * scene["eye"]  # towards the eye, so that no bend of the part cuts them
     rim = np.concatenate([size * arc, -size * arc], axis=1) + tip[:, None]
     points = np.concatenate([tip[:, None], rim], axis=1)
     k = np.arange(1, _ARC + 1)

@@ -15,6 +15,8 @@ _GLYPHS = 26
 """Glyphs along the longer side of the picture."""
 _ALL_BUT = 80.0
 """Where a fibre presses up to so many degrees to both sides, a glyph would be all but a full circle."""
+_ASLANT = 0.25
+"""Cosine from the eye to the normal below which a glyph cannot be read."""
 
 
 def map_scene(of: Subject, name: str, title: str, subtitle: str) -> dict[str, Any]:
@@ -52,14 +54,15 @@ def windability_scene(of: Subject) -> dict[str, Any]:
     )
     seen = map_scene(of, "windability", "where a taut fibre presses", subtitle)
     apart = max(of.view.width, of.view.height) / _GLYPHS
-    some = np.flatnonzero((kind == SADDLE) & (of.maps["press_reach"] < _ALL_BUT))
+    facing = of.normals @ of.view.eye > _ASLANT * np.linalg.norm(of.normals, axis=1)
+    some = np.flatnonzero((kind == SADDLE) & (of.maps["press_reach"] < _ALL_BUT) & facing)
     chosen = some[spread_out(of.points[some], apart)]
     return seen | {
         "glyph_points": of.points[chosen],
         "glyph_normals": of.normals[chosen],
         "glyph_directions": of.maps["press_direction"][chosen],
         "glyph_reach": np.radians(of.maps["press_reach"][chosen]),
-        "glyph_size": 0.42 * apart,
+        "glyph_size": 0.36 * apart,
     }
 
 

@@ -21,7 +21,7 @@ def draw(window: Any, scene: dict[str, Any]) -> Any:
     canvas.aim(window, page, scene, scene["centre"], canvas.middle(canvas.room(page)), scale)
     image = canvas.shot(window, page)
     pen = canvas.titled(image, page, scene)
-    rows = [(OFF, "off the surface")]
+    rows = [(OFF, "off the surface")] if scene["bridges"] else []
     if not scene["needed"]:
         rows = [(_zero(scene), "needs none"), *rows]
     canvas.legend(pen, page, rows if scene["taut"].all() else [(bodies.LOOSE, "not at rest"), *rows])

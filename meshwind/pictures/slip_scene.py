@@ -21,7 +21,7 @@ def slip_scene(of: Subject) -> dict[str, Any]:
     scale = Scale(("slip:", "friction", "needed"), "viridis", 0.0, end or 1.0)
     title = f"{of.name}: slip of the fibres"
     seen = of.framed("slip", title, _subtitle(of, end)) | fibres(of) | scale.told
-    return seen | {"shares": scale.shares(slip), "needed": end > 0.0}
+    return seen | {"shares": scale.shares(slip), "needed": end > 0.0, "bridges": not bool(of.paths.on_surface.all())}
 
 
 def _subtitle(of: Subject, end: float) -> str:
@@ -31,7 +31,7 @@ def _subtitle(of: Subject, end: float) -> str:
     held = _held(of.paths.slip, friction)
     parts = [f"friction {friction:g}" if friction else "wound without friction", f"largest slip {most:.3g}"]
     if friction:
-        parts.append(f"{100.0 * held:.0f} % of the fibre on the surface needs all of it")
+        parts.append(f"{100.0 * held:.0f} % of the fibre that touches needs all of the friction")
     return "  ·  ".join(parts)
 
 

@@ -1,0 +1,199 @@
+"""viewer.html: a run in one file that a browser turns, offline.
+
+The page is `viewer.html` beside this file; plotly.js goes into it whole, from the installed package plotly.
+"""
+
+import base64
+import json
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib import colormaps
+from numpy.typing import NDArray
+
+from meshwind.cast import Bools, Ints
+from meshwind.errors import BadInputError
+from meshwind.export.results import Results
+from meshwind.export.vtk_reading import Faces, read_faces
+from meshwind.layup.lengths import lengths
+from meshwind.output.looks import MAPS
+from meshwind.output.view import best_view
+from meshwind.output.words import quantity
+
+_MOST = 12_000
+"""Points of the surface that a browser turns smoothly without a graphics card."""
+_SUNK = 2e-3
+"""The surface is drawn so far below itself, over its size, that fibres on it are in sight."""
+_NO_PLOTLY = 'the viewer needs the Python package plotly, for plotly.js; pip install "meshwind[viewer]"'
+
+
+def write_viewer(folder: Path, results: Results) -> list[str]:
+    """Write viewer.html into a folder that is there; raises BadInputError where plotly is not installed."""
+    if find_spec("plotly") is None:
+        raise BadInputError(_NO_PLOTLY)
+    from plotly.offline import get_plotlyjs
+
+    page = Path(__file__).with_suffix(".html").read_text(encoding="utf-8")
+    told = json.dumps(scene(results), allow_nan=False).replace("</", "<\\/")
+    for mark, content in (("/*PLOTLY*/", get_plotlyjs()), ("/*SCENE*/", told), ("<!--NAME-->", _escaped(results.name))):
+        before, after = page.split(mark)
+        page = before + content + after
+    (folder / "viewer.html").write_text(page, encoding="utf-8")
+    return []
+
+
+def scene(results: Results) -> dict[str, Any]:
+    """All that the page shows, arrays as base64 of float32 or int32."""
+    skin = read_faces(results.folder / "surface.vtu")
+    return {
+        "name": results.name,
+        "units": results.units,
+        "facts": _facts(results),
+        "surface": _surface(skin, results),
+        "fibres": _fibres(results),
+        "colours": {"gap": _stops("RdPu", 0.3)},
+        "max_gap": float(results.paths.gap[results.at_rest].max(initial=0.0)),
+        "camera": _camera(skin, results),
+    }
+
+
+def _surface(skin: Faces, results: Results) -> dict[str, Any]:
+    """The surface thinned to what a browser can turn, with its maps."""
+    uv = skin.point_data["uv"]
+    nv = int((uv[:, 0] == uv[0, 0]).sum())
+    nu = len(uv) // nv
+    share = min(np.sqrt(_MOST / len(uv)), 1.0)
+    rows = _thinned(nu, share, results.surface.periodic)
+    columns = _thinned(nv, share, False)
+    kept = (rows[:, None] * nv + columns).ravel()
+    number = np.arange(len(kept)).reshape(len(rows), len(columns))
+    number = np.concatenate([number, number[:1]]) if results.surface.periodic else number
+    a, b, c, d = (part.ravel() for part in (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]))
+    points = skin.points[kept]
+    size = np.linalg.norm(np.ptp(points, axis=0))
+    return {
+        "points": _packed(points.T),
+        "drawn": _packed((points - _SUNK * size * skin.point_data["normal"][kept]).T),
+        "triangles": _packed(np.concatenate([np.stack([a, b, c]), np.stack([a, c, d])], axis=1)),
+        "uv": _packed(uv[kept].T),
+        "maps": [_map(name, skin, kept, results.units) for name in MAPS if name in skin.point_data],
+    }
+
+
+def _map(name: str, skin: Faces, kept: Ints, units: str) -> dict[str, Any]:
+    look, values = MAPS[name], skin.point_data[name].astype(np.float64)
+    scale = look.scale(values, units)
+    marks = scale.marks
+    return {
+        "name": name,
+        "title": look.title,
+        "words": "<br>".join(scale.words),
+        "unit": look.unit.format(u=units) if units else "",
+        "colours": _stops(scale.colours),
+        "low": scale.low,
+        "high": scale.high,
+        "log": scale.log,
+        "values": _packed(values[kept]),
+        "marks": [share for share, _ in marks],
+        "mark_words": [told for _, told in marks],
+    }
+
+
+def _fibres(results: Results) -> list[dict[str, Any]]:
+    """The fibres of each family on the surface, their bridges, and all that is not at rest, as far as there is any."""
+    paths, taut = results.paths, results.at_rest
+    touching = paths.on_surface[:, :-1] & paths.on_surface[:, 1:]
+    kinds = [("loose", 0, "not at rest", ~taut, np.ones_like(touching))]
+    for family, words in ((1, "family +1"), (-1, "family −1")):
+        mine = taut & (paths.family == family)
+        kinds += [
+            ("family", family, words, mine, touching),
+            ("bridges", family, f"bridges of {words}", mine, ~touching),
+        ]
+    made = [_lines(results, *kind) for kind in kinds]
+    return [lines for lines in made if lines["count"]]
+
+
+def _lines(results: Results, kind: str, family: int, words: str, mine: Bools, wanted: Bools) -> dict[str, Any]:
+    """The wanted segments (p, n - 1) of some paths (p,), one after the other, with a NaN point after each run."""
+    paths = results.paths
+    segments = wanted & mine[:, None]
+    used = np.zeros(paths.gap.shape, dtype=bool)
+    used[:, :-1] |= segments
+    used[:, 1:] |= segments
+    path, particle = np.nonzero(used)
+    goes_on = np.zeros(paths.gap.shape, dtype=bool)
+    goes_on[:, :-1] = segments
+    breaks = np.flatnonzero(~goes_on[path, particle]) + 1
+    data = {
+        "points": paths.points[path, particle],
+        "uv": paths.uv[path, particle],
+        "gap": paths.gap[path, particle],
+        "slip": paths.slip[path, particle],
+        "arc": lengths(paths).arc_length[path, particle],
+    }
+    packed = {name: _packed(np.insert(values, breaks, np.nan, axis=0).T) for name, values in data.items()}
+    whose = _packed(np.insert(path, breaks, -1))
+    return {"kind": kind, "family": family, "words": words, "count": len(path), "path": whose} | packed
+
+
+def _camera(skin: Faces, results: Results) -> dict[str, Any]:
+    """Where the eye is and what is up, as on the pictures; the extents seen over the largest of the part's box."""
+    nv = int((skin.point_data["uv"][:, 0] == skin.point_data["uv"][0, 0]).sum())
+    axis = skin.points.reshape(-1, nv, 3).mean(axis=0)
+    paths = results.paths
+    marks = paths.points.reshape(-1, 3), paths.normal.reshape(-1, 3), paths.gap.ravel()
+    view = best_view(skin.points, skin.quads, axis, *marks)
+    largest = float(np.ptp(skin.points, axis=0).max())
+    return {
+        "eye": view.eye.tolist(),
+        "up": view.up.tolist(),
+        "width": view.width / largest,
+        "height": view.height / largest,
+    }
+
+
+def _facts(results: Results) -> list[str]:
+    """The run in a few lines."""
+    paths = results.paths
+    each = lengths(paths)
+    at_rest = int(results.at_rest.sum())
+    total, bridged = float(each.length.sum()), float(each.bridged.sum())
+    lines = [
+        f"{len(paths)} fibres, {at_rest} at rest",
+        f"length {quantity(total, results.units)}, {100.0 * bridged / max(total, 1e-300):.1f} % of it bridged",
+        f"friction {paths.friction:g}",
+    ]
+    width = results.band_width
+    return lines if width is None else [*lines, f"band {quantity(width, results.units, 3)} wide"]
+
+
+def _thinned(count: int, share: float, closed: bool) -> Ints:
+    """Numbers below count, evenly, about such a share of them: both ends, or all around."""
+    many = max(round(share * count), 3)
+    return np.unique(np.rint(np.linspace(0, count - (count / many if closed else 1), many)).astype(np.int64))
+
+
+def _stops(name: str, first: float = 0.0) -> list[list[Any]]:
+    """A colour map as stops of a scale from 0 to 1."""
+    at = np.linspace(0.0, 1.0, 33)
+    shades = colormaps[name](first + (1.0 - first) * at)[:, :3]
+    return [
+        [float(t), f"rgb({','.join(str(round(255 * part)) for part in shade)})"]
+        for t, shade in zip(at, shades, strict=True)
+    ]
+
+
+def _packed(values: NDArray[Any]) -> dict[str, str]:
+    """An array as text; rows one after the other."""
+    kind = "<i4" if np.issubdtype(values.dtype, np.integer) else "<f4"
+    return {
+        "type": kind[1:],
+        "data": base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode("ascii"),
+    }
+
+
+def _escaped(text: str) -> str:
+    return text.replace("&", "&amp;").replace("<", "&lt;")
