@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib import colormaps
 from numpy.typing import NDArray
 
 from meshwind.cast import Bools, Ints
@@ -18,6 +17,7 @@ from meshwind.errors import BadInputError
 from meshwind.export.results import Results
 from meshwind.export.vtk_reading import Faces, read_faces
 from meshwind.layup.lengths import lengths
+from meshwind.output.colours import colour_map
 from meshwind.output.looks import MAPS
 from meshwind.output.view import best_view
 from meshwind.output.words import quantity
@@ -53,7 +53,7 @@ def scene(results: Results) -> dict[str, Any]:
         "facts": _facts(results),
         "surface": _surface(skin, results),
         "fibres": _fibres(results),
-        "colours": {"gap": _stops("RdPu", 0.3)},
+        "colours": {"gap": _stops("gap")},
         "max_gap": float(results.paths.gap[results.at_rest].max(initial=0.0)),
         "camera": _camera(skin, results),
     }
@@ -176,10 +176,10 @@ def _thinned(count: int, share: float, closed: bool) -> Ints:
     return np.unique(np.rint(np.linspace(0, count - (count / many if closed else 1), many)).astype(np.int64))
 
 
-def _stops(name: str, first: float = 0.0) -> list[list[Any]]:
+def _stops(name: str) -> list[list[Any]]:
     """A colour map as stops of a scale from 0 to 1."""
     at = np.linspace(0.0, 1.0, 33)
-    shades = colormaps[name](first + (1.0 - first) * at)[:, :3]
+    shades = colour_map(name)(at)[:, :3]
     return [
         [float(t), f"rgb({','.join(str(round(255 * part)) for part in shade)})"]
         for t, shade in zip(at, shades, strict=True)

@@ -16,6 +16,8 @@ _DECADES = 1.0 / 300.0
 """A logarithmic scale goes down to this part of its end, ..."""
 _CLEAR = 0.08
 """... and marks at its ends keep others this far off."""
+_NOTHING = 1e-200
+"""Where all values are less than this a scale goes to 1."""
 
 
 @dataclass(frozen=True)
@@ -123,14 +125,14 @@ def both_ways(values: Floats) -> tuple[float, float]:
 def decades(values: Floats) -> tuple[float, float]:
     """From the largest down to what no longer matters beside it."""
     most = float(values.max())
-    high = most if most > 0.0 else 1.0
+    high = most if most > _NOTHING else 1.0
     return high * _DECADES, high
 
 
 def _end(values: Floats) -> float:
     most, robust = float(values.max()), float(np.quantile(values, _ROBUST))
     end = most if most <= _NEAR * robust else robust
-    return end if end > 0.0 else 1.0
+    return end if end > _NOTHING else 1.0
 
 
 def round_below(value: float) -> float:
@@ -154,6 +156,6 @@ MAPS: dict[str, Look] = {
     "gaussian_curvature": Look("Gaussian curvature", "Gaussian\ncurvature", "1/{u}²", DIVERGING, both_ways),
     "mean_curvature": Look("mean curvature", "mean curvature", "1/{u}", DIVERGING, both_ways),
     "stretch": Look("stretch of the chart", "area scale\nover its mean", "", SEQUENTIAL, from_zero),
-    "fit_error": Look("fit error", "distance\nto the mesh", "{u}", "magma_r", decades, log=True),
+    "fit_error": Look("fit error", "distance\nto the mesh", "{u}", "distance", decades, log=True),
 }  # fmt: skip
 """The maps of surface.vtu that are numbers."""

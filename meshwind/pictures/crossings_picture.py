@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 
+from meshwind.output.colours import colour_map
 from meshwind.pictures import bodies, canvas, map_picture
 from meshwind.pictures.page import page_of
 
@@ -41,7 +42,7 @@ def add_dots(window: Any, scene: dict[str, Any], scale: float, unit: float, thic
     eye = scene["eye"]
     for wide, behind, look in (
         (2.0 * size + 3.0 * unit, 0.0, {"color": canvas.INK}),
-        (2.0 * size, size * scale, {"scalars": "share", "cmap": map_picture.named(str(scene["colours"]))}),
+        (2.0 * size, size * scale, {"scalars": "share", "cmap": colour_map(str(scene["colours"]))}),
     ):
         dots = pv.PolyData(at + behind * eye)
         dots.point_data["share"] = np.asarray(scene["shares"])

@@ -4,15 +4,13 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
-from matplotlib import colormaps
-from matplotlib.colors import ListedColormap
 
+from meshwind.output.colours import colour_map
 from meshwind.pictures import canvas
 from meshwind.pictures.canvas import FAINT, INK, PAPER, Box, face
 from meshwind.pictures.page import Page, page_of
 
-DISTANCES = ListedColormap(colormaps["magma_r"](np.linspace(0.04, 0.86, 256)))
-"""Pale where surface and mesh agree, dark where they do not; even to the eye, in greys too."""
+DISTANCES = colour_map("distance")
 FAINTEST = 0.05
 """The scale is logarithmic from the worst down to this part of it, and palest for all that is less."""
 LOST = 0.15

@@ -4,9 +4,8 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
-from matplotlib import colormaps
-from matplotlib.colors import ListedColormap
 
+from meshwind.output.colours import colour_map
 from meshwind.pictures import bodies, canvas
 from meshwind.pictures.page import page_of
 
@@ -18,7 +17,7 @@ def draw(window: Any, scene: dict[str, Any]) -> Any:
     """The picture of a map, with words."""
     page = page_of(scene)
     scale = canvas.fitting(page, scene)
-    colours = named(str(scene["colours"]))
+    colours = colour_map(str(scene["colours"]))
     bodies.add_map(window, scene, colours)
     if "glyph_points" in scene:
         add_fans(window, scene)
@@ -33,18 +32,11 @@ def draw(window: Any, scene: dict[str, Any]) -> Any:
     return image
 
 
-def named(name: str) -> Any:
-    """A colour map by its name; of magma only what paper and ink leave of it."""
-    if name == "magma_r":
-        return ListedColormap(colormaps[name](np.linspace(0.04, 0.86, 256)))
-    return colormaps[name]
-
-
 def bar(image: Any, pen: Any, scene: dict[str, Any]) -> None:
     """The scale of a scene that holds `Scale.told`."""
     words = [str(word) for word in scene["words"]]
     marks = [(float(share), str(told)) for share, told in zip(scene["marks"], scene["mark_words"], strict=True)]
-    canvas.colour_bar(image, pen, page_of(scene), named(str(scene["colours"])), words, marks)
+    canvas.colour_bar(image, pen, page_of(scene), colour_map(str(scene["colours"])), words, marks)
 
 
 def add_fans(window: Any, scene: dict[str, Any]) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from meshwind.errors import BadInputError
 
-LEAST, MOST = 320, 8192
+LEAST, MOST = 240, 8192
 """Fewest pixels of a side that words can be read on, most that graphics can be trusted to draw."""
 DESIGNED = 1600, 1200
 """The size that all measures of the drawing code are told for; other pages scale them."""

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 
+from meshwind.output.colours import colour_map
 from meshwind.pictures import canvas, map_picture
 from meshwind.pictures.page import Page, page_of
 
@@ -50,6 +51,6 @@ def add(window: Any, scene: dict[str, Any], name: str) -> None:
     part.point_data["shares"] = np.asarray(scene["shares"])
     look: dict[str, Any] = {"color": canvas.PART, "ambient": 0.3, "diffuse": 0.8}
     if name == "after":
-        colours = map_picture.named(str(scene["colours"]))
+        colours = colour_map(str(scene["colours"]))
         look = {"scalars": "shares", "cmap": colours, "clim": [0.0, 1.0], "ambient": 0.55, "diffuse": 0.5}
     window.add_mesh(part, show_scalar_bar=False, render=False, **look)

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from meshwind.output.colours import colour_map
 from meshwind.pictures import bodies, canvas, map_picture
 from meshwind.pictures.page import page_of
 
@@ -46,7 +47,7 @@ def _add_known(window: Any, scene: dict[str, Any], thick: float) -> None:
     if grey is not None:
         canvas.add_smooth(window, grey.tube(radius=0.7 * thick, n_sides=8), color=OFF, ambient=0.4, diffuse=0.7)
     if lines is not None:
-        colours = map_picture.named(str(scene["colours"]))
+        colours = colour_map(str(scene["colours"]))
         bodies.add_coloured_tubes(window, lines, thick, "share", colours, 1.0)
 
 
@@ -66,4 +67,4 @@ def runs(points: Any, shares: Any, wanted: Any) -> Any:
 
 
 def _zero(scene: dict[str, Any]) -> str:
-    return "#" + "".join(f"{round(255 * part):02x}" for part in map_picture.named(str(scene["colours"]))(0.0)[:3])
+    return "#" + "".join(f"{round(255 * part):02x}" for part in colour_map(str(scene["colours"]))(0.0)[:3])

@@ -3,15 +3,13 @@
 from typing import Any
 
 import numpy as np
-from matplotlib import colormaps
-from matplotlib.colors import ListedColormap
 
+from meshwind.output.colours import colour_map
 from meshwind.output.looks import round_below
 from meshwind.pictures import bodies, canvas
 from meshwind.pictures.page import page_of
 
-GAPS = ListedColormap(colormaps["RdPu"](np.linspace(0.3, 1.0, 256)))
-"""Pale where a bridge all but touches, dark where the gap is wide: what matters stands out, in greys too."""
+GAPS = colour_map("gap")
 
 
 def draw(window: Any, scene: dict[str, Any]) -> Any:
