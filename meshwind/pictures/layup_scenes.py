@@ -30,7 +30,11 @@ def quads_scene(of: Subject) -> dict[str, Any]:
     mesh = of.layup.quads
     count = f"{len(mesh.quads)} quads, {len(mesh.triangles)} triangles"
     off = int((~mesh.on_surface).sum())
-    where = f"{off} of {len(mesh.points)} corners off the surface, where a fibre bridges" if off else "on the surface"
+    where = (
+        f"{off} of {len(mesh.points)} corners off the surface, where a fibre bridges"
+        if off
+        else "every corner on the surface"
+    )
     told = f"{count}  ·  {where}"
     if not len(mesh.quads) + len(mesh.triangles):
         told = f"no quad mesh: {mesh.note}" if mesh.note else "no quad mesh"
