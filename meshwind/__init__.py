@@ -39,6 +39,9 @@ if TYPE_CHECKING:
     from meshwind.path import traces as traces
     from meshwind.path.friction import Friction as Friction
     from meshwind.path.friction import friction_from as friction_from
+    from meshwind.pictures.page import Page as Page
+    from meshwind.pictures.redesign_scene import draw_redesign as draw_redesign
+    from meshwind.pictures.render import render as render
     from meshwind.pipeline import Result as Result
     from meshwind.pipeline import wind as wind
     from meshwind.surface import FitError as FitError
@@ -60,6 +63,7 @@ _HOME = {
     "Families": "layup", "Layup": "layup", "families": "layup", "assess": "layup",
     "choose_revolutions": "layup", "read_pins": "layup", "space_out": "layup", "windability": "layup",
     "Result": "pipeline", "wind": "pipeline",
+    "render": "pictures.render", "Page": "pictures.page", "draw_redesign": "pictures.redesign_scene",
 }  # fmt: skip
 
 __all__ = sorted(_HOME)

@@ -12,6 +12,8 @@ from meshwind.pictures.page import page_of
 FIBRE = "#a9a296"
 _DOT = 9.0, 0.3
 """Radius of a dot: so many pixels, but no more than this part of the pitch."""
+_RINGED = 4.0
+"""Smaller dots have no ring."""
 
 
 def draw(window: Any, scene: dict[str, Any]) -> Any:
@@ -33,17 +35,16 @@ def draw(window: Any, scene: dict[str, Any]) -> Any:
 
 
 def add_dots(window: Any, scene: dict[str, Any], scale: float, unit: float, thick: float) -> None:
-    """A dot a crossing, in a ring of ink so that pale ones stand out."""
+    """A dot a crossing, in a ring of ink so that pale ones stand out, unless they are too many for that."""
     if not len(scene["crossings"]):
         return
     pixels, share = _DOT
     size = min(pixels * unit, max(share * float(scene["pitch"]) / scale, 1.5 * unit))
     at = scene["crossings"] + 2.0 * thick * scene["crossing_normals"]
     eye = scene["eye"]
-    for wide, behind, look in (
-        (2.0 * size + 3.0 * unit, 0.0, {"color": canvas.INK}),
-        (2.0 * size, size * scale, {"scalars": "share", "cmap": colour_map(str(scene["colours"]))}),
-    ):
+    ring = (2.0 * size + 3.0 * unit, 0.0, {"color": canvas.INK})
+    core = (2.0 * size, size * scale, {"scalars": "share", "cmap": colour_map(str(scene["colours"]))})
+    for wide, behind, look in (ring, core) if size > _RINGED * unit else (core,):
         dots = pv.PolyData(at + behind * eye)
         dots.point_data["share"] = np.asarray(scene["shares"])
         window.add_mesh(

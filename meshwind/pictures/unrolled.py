@@ -27,7 +27,7 @@ def draw(window: Any, scene: dict[str, Any]) -> Any:
     axes = figure.add_axes(
         (left / page.width, 1.0 - (top + height) / page.height, width / page.width, height / page.height)
     )
-    _fill(axes, scene, s)
+    _fill(axes, scene, s, width)
     agg.draw()
     drawn = Image.fromarray(np.asarray(agg.buffer_rgba()))
     image = canvas.blank(page)
@@ -39,15 +39,16 @@ def draw(window: Any, scene: dict[str, Any]) -> Any:
     return image
 
 
-def _fill(axes: Any, scene: dict[str, Any], s: float) -> None:
+def _fill(axes: Any, scene: dict[str, Any], s: float, width: float) -> None:
     """The image, the fibres, the words of the axes."""
+    thick = min(1.6 * s, 0.16 * width / len(scene["uv"]))
     axes.imshow(_PALE + (1.0 - _PALE) * scene["image"], extent=(0.0, 1.0, 0.0, 1.0), origin="lower", aspect="auto")
     for path, (uv, family) in enumerate(zip(scene["uv"], scene["family"], strict=True)):
         colour = bodies.FAMILY[int(family)] if scene["taut"][path] else bodies.LOOSE
-        axes.plot(*_wrapped(uv), color=colour, linewidth=1.6 * s)
+        axes.plot(*_wrapped(uv), color=colour, linewidth=thick)
         off = np.where(scene["bridging"][path][:, None], uv, np.nan)
         if scene["bridging"][path].any():
-            axes.plot(*_wrapped(off), color="#b0127b", linewidth=3.0 * s)
+            axes.plot(*_wrapped(off), color="#b0127b", linewidth=1.8 * thick)
     axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
     axes.set_xlabel("u: turns around the part", fontsize=18 * s, color=canvas.INK)
     axes.set_ylabel("v: from end to end", fontsize=18 * s, color=canvas.INK)
