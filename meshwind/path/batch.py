@@ -132,7 +132,8 @@ class Setting:
         surface = self.surface.centred
         spread(lay_all, len(batch), 1, surface.net, surface.periodic, tree, surface.size, self._pull_off,
                max(self.tolerance, COARSE), self.tolerance, self.iterations, batch.starts, batch.X, batch.uv,
-               batch.normal, batch.touching, batch.gap, batch.slip, batch.residual, batch.status, batch.tallies)  # fmt: skip
+               batch.normal, batch.touching, batch.gap, batch.slip, batch.residual, batch.status,
+               batch.tallies)  # fmt: skip
 
     @property
     def rough(self) -> "Setting":

@@ -167,7 +167,9 @@ def rescue(setting: Setting, batch: Batch) -> tuple[Floats, Floats]:
 def search(setting: Setting, batch: Batch) -> Floats:
     """Try the paths that are not at rest in other ways, in place; returns the change of u that holds, 0 if unknown."""
     turns = np.zeros(len(batch))
-    for start in (from_few, from_back, wind_up) if setting.friction.none else (from_few, from_back, from_smooth, from_rough):
+    for start in (
+        (from_few, from_back, wind_up) if setting.friction.none else (from_few, from_back, from_smooth, from_rough)
+    ):
         index = np.flatnonzero(failing(batch))
         if len(index):
             work, held = start(setting, batch.rows(index))
