@@ -12,7 +12,7 @@ PULL = 1e-9
 INSIDE = 1e-9
 """A lifted particle deeper than this times the part's size is inside the body."""
 HALF_TURN, WHOLE_TURN = 0.4, 0.75
-"""Change of u from particle to particle that only two sides of the body explain."""
+"""Change of u or v from particle to particle that only two sides of the body explain."""
 LONGEST_SEGMENT = 2.0
 """A segment on the surface longer than this share of the mean cuts an edge."""
 
@@ -47,7 +47,7 @@ def unresolved(state, periodic):
     """Whether the path cuts an edge by a segment on the surface much longer than the others, or the whole body."""
     X, touching = state[0], state[4]
     n = len(X)
-    if periodic and largest_turn(state) > HALF_TURN:
+    if largest_leap(state, periodic) > max(HALF_TURN, 2.0 / (n - 1)):
         return True
     _, length = energy(X)
     for i in range(n - 1):
@@ -57,18 +57,19 @@ def unresolved(state, periodic):
 
 
 @njit(cache=True)
-def largest_turn(state):
-    """Largest change of u from one particle, or its foot, to the next, where the body may be between the two.
+def largest_leap(state, periodic):
+    """Largest change of u or v from one particle, or its foot, to the next, where the body may be between the two.
 
     It is not where their gaps cover the way; a foot leaps from side to side of a hollow, too.  But by a whole turn no
-    foot leaps.
+    foot leaps.  Where u is not periodic only v counts.
     """
     X, uv, clear = state[0], state[1], state[5]
     most = 0.0
     for i in range(len(uv) - 1):
-        turn = abs(uv[i + 1, 0] - uv[i, 0])
-        if turn > WHOLE_TURN or (turn > most and clear[i] + clear[i + 1] < distance(X, i, i + 1)):
-            most = max(most, turn)
+        turn = abs(uv[i + 1, 0] - uv[i, 0]) if periodic else 0.0
+        leap = max(turn, abs(uv[i + 1, 1] - uv[i, 1]))
+        if turn > WHOLE_TURN or (leap > most and clear[i] + clear[i + 1] < distance(X, i, i + 1)):
+            most = max(most, leap)
     return most
 
 

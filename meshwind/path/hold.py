@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from meshwind.path.block_tridiagonal import solve_general
-from meshwind.path.certificate import HALF_TURN, certify, largest_turn, unresolved
+from meshwind.path.certificate import HALF_TURN, certify, largest_leap, unresolved
 from meshwind.path.contact import lift, link
 from meshwind.path.coulomb import HELD, STUCK, differentiate, weigh
 from meshwind.path.glide import LONGEST_MOVE
@@ -66,7 +66,7 @@ def hold(net, periodic, tree, size, pull_off, tolerance, limit, table, curve, st
     least = 0.1 * (np.pi / n) ** 2
     shift = 0.0
     now, length = energy(X)
-    most = max(HALF_TURN, 1.2 * largest_turn(state))
+    most = max(HALF_TURN, 1.2 * largest_leap(state, periodic))
     residual = best = np.inf
     caution = 0
     for _ in range(limit):
@@ -146,7 +146,7 @@ def hold(net, periodic, tree, size, pull_off, tolerance, limit, table, curve, st
                     tally,
                 )  # fmt: skip
                 carry_lifted(net, periodic, tree, size, step, contacts, count, state, trial, tally)
-                if periodic and largest_turn(trial) > most:
+                if largest_leap(trial, periodic) > most:
                     step *= 0.5
                     continue
                 then, length_then = energy(trial[0])

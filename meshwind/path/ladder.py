@@ -167,13 +167,12 @@ def rescue(setting: Setting, batch: Batch) -> tuple[Floats, Floats]:
 def search(setting: Setting, batch: Batch) -> Floats:
     """Try the paths that are not at rest in other ways, in place; returns the change of u that holds, 0 if unknown."""
     turns = np.zeros(len(batch))
-    for start in (
-        (from_few, from_back, wind_up) if setting.friction.none else (from_few, from_back, from_smooth, from_rough)
-    ):
+    others = (wind_up, wind_back) if setting.friction.none else (from_smooth, from_rough)
+    for start in (from_few, from_back, *others):
         index = np.flatnonzero(failing(batch))
         if len(index):
             work, held = start(setting, batch.rows(index))
-            turns[index] = held
+            turns[index] = np.maximum(turns[index], held)
             batch.tallies[index] = work.tallies
             done = np.flatnonzero(~failing(work))
             batch.put(index[done], work.rows(done))
@@ -282,3 +281,9 @@ def wind_up(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
     best.status[share < 1.0] = part.status[share < 1.0]
     best.tallies[:] = work.tallies
     return best, share * np.abs(turn)
+
+
+def wind_back(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
+    """As `wind_up`, with the start turning and the end held: on a part that is not round the way there differs."""
+    work, held = wind_up(setting, part.reversed())
+    return work.reversed(), held

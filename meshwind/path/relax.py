@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from meshwind.path.block_tridiagonal import solve
-from meshwind.path.certificate import HALF_TURN, certify, largest_turn, unresolved
+from meshwind.path.certificate import HALF_TURN, certify, largest_leap, unresolved
 from meshwind.path.contact import lift, link
 from meshwind.path.glide import LONGEST_MOVE, spread_along
 from meshwind.path.newton import (
@@ -68,7 +68,7 @@ def descend(net, periodic, tree, size, pull_off, tolerance, limit, state, trial,
     kept = np.empty(n, np.bool_)
     shift, least = 0.0, 0.1 * (np.pi / n) ** 2
     now, length = energy(state[0])
-    most = max(HALF_TURN, 1.2 * largest_turn(state))
+    most = max(HALF_TURN, 1.2 * largest_leap(state, periodic))
     residual = np.inf
     caution = falls = leant = leaning = 0
     for _ in range(limit):
@@ -124,7 +124,7 @@ def descend(net, periodic, tree, size, pull_off, tolerance, limit, state, trial,
         while step > SMALLEST_STEP:
             move_touching(net, periodic, step, move, contacts, count, state, trial, tally)
             carry_lifted(net, periodic, tree, size, step, contacts, count, state, trial, tally)
-            if periodic and largest_turn(trial) > most:  # neighbours on two sides: one went through the body
+            if largest_leap(trial, periodic) > most:  # neighbours on two sides: one went through the body
                 step *= 0.5
                 continue
             then, length_then = energy(trial[0])
