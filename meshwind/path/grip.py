@@ -8,7 +8,7 @@ from meshwind.path.newton import EVALUATIONS
 from meshwind.path.state import copy_particle, touch_down
 from meshwind.surface.evaluate import SU, SV
 
-SETTLE = 1e-9
+SETTLE = 1e-12
 """Round-off of a lateral distance over the part's size: nearer to the starting curve counts as on it."""
 
 
