@@ -31,6 +31,10 @@ from meshwind.path.relax import (
 )  # fmt: skip
 from meshwind.path.state import blank, copy, energy
 
+PATIENCE = 60
+"""Steps after which a path that does not settle goes in circles: its sets are chosen anew, its steps halved."""
+SHORT, CALM = 1.0 / 16.0, 1e-4
+"""Least share of a step that halving leads to; unbalanced force below which whole steps are taken again."""
 SHORTEST = 1e-3
 """Share of a step below which a shift towards the force serves better."""
 
@@ -64,13 +68,18 @@ def hold(net, periodic, tree, size, pull_off, tolerance, limit, table, curve, st
     right, move, work = np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 2, 2))
     kept, barred = np.empty(n, np.bool_), np.zeros(n, np.bool_)
     least = 0.1 * (np.pi / n) ** 2
-    shift = 0.0
+    shift, stride = 0.0, 1.0
     now, length = energy(X)
     most = max(HALF_TURN, 1.2 * largest_leap(state, periodic))
     residual = best = np.inf
     caution = 0
-    for _ in range(limit):
+    for turn in range(limit):
         tally[ITERATIONS] += 1
+        if turn % PATIENCE == PATIENCE - 1:
+            take_hold(net, periodic, curve, state, grip, size, tally)
+            shift, best = 0.0, np.inf
+            stride = max(0.5 * stride, SHORT)
+            now, length = energy(X)
         spacing = max(length, 1e-300) / (n - 1)
         for i in range(n):
             kept[i] = touching[i]
@@ -139,7 +148,7 @@ def hold(net, periodic, tree, size, pull_off, tolerance, limit, table, curve, st
             if slope < 1e-3 * least * square:  # no descent: shift towards the force
                 shift = max(4.0 * shift, least)
                 continue
-            step = min(1.0, LONGEST_MOVE / max(reach, 1e-300))
+            step = min(stride if residual > CALM else 1.0, LONGEST_MOVE / max(reach, 1e-300))
             while step > SHORTEST:
                 slide(
                     net, periodic, step, move, contacts, count, curve, balance, state, grip, trial, after_grip, size,
