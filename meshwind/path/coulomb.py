@@ -22,7 +22,7 @@ STUCK, HELD = 0, 2
 """Modes of a touching particle beside sigma = +1 and -1: on the starting curve; pressed against a rim."""
 
 
-MARGIN, FAINT = 1e-4, 1e-10
+MARGIN, FAINT = 1e-8, 1e-10
 """A stuck particle lets go above this share over mu N, and this angle: below them no set may fit."""
 
 
