@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from friction_checks import bent
 
 from meshwind.path import Status, solve
 from meshwind.surface import shapes
@@ -35,3 +36,22 @@ def test_what_slides_off_is_told_what_would_hold() -> None:
     rough = solve(barrel, [(0.0, 0.0)], [(0.8, 1.0)], particles=201, friction=paths.holding_friction[0])
     assert rough.status[0] == Status.CONVERGED
     assert "would hold it" in paths.advice(0)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.1])
+def test_what_holds_does_not_depend_on_which_end_comes_first(friction: float) -> None:
+    """On a bent tube a search that turns one end only finds others than one that turns the other."""
+    draw = np.random.default_rng(0)
+    start = np.stack([draw.random(30), np.zeros(30)], axis=1)
+    end = start + np.stack([draw.uniform(-1.5, 1.5, 30), np.ones(30)], axis=1)
+    ahead, back = (solve(bent(), *ends, friction=friction) for ends in ((start, end), (end, start)))
+    assert np.array_equal(ahead.status == Status.CONVERGED, back.status == Status.CONVERGED)
+    assert (ahead.status == Status.CONVERGED).sum() >= 26
+
+
+@pytest.mark.parametrize("friction", [0.2, 0.6])
+def test_no_touching_neighbours_leap_from_rim_to_rim(friction: float) -> None:
+    """The rims of a closed ring lie on each other: a fibre that leapt would lose all of its length."""
+    paths = solve(shapes.torus(3.0, 1.0), [(0.0, 0.0)], [(0.3, 1.0)], particles=101, friction=friction)
+    touching = paths.on_surface[0, 1:] & paths.on_surface[0, :-1]
+    assert paths.status[0] != Status.CONVERGED or np.abs(np.diff(paths.uv[0, :, 1]))[touching].max() < 0.1
