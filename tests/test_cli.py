@@ -170,7 +170,7 @@ def test_paths_read_back(tank: tuple[Path, subprocess.CompletedProcess[str]]) ->
 
 def test_report_agrees_with_the_files(tank: tuple[Path, subprocess.CompletedProcess[str]]) -> None:
     report = json.loads((tank[0] / "report.json").read_text())
-    lengths = np.asarray(pv.read(tank[0] / "paths.vtp").cell_data["length"])
+    lengths = np.asarray(pv.read(tank[0] / "paths.vtp").cell_data["fibre_length"])
     quads = meshio.read(tank[0] / "quads.vtu")
     surface = np.load(tank[0] / "surface.npz")
     assert report["paths"]["length_total"] == pytest.approx(lengths.sum())

@@ -73,9 +73,11 @@ def test_paths(written: tuple[Layup, Path]) -> None:
         assert poly.point_data[name].dtype == np.float64, name
     assert poly.point_data["on_surface"].dtype == np.uint8
     assert np.array_equal(poly.point_data["on_surface"], paths.on_surface.ravel())
-    assert set(poly.cell_data.keys()) == {"path", "family", "length", "bridged_length", "max_gap", "max_slip", "status"}
+    names = {"path", "family", "length", "fibre_length", "bridged_length", "max_gap", "max_slip", "status"}
+    assert set(poly.cell_data.keys()) == names
     steps = np.linalg.norm(np.diff(poly.points.reshape(p, n, 3), axis=1), axis=2)
     assert np.allclose(poly.cell_data["length"], steps.sum(axis=1), rtol=1e-12)
+    assert np.array_equal(poly.cell_data["fibre_length"], paths.length)
     assert np.array_equal(poly.cell_data["path"], np.arange(p))
     assert set(poly.cell_data["family"]) == {1, -1}
     assert all(np.isfinite(values).all() for values in poly.cell_data.values())
@@ -231,7 +233,7 @@ def test_report_agrees_with_the_files(written: tuple[Layup, Path]) -> None:
     for section, keys in wanted.items():
         assert keys is None or set(figures[section]) >= keys, section
     poly = pv.read(out / "paths.vtp")
-    assert figures["paths"]["length_total"] == pytest.approx(poly.cell_data["length"].sum(), rel=1e-12)
+    assert figures["paths"]["length_total"] == pytest.approx(poly.cell_data["fibre_length"].sum(), rel=1e-12)
     assert figures["paths"]["max_gap"] == poly.cell_data["max_gap"].max()
     assert figures["crossings"]["count"] == pv.read(out / "crossings.vtp").n_points
     assert figures["quads"]["faces"] == (pv.read(out / "quads.vtu").celltypes != 1).sum()

@@ -31,9 +31,9 @@ class Outcome(StrEnum):
 class Attempt:
     """One path by one method.
 
-    length in the surface's units, of the polyline where there is one; counts of surface evaluations, foot points,
-    linear solves and iterations (time steps); points (n, 3), empty where the method gives a length only; gap: the
-    largest distance of a point from the surface.
+    length in the surface's units as the method tells it, of the polyline where it tells none; counts of surface
+    evaluations, foot points, linear solves and iterations (time steps); points (n, 3), None where the method gives a
+    length only; gap: the largest distance of a point from the surface.
     """
 
     outcome: Outcome
@@ -94,7 +94,7 @@ def _ours(problem: Problem, particles: int, curve: Floats | None, given: dict[st
         outcome = Outcome.STALLED
     return Attempt(
         outcome,
-        polyline(found.points[0]),
+        float(found.length[0]),
         c.evaluations,
         c.feet,
         c.solves,

@@ -26,6 +26,7 @@ def write_paths(path: Path, paths: Paths) -> None:
         "path": np.arange(p),
         "family": paths.family,
         "length": figures.length,
+        "fibre_length": paths.length,
         "bridged_length": figures.bridged,
         "max_gap": figures.max_gap,
         "max_slip": figures.max_slip,

@@ -46,7 +46,7 @@ def path_figures(paths: Paths) -> PathFigures:
     return PathFigures(
         told=frozen(told),
         at_rest=int(taut.sum()),
-        length=total,
+        length=float(paths.length[told].sum()),
         bridged_fraction=bridged / total if total > 0.0 else 0.0,
         spans=_of(told, bridges(paths)),
         max_gap=float(each.max_gap[told].max(initial=0.0)),

@@ -7,7 +7,6 @@ import numpy as np
 from meshwind.cast import Floats
 from meshwind.layup.crossings import Crossings, counts
 from meshwind.layup.layup import Layup
-from meshwind.layup.lengths import lengths
 from meshwind.layup.revolutions import FRICTION, WIDER, Revolutions
 from meshwind.layup.spacing import Spaced
 from meshwind.layup.windability import CONCAVE, CONVEX, SADDLE, Windability
@@ -100,7 +99,7 @@ def quad_figures(layup: Layup) -> dict[str, Any]:
 
 def fibre_figures(layup: Layup, linear_density: float | None) -> dict[str, Any]:
     """Length of all fibres, and their mass where the linear density is known."""
-    length = float(lengths(layup.paths).length.sum())
+    length = float(layup.paths.length.sum())
     mass = None if linear_density is None else linear_density * length
     return {"length": length, "linear_density": linear_density, "mass": mass}
 

@@ -123,8 +123,7 @@ class Setting:
         self._lay(batch, NO_TREE)
         lifted = np.flatnonzero(batch.status == LIFTED)
         if len(lifted):
-            part = fresh(batch.starts[lifted], batch.X.shape[1])
-            part.tallies[:] = batch.tallies[lifted]
+            part = fresh(batch.starts[lifted], batch.X.shape[1])  # counted as if the tree had been there
             self._lay(part, surface.tree)
             batch.put(lifted, part)
 
