@@ -6,6 +6,7 @@ import numpy as np
 
 from meshwind.chart import Chart
 from meshwind.errors import BadInputError
+from meshwind.layup.layup import Layup
 from meshwind.layup.revolutions import FRICTION, WIDER, Revolutions
 from meshwind.layup.spacing import Spaced
 from meshwind.mandrel.ends import place
@@ -61,6 +62,13 @@ def about_paths(paths: Paths) -> tuple[Note, ...]:
     told = "1 path turns" if cut == 1 else f"{cut} paths turn"
     more = 2 * paths.gap.shape[1] - 1
     return (Note(f"{told} over an edge within one segment, exact to its length there; --particles {more} tells more"),)
+
+
+def about_layup(layup: Layup) -> tuple[Note, ...]:
+    """Whether the quad mesh is of fibres that hold."""
+    if not layup.as_asked:
+        return ()
+    return (Note("too few paths hold for a quad mesh: crossings and quads are those of the windings as asked for"),)
 
 
 def about_choice(chosen: Revolutions | None) -> tuple[Note, ...]:

@@ -19,7 +19,7 @@ from meshwind.layup.revolutions import Revolutions, choose_revolutions
 from meshwind.layup.spacing import Spaced, space_out
 from meshwind.mandrel import Mesh, annulus, read
 from meshwind.mandrel.scalars import Scalars, read_scalars
-from meshwind.notes import FIT_ERROR, Note, about_choice, about_fit, about_paths, about_spacing
+from meshwind.notes import FIT_ERROR, Note, about_choice, about_fit, about_layup, about_paths, about_spacing
 from meshwind.options import AUTO, FIELD, STEPS_A_TURN, Options
 from meshwind.output import folder
 from meshwind.output.report import report, write_report
@@ -197,6 +197,7 @@ def wind(
         notes = (*notes, *about_paths(laid), *about_choice(chosen), *about_spacing(spaced, options.units))
     with clock.stage("assess"):
         layup = assess(laid, options.band_width)
+        notes = (*notes, *about_layup(layup))
     result = Result(part, chart, layup, options, command, clock.seconds, notes, chosen, spaced)
     return result if target is None else _write(result, target, render, clock)
 

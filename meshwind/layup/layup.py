@@ -5,6 +5,7 @@ from functools import cached_property
 
 from meshwind.cast import Bools, Ints
 from meshwind.errors import BadInputError
+from meshwind.layup.as_asked import as_asked
 from meshwind.layup.bands import Bands, bands
 from meshwind.layup.coverage import Coverage, coverage
 from meshwind.layup.crossings import Crossings, crossings, own_crossings
@@ -22,13 +23,20 @@ _FEWEST = 3
 class Layup:
     """Paths with their crossings, the quad mesh on them and the coverage of the surface.
 
-    What else can be told of them is worked out when it is first asked for.
+    crossed: the paths that crossings and quads are of; where too few come to rest for a mesh they are the windings as
+    asked for.  What else can be told of them is worked out when it is first asked for.
     """
 
     paths: Paths
     crossings: Crossings
     quads: QuadMesh
     coverage: Coverage
+    crossed: Paths
+
+    @property
+    def as_asked(self) -> bool:
+        """Whether crossings and quads are of windings that do not hold, as they were asked for."""
+        return self.crossed is not self.paths
 
     @cached_property
     def bands(self) -> Bands:
@@ -43,12 +51,12 @@ class Layup:
     @cached_property
     def sides(self) -> CellSides:
         """Lengths of fibre between crossings."""
-        return cell_sides(self.paths, self.crossings)
+        return cell_sides(self.crossed, self.crossings)
 
     @cached_property
     def own_crossings(self) -> Ints:
         """Pairs (k, 2) of paths of one family that cross."""
-        return own_crossings(self.paths, self.crossings.compared)
+        return own_crossings(self.crossed, self.crossings.compared)
 
     @cached_property
     def quality(self) -> QuadQuality:
@@ -64,12 +72,20 @@ class Layup:
 def assess(paths: Paths, width: float | None = None) -> Layup:
     """Cross, mesh and cover: `width` of the band in mesh units, by default one layer a family on average.
 
-    Crossings and quads are those of the converged paths, or of all where a family has fewer than three such.
+    Crossings and quads are those of the converged paths, or of all where a family has fewer than three such; and where
+    these give no mesh, because paths have slid off, of the windings as asked for.
     """
     if not isinstance(paths, Paths):
         raise BadInputError(f"assess takes Paths, not {type(paths).__name__}; make them with solve(...)")
+    cover = coverage(paths, width)
     met = crossings(paths, _worth_crossing(paths))
-    return Layup(paths, met, quads(paths, met), coverage(paths, width))
+    mesh = quads(paths, met)
+    if not len(mesh.quads) and (paths.status != Status.CONVERGED).any():
+        asked = as_asked(paths)
+        planned = crossings(asked)
+        if len((drawn := quads(asked, planned)).quads):
+            return Layup(paths, planned, drawn, cover, asked)
+    return Layup(paths, met, mesh, cover, paths)
 
 
 def _worth_crossing(paths: Paths) -> Bools | None:
