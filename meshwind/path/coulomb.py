@@ -33,32 +33,38 @@ def dot(a, b):
 
 
 @njit(cache=True)
-def curve_at(curve, s, point, tangent):
-    """Point and derivative by s of the Catmull-Rom spline through curve (m, 2), s in samples: third order."""
+def curve_at(curve, s):
+    """Point (u, v) and derivative by s of the Catmull-Rom spline through curve (m, 2), s in samples: third order."""
     m = len(curve)
     k = min(max(int(np.floor(s)), 0), m - 2)
     x = s - k
-    for a in range(2):
-        p0, p1 = curve[k, a], curve[k + 1, a]
-        if m == 2:
-            d0 = d1 = p1 - p0
-        else:
-            d0 = 0.5 * (p1 - curve[k - 1, a]) if k > 0 else -1.5 * p0 + 2.0 * p1 - 0.5 * curve[2, a]
-            d1 = 0.5 * (curve[k + 2, a] - p0) if k < m - 2 else 1.5 * p1 - 2.0 * p0 + 0.5 * curve[m - 3, a]
-        y, z = x * x, x * x * x
-        point[a] = (2 * z - 3 * y + 1) * p0 + (z - 2 * y + x) * d0 + (3 * y - 2 * z) * p1 + (z - y) * d1
-        tangent[a] = (6 * y - 6 * x) * (p0 - p1) + (3 * y - 4 * x + 1) * d0 + (3 * y - 2 * x) * d1
+    u, du = catmull_rom(curve, k, m, 0, x)
+    v, dv = catmull_rom(curve, k, m, 1, x)
+    return u, v, du, dv
+
+
+@njit(inline="always", cache=True)
+def catmull_rom(curve, k, m, a, x):
+    """Coordinate a, and its derivative, at share x from sample k of m to the next."""
+    p0, p1 = curve[k, a], curve[k + 1, a]
+    if m == 2:
+        return p0 + x * (p1 - p0), p1 - p0
+    d0 = 0.5 * (p1 - curve[k - 1, a]) if k > 0 else -1.5 * p0 + 2.0 * p1 - 0.5 * curve[2, a]
+    d1 = 0.5 * (curve[k + 2, a] - p0) if k < m - 2 else 1.5 * p1 - 2.0 * p0 + 0.5 * curve[m - 3, a]
+    y, z = x * x, x * x * x
+    value = (2 * z - 3 * y + 1) * p0 + (z - 2 * y + x) * d0 + (3 * y - 2 * z) * p1 + (z - y) * d1
+    return value, (6 * y - 6 * x) * (p0 - p1) + (3 * y - 4 * x + 1) * d0 + (3 * y - 2 * x) * d1
 
 
 @njit(cache=True)
-def nearest_on(curve, s, u, v, frame, point, tangent):
-    """The s whose point of the curve is nearest (u, v) in the metric of `frame`, from a guess; leaves that point."""
+def nearest_on(curve, s, u, v, frame):
+    """The s whose point of the curve is nearest (u, v) in the metric of `frame`, from a guess."""
     for _ in range(12):
-        curve_at(curve, s, point, tangent)
+        pu, pv, du, dv = curve_at(curve, s)
         along = square = 0.0
         for k in range(3):
-            c = frame[SU, k] * tangent[0] + frame[SV, k] * tangent[1]
-            along += c * (frame[SU, k] * (u - point[0]) + frame[SV, k] * (v - point[1]))
+            c = frame[SU, k] * du + frame[SV, k] * dv
+            along += c * (frame[SU, k] * (u - pu) + frame[SV, k] * (v - pv))
             square += c * c
         step = min(max(along / max(square, 1e-300), -4.0), 4.0)
         then = min(max(s + step, 0.0), len(curve) - 1.0)
@@ -66,7 +72,6 @@ def nearest_on(curve, s, u, v, frame, point, tangent):
         s = then
         if done:
             break
-    curve_at(curve, s, point, tangent)
     return s
 
 
@@ -112,9 +117,7 @@ def second_form(frame, n, a, b):
 @njit(cache=True)
 def along_curve(curve, s, frame, n, t, b, way):
     """At place s of the starting curve: its unit tangent t, b = n x t, and t in (u, v)."""
-    point, tangent = np.empty(2), np.empty(2)
-    curve_at(curve, s, point, tangent)
-    u, v = tangent[0], tangent[1]
+    _, _, u, v = curve_at(curve, s)
     square = 0.0
     for k in range(3):
         t[k] = frame[SU, k] * u + frame[SV, k] * v
@@ -221,60 +224,79 @@ def differentiate(state, periodic, before, after, table, mode, balance, contacts
     X, uv, frames, normal = state[0], state[1], state[2], state[3]
     t, b, turn, ways, load, rest = balance
     n = len(X)
-    force, m, mu = np.empty(3), np.empty(3), np.empty(3)
+    mu = np.empty(3)
     count = 0
     i = after[0]
     while i < n - 1:
         p, q = before[i], after[i]
         contacts[count] = i
+        low, own, up = lower[count], diagonal[count], upper[count]
+        low[:], own[:], up[:] = 0.0, 0.0, 0.0
         gp, gq = 1.0 / (i - p), 1.0 / (q - i)
-        pull(X, i, p, q, force)
-        n_i = normal[i]
-        for k in range(3):
-            m[k] = gq * (X[q, k] - X[i, k]) + gp * (X[i, k] - X[p, k])
-        lean = dot(m, n_i)
-        flat = max(np.sqrt(max(dot(m, m) - lean * lean, 0.0)), 1e-300)
-        coefficient(table, periodic, uv[i, 0], uv[i, 1], mu)
-        ft, fb, press, sigma = load[i, 0], load[i, 1], load[i, 2], float(mode[i])
+        press, sigma = load[i, 2], float(mode[i])
         bound = mode[i] == STUCK or mode[i] == HELD
-        grip = sigma * mu[0] if press > 0.0 else 0.0
-        sense = -1.0 if mode[i] == STUCK and dot(m, t[i]) < 0.0 else 1.0
-        for a in range(2):
-            for side in range(3):
-                other = p if side == 0 else (i if side == 1 else q)
-                free = a == 0 or (mode[other] != STUCK and mode[other] != HELD and other > 0 and other < n - 1)
-                row_t = row_b = 0.0
-                if free and 0 < other < n - 1:
-                    column = t[other] if a == 0 else b[other]
-                    weight = gp if side == 0 else (-gp - gq if side == 1 else gq)
-                    if mode[i] == HELD:
-                        row_t = weight * dot(column, t[i])
-                        if side == 1:
-                            row_t += dot(force, turn[i])
-                    else:  # R_t = (|e|^2 - |a|^2) / |n x m|
-                        for k in range(3):
-                            e, f = gq * (X[q, k] - X[i, k]), gp * (X[i, k] - X[p, k])
-                            row_t += column[k] * (gp * f if side == 0 else (-gq * e - gp * f if side == 1 else gq * e))
-                        row_t *= 2.0 / (flat * sense)
-                    if not bound:
-                        spin = -gp if side == 0 else (gp - gq if side == 1 else gq)
-                        dn_t = dn_b = slope = 0.0
-                        if side == 1:
-                            dn_t = -second_form(frames[i], n_i, ways[i, 0], ways[i, a])
-                            dn_b = -second_form(frames[i], n_i, ways[i, 1], ways[i, a])
-                            slope = mu[1] * ways[i, a, 0] + mu[2] * ways[i, a, 1]
-                        angle = (spin * dot(column, b[i]) - lean * dn_b) / flat
-                        row_b = weight * dot(column, b[i]) - ft * angle + press * dn_b + sigma * press * slope
-                        row_b -= grip * (weight * dot(column, n_i) + ft * dn_t + fb * dn_b)
-                if bound and side == 1 and a == 1:
-                    row_b = -1.0
-                if side == 0:
-                    lower[count, 0, a], lower[count, 1, a] = -row_t, -row_b
-                elif side == 1:
-                    diagonal[count, 0, a], diagonal[count, 1, a] = -row_t, -row_b
-                else:
-                    upper[count, 0, a], upper[count, 1, a] = -row_t, -row_b
+        coefficient(table, periodic, uv[i, 0], uv[i, 1], mu)
+        grip = sigma * mu[0] if press > 0.0 and not bound else 0.0
+        lean = square = ahead = spin = 0.0
+        for k in range(3):
+            m = gq * (X[q, k] - X[i, k]) + gp * (X[i, k] - X[p, k])
+            lean += m * normal[i, k]
+            square += m * m
+            ahead += m * t[i, k]
+            spin += (gp * (X[p, k] - X[i, k]) + gq * (X[q, k] - X[i, k])) * turn[i, k]
+        flat = max(np.sqrt(max(square - lean * lean, 0.0)), 1e-300)
+        scale = 2.0 / flat if mode[i] != STUCK or ahead >= 0.0 else -2.0 / flat
+        # R_t = (|e|^2 - |a|^2) / |n x m|, or the pull along the rim; R_b across the fibre, whose direction turns
+        bent = load[i, 0] / flat
+        for k in range(3):
+            e, f = gq * (X[q, k] - X[i, k]), gp * (X[i, k] - X[p, k])
+            side, out = b[i, k], grip * normal[i, k]
+            if mode[i] == HELD:
+                along_p, along_i, along_q = gp * t[i, k], -(gp + gq) * t[i, k], gq * t[i, k]
+            else:
+                along_p, along_q = scale * gp * f, scale * gq * e
+                along_i = -along_p - along_q
+            across_p, across_q = gp * (side * (1.0 + bent) - out), gq * (side * (1.0 - bent) - out)
+            across_i = -across_p - across_q
+            low[0, 0] -= along_p * t[p, k]
+            own[0, 0] -= along_i * t[i, k]
+            up[0, 0] -= along_q * t[q, k]
+            low[0, 1] -= along_p * b[p, k]
+            own[0, 1] -= along_i * b[i, k]
+            up[0, 1] -= along_q * b[q, k]
+            low[1, 0] -= across_p * t[p, k]
+            own[1, 0] -= across_i * t[i, k]
+            up[1, 0] -= across_q * t[q, k]
+            low[1, 1] -= across_p * b[p, k]
+            own[1, 1] -= across_i * b[i, k]
+            up[1, 1] -= across_q * b[q, k]
+        if mode[i] == HELD:
+            own[0, 0] -= spin
+        elif not bound:
+            for a in range(2):
+                dn_t = -second_form(frames[i], normal[i], ways[i, 0], ways[i, a])
+                dn_b = -second_form(frames[i], normal[i], ways[i, 1], ways[i, a])
+                slope = mu[1] * ways[i, a, 0] + mu[2] * ways[i, a, 1]
+                own[1, a] -= (bent * lean + press) * dn_b + sigma * press * slope
+                own[1, a] += grip * (load[i, 0] * dn_t + load[i, 1] * dn_b)
+        if bound:
+            low[1, :], own[1, :], up[1, :], own[0, 1] = 0.0, 0.0, 0.0, 0.0
+            own[1, 1] = 1.0
+        if fixed(mode, p, n):
+            low[:, 1] = 0.0
+        if p == 0:
+            low[:, 0] = 0.0
+        if fixed(mode, q, n):
+            up[:, 1] = 0.0
+        if q == n - 1:
+            up[:, 0] = 0.0
         right[count, 0], right[count, 1] = rest[i, 0], rest[i, 1]
         count += 1
         i = q
     return count
+
+
+@njit(inline="always", cache=True)
+def fixed(mode, i, n):
+    """Whether particle i of n cannot move across: an end of the path, stuck, or at a rim."""
+    return i == 0 or i == n - 1 or mode[i] == STUCK or mode[i] == HELD

@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from meshwind.path.coulomb import HELD, STUCK, across, curve_at, dot, nearest_on
+from meshwind.path.coulomb import HELD, STUCK, curve_at, nearest_on
 from meshwind.path.newton import EVALUATIONS
 from meshwind.path.state import copy_particle, touch_down
 from meshwind.surface.evaluate import SU, SV
@@ -19,7 +19,6 @@ def slide(net, periodic, step, move, contacts, count, curve, balance, state, gri
     place, offset, mode = grip
     place_t, offset_t, mode_t = after_grip
     ways, load = balance[3], balance[4]
-    point, tangent = np.empty(2), np.empty(2)
     last = len(uv) - 1
     copy_particle(state, trial, 0)
     copy_particle(state, trial, last)
@@ -28,11 +27,11 @@ def slide(net, periodic, step, move, contacts, count, curve, balance, state, gri
     for c in range(count):
         i = contacts[c]
         if mode[i] == STUCK:
-            curve_at(curve, place[i], point, tangent)
-            rate = np.sqrt((tangent[0] ** 2 + tangent[1] ** 2) / max(ways[i, 0, 0] ** 2 + ways[i, 0, 1] ** 2, 1e-300))
+            _, _, du, dv = curve_at(curve, place[i])
+            rate = np.sqrt((du * du + dv * dv) / max(ways[i, 0, 0] ** 2 + ways[i, 0, 1] ** 2, 1e-300))
             place_t[i] = min(max(place[i] + step * move[c, 0] / max(rate, 1e-300), 0.0), len(curve) - 1.0)
-            curve_at(curve, place_t[i], point, tangent)
-            touch_down(net, periodic, trial, i, point[0], point[1])
+            u, v, _, _ = curve_at(curve, place_t[i])
+            touch_down(net, periodic, trial, i, u, v)
             continue
         u = uv[i, 0] + step * (move[c, 0] * ways[i, 0, 0] + move[c, 1] * ways[i, 1, 0])
         v = uv[i, 1] + step * (move[c, 0] * ways[i, 0, 1] + move[c, 1] * ways[i, 1, 1])
@@ -43,8 +42,8 @@ def slide(net, periodic, step, move, contacts, count, curve, balance, state, gri
         locate(curve, i, trial, after_grip, size)
         if mode[i] != HELD and load[i, 3] > 0.0 and offset_t[i] * mode[i] >= 0.0:  # back on the curve, or across it
             mode_t[i] = np.int8(STUCK)
-            curve_at(curve, place_t[i], point, tangent)
-            touch_down(net, periodic, trial, i, point[0], point[1])
+            u, v, _, _ = curve_at(curve, place_t[i])
+            touch_down(net, periodic, trial, i, u, v)
             offset_t[i] = 0.0
             tally[EVALUATIONS] += 1
     tally[EVALUATIONS] += count
@@ -53,16 +52,17 @@ def slide(net, periodic, step, move, contacts, count, curve, balance, state, gri
 @njit(cache=True)
 def locate(curve, i, state, grip, size):
     """Place of particle i along the starting curve, and its signed distance from it, positive to the left."""
-    uv, frames, normal = state[1], state[2], state[3]
+    uv, frames = state[1], state[2]
     place, offset, mode = grip
-    point, tangent = np.empty(2), np.empty(2)
-    place[i] = nearest_on(curve, place[i], uv[i, 0], uv[i, 1], frames[i], point, tangent)
-    way, side, away = np.empty(3), np.empty(3), np.empty(3)
+    place[i] = nearest_on(curve, place[i], uv[i, 0], uv[i, 1], frames[i])
+    u, v, du, dv = curve_at(curve, place[i])
+    # both the way from the curve and the curve's tangent lie in the tangent plane: their area over the tangent's length
+    e = f = g = 0.0
     for k in range(3):
-        way[k] = frames[i, SU, k] * tangent[0] + frames[i, SV, k] * tangent[1]
-        away[k] = frames[i, SU, k] * (uv[i, 0] - point[0]) + frames[i, SV, k] * (uv[i, 1] - point[1])
-    across(normal[i], way, side)
-    d = dot(away, side) / np.sqrt(max(dot(side, side), 1e-300))
+        su, sv = frames[i, SU, k], frames[i, SV, k]
+        e, f, g = e + su * su, f + su * sv, g + sv * sv
+    area = np.sqrt(max(e * g - f * f, 0.0)) * (du * (uv[i, 1] - v) - dv * (uv[i, 0] - u))
+    d = area / np.sqrt(max(e * du * du + 2.0 * f * du * dv + g * dv * dv, 1e-300))
     offset[i] = d if abs(d) > SETTLE * size else 0.0
 
 
@@ -71,7 +71,6 @@ def take_hold(net, periodic, curve, state, grip, size, tally):
     """Complete the grip of a state: stuck particles go to their place, slipping ones measure their way from it."""
     X, uv, frames, normal, touching, clear = state
     place, offset, mode = grip
-    point, tangent = np.empty(2), np.empty(2)
     offset[0] = offset[-1] = 0.0
     for i in range(1, len(X) - 1):
         offset[i] = 0.0
@@ -82,8 +81,8 @@ def take_hold(net, periodic, curve, state, grip, size, tally):
             locate(curve, i, state, grip, size)
             mode[i] = np.int8(STUCK if offset[i] == 0.0 else (-1 if offset[i] > 0.0 else 1))
         if mode[i] == STUCK:
-            curve_at(curve, place[i], point, tangent)
-            touch_down(net, periodic, state, i, point[0], point[1])
+            u, v, _, _ = curve_at(curve, place[i])
+            touch_down(net, periodic, state, i, u, v)
             tally[EVALUATIONS] += 1
             offset[i] = 0.0
 
@@ -93,17 +92,16 @@ def space_along(net, periodic, curve, state, place):
     """Put the particles on the starting curve, evenly by length in space."""
     X = state[0]
     n = len(X)
-    point, tangent = np.empty(2), np.empty(2)
     for i in range(n):
         place[i] = (len(curve) - 1.0) * i / (n - 1)
     for _ in range(2):
         for i in range(n):
-            curve_at(curve, place[i], point, tangent)
-            touch_down(net, periodic, state, i, point[0], point[1])
+            u, v, _, _ = curve_at(curve, place[i])
+            touch_down(net, periodic, state, i, u, v)
         s = np.zeros(n)
         for i in range(1, n):
             s[i] = s[i - 1] + np.sqrt(((X[i] - X[i - 1]) ** 2).sum())
         place[:] = np.interp(np.linspace(0.0, s[n - 1], n), s, place)
     for i in range(n):
-        curve_at(curve, place[i], point, tangent)
-        touch_down(net, periodic, state, i, point[0], point[1])
+        u, v, _, _ = curve_at(curve, place[i])
+        touch_down(net, periodic, state, i, u, v)
