@@ -51,7 +51,9 @@ def main() -> None:
     results.table("failures", failed)
     comparison.draw_failures(results, failed)
     results.table("capabilities", comparison.capabilities())
-    results.table("ratios", comparison.ratios(points))
+    ratios = comparison.ratios(points)
+    results.table("ratios", ratios)
+    results.table("ratios_at_equal_error", comparison.summary(ratios))
     lost = [row for cost in ("seconds", "evaluations") for row in comparison.beaten(points, cost)]
     results.table("beaten", lost)
     for row in lost:

@@ -17,6 +17,7 @@ NOISE = 1.1
 """A time counts as shorter if it is by this factor: repeats on a shared machine agree no better."""
 TIE = 1.02
 """Errors are equal to this factor: schemes on one chain of particles share its error to many digits."""
+FLYING = ("hyperboloid", "elbow")
 ERRORS = (1e-4, 1e-6, 1e-8)
 
 
@@ -83,6 +84,27 @@ def ratios(points: Sequence[Point]) -> list[dict[str, Any]]:
                 )
                 rows.append(row | {f"at {e:g}": at_error(points, problem, method, e) for e in ERRORS})
     return rows
+
+
+def summary(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Ratios at equal error a method: the middle one of all problems with the least and the most, and of how many.
+
+    Problems whose fibre flies from end to end are left out: there every method is exact with any particles.
+    """
+    table = []
+    for method in (name for name in LOOKS if name != OURS):
+        row: dict[str, Any] = dict(method=LOOKS[method].label)
+        for error in ERRORS:
+            found = [
+                r[f"at {error:g}"]
+                for r in rows
+                if r["method"] == method and r[f"at {error:g}"] is not None and not r["problem"].startswith(FLYING)
+            ]
+            row[f"at {error:g}"] = (
+                f"{median(found):.2g} ({min(found):.2g} to {max(found):.2g}, {len(found)})" if found else ""
+            )
+        table.append(row)
+    return table
 
 
 def at_error(points: Sequence[Point], problem: str, method: str, error: float) -> float | None:
