@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from irregular import annulus
+from scipy.spatial import cKDTree
 
 import meshwind as mw
 from meshwind.cast import Floats
@@ -43,6 +44,23 @@ def test_error_falls_with_third_order_or_better() -> None:
         np.sqrt(np.mean(true_error(fit(flatten(annulus(vase, n, 0.7)), 1e-12)) ** 2)) for n in (1000, 4000, 16000)
     ]
     assert np.log2(errors[0] / errors[2]) / 2 >= 3.0
+
+
+def test_next_to_a_cut_the_surface_does_not_swing_between_the_vertices() -> None:
+    """Opened wider, a part is still the same one: its surface there is that of the part opened less wide."""
+    mesh = mw.read(DATA / "bottle.obj")
+    inner = fit(flatten(mw.annulus(mesh, opening=12.0)))
+    grid = np.stack(np.meshgrid(np.arange(300) / 300, np.linspace(0, 1, 600), indexing="ij"), axis=-1).reshape(-1, 2)
+    points, normals = inner.points(grid), inner.normals(grid)
+    tree = cKDTree(points)
+    for opening in (14.0, 15.0, 16.5, 17.0):
+        surface = fit(flatten(mw.annulus(mesh, opening=opening)))
+        edge = np.random.default_rng(4).random((4000, 2)) * [1.0, 0.05]
+        for uv in (edge, [0.0, 1.0] - edge * [-1.0, 1.0]):
+            at = surface.points(uv)
+            near = tree.query(at)[1]
+            off = np.abs(((at - points[near]) * normals[near]).sum(axis=1))
+            assert off.max() < 0.04  # of 220 mm; 0.1 where the points between the vertices count for nothing
 
 
 def test_the_tolerance_chooses_the_net() -> None:

@@ -18,9 +18,16 @@ LOOSE = 0.1
 """Weight of a vertex that trimming made, against one of the part's own."""
 CLOSE = 1e-5
 """Of the plane: a foot's last step is at most so long, and what it leaves is of the order of its square."""
-INFILL, SLIGHT = 0.05, 5e-5
-"""Weight of a point between vertices: enough to hold a span that has nothing else; and among spans that all hold
-vertices, where its own error (second order next to a rim, whose normals are one-sided) would show in the surface."""
+INFILL, FAIR, SLIGHT = 0.05, 5e-3, 5e-5
+"""Weight of a point between vertices: enough to hold a span that has nothing else; next to a cut, where the vertices
+that trimming made are few and count for little; and among spans that all hold vertices of the part, where its own error
+(second order next to a rim, whose normals are one-sided) would show in the surface.
+
+At openings of 14 to 18 mm in the sample bottle FAIR keeps the surface within 0.024 mm of the true part, where SLIGHT
+let it swing by up to 0.1 mm between vertices that it followed to 0.004 mm.
+"""
+NEXT = 2
+"""Spans that a cut makes itself felt over."""
 
 
 @dataclass(frozen=True)
@@ -97,10 +104,12 @@ class Samples:
             return np.full(len(uv), INFILL)
         held = np.zeros(spans, dtype=bool)
         held[_span(self.uv, spans)] = True
-        held = np.pad(held, ((0, 0), (1, 1)), constant_values=True)
-        held = held[:, :-2] & held[:, 1:-1] & held[:, 2:]
-        held = held & np.roll(held, 1, axis=0) & np.roll(held, -1, axis=0)
-        return np.where(held[_span(uv, spans)], SLIGHT, INFILL)
+        cut = np.zeros(spans, dtype=bool)
+        cut[_span(self.uv[~self.trusted], spans)] = True
+        for _ in range(NEXT):
+            cut = ~_inner(~cut)
+        there = _span(uv, spans)
+        return np.where(_inner(held)[there], np.where(cut[there], FAIR, SLIGHT), INFILL)
 
     def corrected(self, surface: Surface) -> tuple["Samples", Floats]:
         """Every vertex moved to its foot in the plane, on a rim along the rim; and the distances (n,)."""
@@ -113,6 +122,13 @@ class Samples:
         moved[rim, 0] = self.uv[rim, 0] + (miss * at[:, 1]).sum(axis=1) / (at[:, 1] ** 2).sum(axis=1)
         distance[rim] = np.linalg.norm(self.points[rim] - surface.points(moved[rim]), axis=1)
         return replace(self, uv=moved), distance
+
+
+def _inner(spans: Bools) -> Bools:
+    """Those of the marked spans (nu, nv) that have only marked ones about them; nothing lies beyond the rims."""
+    wide = np.pad(spans, ((0, 0), (1, 1)), constant_values=True)
+    wide = wide[:, :-2] & wide[:, 1:-1] & wide[:, 2:]
+    return np.asarray(wide & np.roll(wide, 1, axis=0) & np.roll(wide, -1, axis=0))
 
 
 def _span(uv: Floats, spans: tuple[int, int]) -> tuple[Ints, Ints]:
