@@ -227,6 +227,8 @@ def test_caps_follow_their_rim_and_die_out_towards_the_pole() -> None:
     assert cap.sum() > 10
     assert moves[~cap] == pytest.approx(part.vertices[~cap] * [0.05, 0.05, 0.0], abs=3e-4)
     assert (moves[np.abs(part.vertices[:, 2]) > 1.999] == 0).all()
+    next_to = cap & np.isin(np.arange(len(cap)), part.faces[(~cap[part.faces]).any(axis=1)])
+    assert np.abs(moves[next_to] - part.vertices[next_to] * [0.05, 0.05, 0.0]).max() < 4e-5
     edge = part.faces[:, :2]
     jump = np.linalg.norm(moves[edge[:, 0]] - moves[edge[:, 1]], axis=1)
     length = np.linalg.norm(part.vertices[edge[:, 0]] - part.vertices[edge[:, 1]], axis=1)
