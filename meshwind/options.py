@@ -5,12 +5,9 @@ from math import isfinite
 from numbers import Integral, Real
 
 from meshwind.errors import BadInputError
+from meshwind.layup.revolutions import AUTO, STEPS_A_TURN
 from meshwind.mandrel.ends import parse
 
-STEPS_A_TURN = 8
-"""Fewest steps of a path in a turn: with fewer a polyline is no picture of the fibre."""
-AUTO = "auto"
-"""In place of the revolutions: they are chosen."""
 FIELD = "field:"
 """Before the name of a scalar field in a mesh file."""
 MEMORY = 4e9

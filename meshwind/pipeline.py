@@ -12,15 +12,14 @@ from typing import Any
 from meshwind.chart import Chart, flatten
 from meshwind.errors import BadInputError
 from meshwind.layup.families import Families, families
-from meshwind.layup.holding import hoop_revolutions
 from meshwind.layup.layup import Layup, assess
 from meshwind.layup.pins import read_pins
-from meshwind.layup.revolutions import Revolutions, choose_revolutions
+from meshwind.layup.revolutions import AUTO, Revolutions, choose_revolutions
 from meshwind.layup.spacing import Spaced, space_out
 from meshwind.mandrel import Mesh, annulus, read
 from meshwind.mandrel.scalars import Scalars, read_scalars
 from meshwind.notes import FIT_ERROR, Note, about_choice, about_fit, about_layup, about_paths, about_spacing
-from meshwind.options import AUTO, FIELD, STEPS_A_TURN, Options
+from meshwind.options import FIELD, Options
 from meshwind.output import folder
 from meshwind.output.report import report, write_report
 from meshwind.output.write import write_files
@@ -214,12 +213,7 @@ def _chosen(surface: Surface, options: Options, friction: float | Friction, cloc
     if options.revolutions != AUTO:
         return None
     with clock.stage("choose"):
-        most = hoop_revolutions(surface)
-        if options.particles is not None:
-            most = min(most, (options.particles - 1) / STEPS_A_TURN)
-        return choose_revolutions(
-            surface, paths=options.paths, particles=options.particles, friction=friction, most=most
-        )  # fmt: skip
+        return choose_revolutions(surface, paths=options.paths, particles=options.particles, friction=friction)
 
 
 def _field(mesh: str | PathLike[str] | Mesh, friction: float | str) -> Scalars | None:

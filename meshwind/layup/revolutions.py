@@ -31,6 +31,11 @@ _GAIN = 3.0
 FRICTION, WIDER = 0.2, 1.5
 """What more would allow: this friction (a wet fibre's), and openings so many times as wide."""
 
+AUTO = "auto"
+"""In place of the revolutions: they are chosen."""
+STEPS_A_TURN = 8
+"""Fewest steps of a path in a turn: with fewer a polyline is no picture of the fibre."""
+
 Intervals = tuple[tuple[float, float], ...]
 
 
@@ -81,7 +86,8 @@ def choose_revolutions(
     most: float | None = None,
     further: bool = True,
 ) -> Revolutions:
-    """Choose the number of revolutions for `surface`, at most `most` (by default those of a hoop winding).
+    """Choose the number of revolutions for `surface`, at most `most` (by default those of a hoop winding, and no more
+    than `particles` can follow).
 
     Inside the interval that holds, a number is taken that bridges least, in the interval(s) where most of the surface
     presses if one of those is as good, and of these the one whose families cross closest to a right angle; with
@@ -90,7 +96,9 @@ def choose_revolutions(
     """
     if not surface.periodic:
         raise BadInputError("revolutions need a surface that closes in u; give end points to `solve` instead")
-    most = hoop_revolutions(surface) if most is None else most
+    if most is None:
+        most = hoop_revolutions(surface)
+        most = most if particles is None else min(most, (particles - 1) / STEPS_A_TURN)
     tried = min(paths, _TRIED)
     held = holding(surface, friction, most, tried, 2e-3)
     square = square_revolutions(surface)

@@ -76,7 +76,7 @@ def edit(
     default the largest distance of a vertex to the fitted surface.
     """
     _check(rounds, bound, fairness, pressing, threshold)
-    limit = _threshold(surface) if threshold is None else float(threshold)
+    limit = threshold_of(surface, threshold)
     moves = free_moves(surface, frozen_mask(surface, frozen), symmetry)
     if moves.shape[1] == 0:
         raise BadInputError("every control point is frozen; leave some free to move")
@@ -128,7 +128,10 @@ def _check(rounds: int, bound: float | None, fairness: float, pressing: float, t
             raise BadInputError(f"{name} is {value}; give a number from 0 up")
 
 
-def _threshold(surface: Surface) -> float:
+def threshold_of(surface: Surface, given: float | None = None) -> float:
+    """The largest gap that counts as none: the one given, or the largest distance of a vertex to the surface."""
+    if given is not None:
+        return float(given)
     error = 0.0 if surface.error is None else surface.error.to_surface_max
     return max(error, LEAST_GAP * surface.size)
 

@@ -26,7 +26,7 @@ OFF = 0.01
 """Of the part's size: a vertex further off the surface that goes on is not of it."""
 
 
-def displacement(chart: Chart, before: Surface, after: Surface, bound: float | None = None) -> Floats:
+def displacement(chart: Chart, before: Surface, after: Surface) -> Floats:
     """How far each vertex (n, 3) of the mesh that was read moves when the surface goes from `before` to `after`.
 
     A vertex of the wound region moves as the surface does at its foot point, so that it keeps its own distance to
@@ -48,10 +48,15 @@ def displacement(chart: Chart, before: Surface, after: Surface, bound: float | N
         known = wound.copy()
         known[near] = True
         moved = _faded(annulus.mesh, moved, wound, known, max(perimeter(annulus.vertices, rim) for rim in annulus.rims))
-    if bound is not None:
-        size = np.linalg.norm(moved, axis=1, keepdims=True)
-        moved = moved * np.minimum(1.0, bound / np.maximum(size, 1e-300))
     return moved
+
+
+def within(moves: Floats, bound: float | None) -> Floats:
+    """The moves (n, 3), those longer than the bound cut down to it."""
+    if bound is None:
+        return moves
+    size = np.linalg.norm(moves, axis=1, keepdims=True)
+    return np.asarray(moves * np.minimum(1.0, bound / np.maximum(size, 1e-300)))
 
 
 def displaced(mesh: Mesh, moves: Floats) -> Mesh:

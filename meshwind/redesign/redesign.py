@@ -1,47 +1,70 @@
 """From a mesh to the nearest one that can be wound: the automatic surface editing of section 6.4."""
 
 from dataclasses import dataclass
-from os import PathLike
+from os import PathLike, fspath
+from typing import Any
 
-from meshwind.cast import Floats, frozen
-from meshwind.chart import Chart, flatten
+import numpy as np
+
+from meshwind.cast import Floats
+from meshwind.cast import frozen as immutable
 from meshwind.errors import BadInputError
-from meshwind.mandrel import Mesh, annulus, read
+from meshwind.layup.revolutions import AUTO, Revolutions, choose_revolutions
+from meshwind.mandrel import Mesh, read
 from meshwind.mandrel.measure import volume
+from meshwind.mandrel.scalars import Scalars, read_scalars
 from meshwind.path import Paths, Status
 from meshwind.redesign.edit import FAIRNESS, PRESSING, Tell, edit
-from meshwind.redesign.edited_mesh import displaced, displacement, turned_over, volume_change
+from meshwind.redesign.edited_mesh import displaced, displacement, turned_over, volume_change, within
 from meshwind.redesign.freedom import Frozen
+from meshwind.redesign.proof import Winding, Wound, fitted
+from meshwind.redesign.region import Region, parse
 from meshwind.redesign.result import Outcome, Round
-from meshwind.surface import Surface, fit
+from meshwind.surface import Surface
+
+STAGES = 3
+"""So often a mesh is edited at most: fitted anew, it is not quite the surface that was edited, and may bridge again."""
+LEAST_LEFT = 0.02
+"""Of the bound: what a later stage may always move, as the sum is cut down to the bound afterwards."""
 
 
 @dataclass(frozen=True, repr=False)
 class Redesign:
     """A part that was edited until its fibres no longer bridge, or as far as that went.
 
-    rounds: figures of each round; original, surface: the fitted surface before and after, with as many control
-    points; paths: wound on `surface`; outcome: how it ended, with its advice; mesh: the edited mesh, vertices
-    and faces in the order of `chart.annulus.mesh`, the one that was read; displacement (n, 3) of its vertices;
-    volume, volume_change: of the mesh before, open rims capped, and by the edit, in its units cubed; turned_over:
-    faces that the edit turned by more than a right angle, 0 in a sound one; threshold: a smaller gap is no bridge.
+    stages: figures of each round, for each of the fitted surfaces that were edited; before, after: the mesh that was
+    read and the edited one, each fitted and wound as `wind` does it; mesh: the edited mesh, vertices and faces in the
+    order of `part`, the one that was read; displacement (n, 3) of its vertices; outcome: how it ended, with its
+    advice; revolutions: of the winding; chosen: how they were found, where they were; volume, volume_change: of the
+    mesh before, open rims capped, and by the edit, in its units cubed; turned_over: faces that the edit turned by more
+    than a right angle, 0 in a sound one.
     """
 
-    rounds: tuple[Round, ...]
-    chart: Chart
-    original: Surface
-    surface: Surface
-    paths: Paths
-    outcome: Outcome
-    threshold: float
+    part: Mesh
     mesh: Mesh
     displacement: Floats
+    before: Wound
+    after: Wound
+    stages: tuple[tuple[Round, ...], ...]
+    outcome: Outcome
+    revolutions: float
+    chosen: Revolutions | None
     volume: float
     volume_change: float
     turned_over: int
 
     def __repr__(self) -> str:
         return f"<meshwind Redesign: {self.mesh.name}, {len(self.rounds)} rounds, {self.outcome.advice}>"
+
+    @property
+    def rounds(self) -> tuple[Round, ...]:
+        """Figures of all rounds."""
+        return tuple(each for stage in self.stages for each in stage)
+
+    @property
+    def paths(self) -> Paths:
+        """The paths on the edited mesh."""
+        return self.after.paths
 
     @property
     def windable(self) -> bool:
@@ -56,17 +79,17 @@ class Redesign:
     @property
     def bridged(self) -> float:
         """Share of the particles of `paths` whose gap is above the threshold."""
-        return float((self.paths.gap > self.threshold).mean())
+        return self.after.bridged
 
 
 def redesign(
     mesh: str | PathLike[str] | Mesh,
     *,
-    revolutions: float,
+    revolutions: float | str,
     paths: int = 12,
     particles: int = 401,
     rounds: int = 10,
-    frozen_points: Frozen = None,
+    frozen: Frozen | str = None,
     bound: float | None = None,
     symmetry: int = 1,
     fairness: float = FAIRNESS,
@@ -80,8 +103,9 @@ def redesign(
 ) -> Redesign:
     """Move the surface of a part as little as possible until no path of two families bridges.
 
-    mesh: a file or a `Mesh`.  revolutions, paths, particles: of the winding; rounds: at most so many;
-    frozen_points: mask (nu, nv) of control points that stay, or a function from their places (m, 3) to a mask (m,);
+    mesh: a file or a `Mesh`.  revolutions: of the winding, or "auto" to have them chosen; paths, particles: as in
+    `wind`; rounds: at most so many; frozen: what must not move, as ranges such as "v<0.1, z>20" or "field:NAME" for a
+    scalar of the file, or a mask (nu, nv) of control points, or a function from their places (m, 3) to a mask (m,);
     bound: largest displacement, in the mesh's units; symmetry: order of rotation about u that is kept, a divisor of
     the control net's points around; fairness: wave length over the part's size at which bending a change costs as
     much as its size, 0 for the thesis's objective alone; pressing: least normal curvature along the fibres times
@@ -92,31 +116,140 @@ def redesign(
     if not isinstance(mesh, str | PathLike | Mesh):
         raise BadInputError(f"mesh is of type {type(mesh).__name__}; give the path of a mesh file or a meshwind.Mesh")
     tell: Tell = progress if progress is not None else _silent
+    held = _held(frozen, mesh)
     tell("fit")
     part = mesh if isinstance(mesh, Mesh) else read(mesh, component)
-    chart = flatten(annulus(part, ends=ends, opening=opening))
-    original = fit(chart, tolerance)
-    edited = edit(
-        original, revolutions=revolutions, paths=paths, particles=particles, rounds=rounds, frozen=frozen_points,
-        bound=bound, symmetry=symmetry, fairness=fairness, pressing=pressing, threshold=threshold, progress=progress,
-    )  # fmt: skip
-    tell("mesh")
-    moves = displacement(chart, original, edited.surface, bound)
+    chart, surface = fitted(part, ends, opening, tolerance)
+    chosen = _chosen(surface, revolutions, paths, particles, tell)
+    turns = chosen.choice if chosen is not None else float(revolutions)
+    winding = Winding(turns, paths, particles, threshold, ends, opening, tolerance)
+    settings = {
+        "revolutions": turns, "paths": paths, "particles": particles, "symmetry": symmetry, "fairness": fairness,
+        "pressing": pressing, "threshold": threshold, "progress": progress,
+    }  # fmt: skip
+    first = winding.wound(chart, surface)
+    best, stages, outcome = _edited(part, first, winding, _Limits(rounds, bound, held), settings, tell)
     return Redesign(
-        rounds=edited.rounds,
-        chart=chart,
-        original=original,
-        surface=edited.surface,
-        paths=edited.paths,
-        outcome=edited.outcome,
-        threshold=edited.threshold,
-        mesh=displaced(part, moves),
-        displacement=frozen(moves),
+        part=part,
+        mesh=displaced(part, best.moves),
+        displacement=immutable(best.moves),
+        before=first,
+        after=best.wound,
+        stages=stages,
+        outcome=outcome,
+        revolutions=turns,
+        chosen=chosen,
         volume=volume(part.vertices, part.faces),
-        volume_change=volume_change(part, moves),
-        turned_over=turned_over(part, moves),
+        volume_change=volume_change(part, best.moves),
+        turned_over=turned_over(part, best.moves),
     )
 
 
 def _silent(_: str) -> None:
     """Say nothing."""
+
+
+def _chosen(surface: Surface, revolutions: float | str, paths: int, particles: int, tell: Tell) -> Revolutions | None:
+    """The revolutions, where they are to be chosen."""
+    if not isinstance(revolutions, str):
+        return None
+    if revolutions != AUTO:
+        raise BadInputError(f"revolutions is {revolutions!r}; give a number from 0 up, or {AUTO!r}")
+    tell("choose")
+    return choose_revolutions(surface, paths=paths, particles=particles, further=False)
+
+
+@dataclass(frozen=True)
+class _Held:
+    """What must not move: as it was given, or a region with the field that it may be told by."""
+
+    given: Frozen
+    region: Region | None = None
+    scalars: Scalars | None = None
+
+    def on(self, wound: Wound) -> Frozen:
+        """The same on a surface."""
+        if self.region is None:
+            return self.given
+        return self.region.control_points(wound.surface, wound.chart.uv, self.scalars)
+
+    @property
+    def lasts(self) -> bool:
+        """Whether it can be told on another control net."""
+        return self.region is not None or self.given is None or callable(self.given)
+
+
+def _held(frozen: Frozen | str, mesh: str | PathLike[str] | Mesh) -> _Held:
+    if not isinstance(frozen, str):
+        return _Held(frozen)
+    region = parse(frozen)
+    if not region.field:
+        return _Held(None, region)
+    if isinstance(mesh, Mesh):
+        raise BadInputError(f"frozen is {frozen!r} but the mesh is no file; give a mask of control points")
+    return _Held(None, region, read_scalars(fspath(mesh), region.field))
+
+
+@dataclass(frozen=True)
+class _Limits:
+    """At most so many rounds in all, the largest displacement in all, and what must not move."""
+
+    rounds: int
+    bound: float | None
+    held: _Held
+
+
+@dataclass(frozen=True)
+class _Moved:
+    """A mesh whose vertices were moved by `moves` (n, 3), fitted and wound."""
+
+    moves: Floats
+    wound: Wound
+
+    @property
+    def merit(self) -> tuple[float, float]:
+        """The less the better."""
+        return self.wound.bridged, self.wound.gap
+
+
+def _edited(
+    part: Mesh, first: Wound, winding: Winding, limits: _Limits, settings: dict[str, Any], tell: Tell
+) -> tuple[_Moved, tuple[tuple[Round, ...], ...], Outcome]:
+    """Edit the fitted surface, and again the one that is fitted to the edited mesh while that bridges."""
+    best = now = _Moved(np.zeros_like(part.vertices), first)
+    stages: list[tuple[Round, ...]] = []
+    outcome, left, lasts = Outcome.ROUNDS_SPENT, limits.rounds, True
+    while left >= 0 and lasts:
+        found = edit(
+            now.wound.surface, rounds=left, frozen=limits.held.on(now.wound), bound=_rest(limits.bound, now.moves),
+            **settings,
+        )  # fmt: skip
+        outcome = found.outcome
+        if not found.rounds:
+            break
+        stages.append(found.rounds)
+        left -= len(found.rounds)
+        tell("fit")
+        more = displacement(now.wound.chart, now.wound.surface, found.surface)
+        moves = within(now.moves + more, limits.bound)
+        now = _Moved(moves, winding.wound(*winding.fitted(displaced(part, moves))))
+        lasts = now.merit < best.merit and outcome == Outcome.WINDABLE and not now.wound.sound
+        best = min(now, best, key=lambda each: each.merit)
+        lasts &= len(stages) < STAGES and left > 0 and limits.held.lasts and _symmetric(now.wound, settings["symmetry"])
+    if best.wound.sound:
+        outcome = Outcome.WINDABLE
+    elif outcome == Outcome.WINDABLE:
+        outcome = Outcome.NOT_KEPT if left > 0 else Outcome.ROUNDS_SPENT
+    return best, tuple(stages), outcome
+
+
+def _rest(bound: float | None, moves: Floats) -> float | None:
+    """What of the bound is left after the moves (n, 3) so far."""
+    if bound is None:
+        return None
+    return max(bound - float(np.linalg.norm(moves, axis=1).max()), LEAST_LEFT * bound)
+
+
+def _symmetric(wound: Wound, order: int) -> bool:
+    """Whether a symmetry of that order can be kept on another control net."""
+    return wound.surface.control_points.shape[0] % order == 0

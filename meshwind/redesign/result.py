@@ -12,6 +12,7 @@ class Outcome(IntEnum):
     NO_GAIN = 2
     ROUNDS_SPENT = 3
     NOT_SOLVED = 4
+    NOT_KEPT = 5
 
     @property
     def advice(self) -> str:
@@ -29,6 +30,8 @@ _ADVICE = {
     "mesh",
     Outcome.NOT_SOLVED: "the quadratic program was not solved to its accuracy: use fewer paths, or a coarser surface "
     "(tolerance 1e-4)",
+    Outcome.NOT_KEPT: "the edited surface does not bridge, but fitted to the edited mesh it does again: give a finer mesh, "
+    "or take gaps of this size for none by a larger threshold",
 }
 
 
