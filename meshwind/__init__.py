@@ -15,6 +15,9 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from meshwind.chart import Chart as Chart
     from meshwind.chart import flatten as flatten
+    from meshwind.edited import write_redesign as write_redesign
+    from meshwind.editing.redesign import Redesign as Redesign
+    from meshwind.editing.redesign import redesign as redesign
     from meshwind.errors import BadInputError as BadInputError
     from meshwind.layup import Families as Families
     from meshwind.layup import Layup as Layup
@@ -62,6 +65,7 @@ _HOME = {
     "Friction": "path.friction", "friction_from": "path.friction",
     "Families": "layup", "Layup": "layup", "families": "layup", "assess": "layup",
     "choose_revolutions": "layup", "read_pins": "layup", "space_out": "layup", "windability": "layup",
+    "Redesign": "editing.redesign", "redesign": "editing.redesign", "write_redesign": "edited",
     "Result": "pipeline", "wind": "pipeline",
     "render": "pictures.render", "Page": "pictures.page", "draw_redesign": "pictures.redesign_scene",
 }  # fmt: skip

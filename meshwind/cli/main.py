@@ -10,6 +10,7 @@ import typer
 
 from meshwind.cli.check import check
 from meshwind.cli.export import export
+from meshwind.cli.redesign import redesign
 from meshwind.cli.render import render
 from meshwind.cli.wind import wind
 from meshwind.errors import BadInputError
@@ -29,6 +30,7 @@ app = typer.Typer(
 )
 app.command()(wind)
 app.command()(check)
+app.command()(redesign)
 app.command()(export)
 app.command()(render)
 

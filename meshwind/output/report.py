@@ -53,9 +53,9 @@ def report(
     """
     paths = layup.paths
     figures = {
-        "meshwind": _version(),
+        "meshwind": this_version(),
         "command": command,
-        "mesh": _mesh(mesh, units) | ({} if chart is None else {"ends": chart.annulus.ends}),
+        "mesh": mesh_figures(mesh, units) | ({} if chart is None else {"ends": chart.annulus.ends}),
         "surface": _surface(paths.surface, chart, tolerance),
         "winding": {
             "revolutions": revolutions,
@@ -98,14 +98,16 @@ def plain(value: Any) -> Any:
     return value
 
 
-def _version() -> str:
+def this_version() -> str:
+    """The version of meshwind that runs."""
     try:
         return version("meshwind")
     except PackageNotFoundError:  # run from a source tree that was not installed
         return "source"
 
 
-def _mesh(mesh: Mesh, units: str) -> dict[str, Any]:
+def mesh_figures(mesh: Mesh, units: str) -> dict[str, Any]:
+    """What a report says of the mesh that was read."""
     return {
         "name": mesh.name,
         "vertices": len(mesh.vertices),
@@ -139,10 +141,9 @@ def _surface(surface: Surface, chart: Chart | None, tolerance: float | None) -> 
 
 def _paths(paths: Paths) -> dict[str, Any]:
     figures = path_figures(paths)
-    loose = np.flatnonzero(paths.status != Status.CONVERGED)
     return {
         "converged": figures.at_rest,
-        "not_converged": [_failure(paths, int(k)) for k in loose],
+        "not_converged": unsettled(paths),
         "figures_over": figures.over,
         "length_total": figures.length,
         "bridged_fraction": figures.bridged_fraction,
@@ -152,6 +153,11 @@ def _paths(paths: Paths) -> dict[str, Any]:
         "max_slip": figures.max_slip,
         "max_residual": figures.max_residual,
     }
+
+
+def unsettled(paths: Paths) -> list[dict[str, Any]]:
+    """The paths that are not at rest, each with why and what would hold it."""
+    return [_failure(paths, int(k)) for k in np.flatnonzero(paths.status != Status.CONVERGED)]
 
 
 def _failure(paths: Paths, path: int) -> dict[str, Any]:

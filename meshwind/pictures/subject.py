@@ -38,7 +38,7 @@ class Subject:
     units: str = ""
     revolutions: float | None = None
     maps: Mapping[str, NDArray[Any]] = field(default_factory=dict)
-    seen_from: str = "auto"
+    seen_from: str | View = "auto"
 
     @property
     def paths(self) -> Paths:
@@ -59,6 +59,8 @@ class Subject:
     def view(self) -> View:
         """Square onto the long side that shows most of the part, its bend and its bridges, or the side asked for."""
         paths = self.paths
+        if isinstance(self.seen_from, View):
+            return self.seen_from
         if self.seen_from != "auto":
             return named_view(np.concatenate([self.points, paths.points.reshape(-1, 3)]), self.seen_from)
         v = np.linspace(0.0, 1.0, 65)
@@ -104,11 +106,13 @@ class Subject:
         }
 
 
-def subject(layup: Layup, name: str, units: str = "", revolutions: float | None = None) -> Subject:
+def subject(
+    layup: Layup, name: str, units: str = "", revolutions: float | None = None, seen_from: str | View = "auto"
+) -> Subject:
     """A layup to draw, without maps."""
     on = grid(layup.paths.surface)
     normals = np.cross(on.frames[:, 1], on.frames[:, 2])
-    return Subject(layup, on.points, on.quads, normals, name, units, revolutions)
+    return Subject(layup, on.points, on.quads, normals, name, units, revolutions, seen_from=seen_from)
 
 
 def subject_in(

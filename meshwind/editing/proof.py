@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 from meshwind.cast import Bools
 from meshwind.chart import Chart, flatten
+from meshwind.editing.edit import threshold_of
 from meshwind.layup.families import families
 from meshwind.mandrel import Mesh, annulus
 from meshwind.path import Paths, Status, solve
-from meshwind.redesign.edit import threshold_of
 from meshwind.surface import Surface, fit
 
 

@@ -7,9 +7,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from meshwind.cast import Bools, Floats
+from meshwind.editing.stencil import weights
 from meshwind.errors import BadInputError
 from meshwind.mandrel.scalars import Scalars
-from meshwind.redesign.stencil import weights
 from meshwind.surface.surface import Surface
 
 FIELD = "field:"

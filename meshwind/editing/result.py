@@ -30,8 +30,8 @@ _ADVICE = {
     "mesh",
     Outcome.NOT_SOLVED: "the quadratic program was not solved to its accuracy: use fewer paths, or a coarser surface "
     "(tolerance 1e-4)",
-    Outcome.NOT_KEPT: "the edited surface does not bridge, but fitted to the edited mesh it does again: give a finer mesh, "
-    "or take gaps of this size for none by a larger threshold",
+    Outcome.NOT_KEPT: "the edited surface does not bridge, but the one fitted to the edited mesh does: give a finer "
+    "mesh, or take gaps of this size for none by a larger threshold",
 }
 
 

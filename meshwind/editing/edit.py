@@ -6,14 +6,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshwind.cast import Floats
+from meshwind.editing.demands import press, reach
+from meshwind.editing.freedom import Frozen, free_moves, frozen_mask
+from meshwind.editing.program import ACCURACY
+from meshwind.editing.result import Outcome, Round
+from meshwind.editing.step import Step, energy, step
 from meshwind.errors import BadInputError
 from meshwind.layup.families import families
 from meshwind.path import Paths, solve
-from meshwind.redesign.demands import press, reach
-from meshwind.redesign.freedom import Frozen, free_moves, frozen_mask
-from meshwind.redesign.program import ACCURACY
-from meshwind.redesign.result import Outcome, Round
-from meshwind.redesign.step import Step, energy, step
 from meshwind.surface.surface import Surface
 
 FAIRNESS = 0.4
@@ -75,7 +75,7 @@ def edit(
     kept; fairness, pressing: see FAIRNESS and PRESSING, 0 for (6.12) alone; threshold: a gap up to this is none, by
     default the largest distance of a vertex to the fitted surface.
     """
-    _check(rounds, bound, fairness, pressing, threshold)
+    check(rounds, bound, fairness, pressing, threshold)
     limit = threshold_of(surface, threshold)
     moves = free_moves(surface, frozen_mask(surface, frozen), symmetry)
     if moves.shape[1] == 0:
@@ -117,7 +117,8 @@ def edit(
     return Edit(tuple(figures), now, own, outcome, limit)
 
 
-def _check(rounds: int, bound: float | None, fairness: float, pressing: float, threshold: float | None) -> None:
+def check(rounds: int, bound: float | None, fairness: float, pressing: float, threshold: float | None) -> None:
+    """Raise BadInputError for a number that makes no sense."""
     if not isinstance(rounds, int | np.integer) or rounds < 0:
         raise BadInputError(f"rounds is {rounds}; give a whole number from 0 up")
     for name, value, least in (("bound", bound, "above 0"), ("threshold", threshold, "above 0")):

@@ -8,18 +8,18 @@ import numpy as np
 
 from meshwind.cast import Floats
 from meshwind.cast import frozen as immutable
+from meshwind.editing.edit import FAIRNESS, PRESSING, Tell, check, edit
+from meshwind.editing.edited_mesh import displaced, displacement, turned_over, volume_change, within
+from meshwind.editing.freedom import Frozen
+from meshwind.editing.proof import Winding, Wound, fitted
+from meshwind.editing.region import Region, parse
+from meshwind.editing.result import Outcome, Round
 from meshwind.errors import BadInputError
 from meshwind.layup.revolutions import AUTO, Revolutions, choose_revolutions
 from meshwind.mandrel import Mesh, read
 from meshwind.mandrel.measure import volume
 from meshwind.mandrel.scalars import Scalars, read_scalars
 from meshwind.path import Paths, Status
-from meshwind.redesign.edit import FAIRNESS, PRESSING, Tell, edit
-from meshwind.redesign.edited_mesh import displaced, displacement, turned_over, volume_change, within
-from meshwind.redesign.freedom import Frozen
-from meshwind.redesign.proof import Winding, Wound, fitted
-from meshwind.redesign.region import Region, parse
-from meshwind.redesign.result import Outcome, Round
 from meshwind.surface import Surface
 
 STAGES = 3
@@ -116,6 +116,7 @@ def redesign(
     if not isinstance(mesh, str | PathLike | Mesh):
         raise BadInputError(f"mesh is of type {type(mesh).__name__}; give the path of a mesh file or a meshwind.Mesh")
     tell: Tell = progress if progress is not None else _silent
+    check(rounds, bound, fairness, pressing, threshold)
     held = _held(frozen, mesh)
     tell("fit")
     part = mesh if isinstance(mesh, Mesh) else read(mesh, component)

@@ -1,0 +1,133 @@
+"""`meshwind redesign`: mesh in, the nearest mesh that can be wound out."""
+
+import shlex
+import sys
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from meshwind.cli.arguments import Ends, MeshFile, Opening
+from meshwind.cli.display import display
+from meshwind.cli.wind import UNSETTLED, turns
+
+if TYPE_CHECKING:
+    from meshwind.editing import Redesign
+
+
+def redesign(
+    mesh: MeshFile,
+    out: Annotated[
+        str | None, typer.Option(help="Folder for the results.  [default: MESH's name + -redesigned]")
+    ] = None,
+    revolutions: Annotated[
+        str, typer.Option(metavar="TURNS", help="Turns of a path from end to end, as in 0.5 or 5/12, or auto.")
+    ] = "auto",
+    paths: Annotated[int, typer.Option(help="Paths a family.")] = 12,
+    particles: Annotated[int, typer.Option(help="Particles a path.")] = 401,
+    rounds: Annotated[int, typer.Option(help="Edit and wind again at most so often.")] = 10,
+    bound: Annotated[
+        float | None, typer.Option(help="Largest displacement, in the mesh's units.  [default: none]")
+    ] = None,
+    freeze: Annotated[
+        str | None,
+        typer.Option(metavar="WHERE", help='What must not move: "v<0.1, z>20", or field:NAME for a scalar of MESH.'),
+    ] = None,
+    symmetry: Annotated[int, typer.Option(help="Order of rotation about the part that is kept.")] = 1,
+    threshold: Annotated[
+        float | None, typer.Option(help="A gap up to this is none, in the mesh's units.  [default: the fit's error]")
+    ] = None,
+    component: Annotated[int, typer.Option(help="Which piece of MESH, by its rank of area; 0 is the largest.")] = 0,
+    ends: Ends = "auto",
+    opening: Opening = None,
+    tolerance: Annotated[
+        float, typer.Option(help="Largest distance of a vertex from the surface, over the part's diagonal.")
+    ] = 1e-5,
+    units: Annotated[str, typer.Option(help="Name of the mesh's unit, as in mm, for report and picture.")] = "",
+    render: Annotated[bool, typer.Option("--render/--no-render", help="Draw the pictures.")] = True,
+) -> int:
+    """Change MESH as little as possible until no fibre bridges, and write the edited mesh, pictures and a report.
+
+    The edited mesh has the vertices and faces of MESH, in their order.  It is fitted and wound anew: only where
+    nothing bridges then is it said to be windable.
+
+    Exit status: 0 nothing bridges; 1 the summary could not be printed; 2 bad input or usage; 3 some fibres still
+    bridge (the report says how much, and what would help).
+
+    Example: meshwind redesign part.stl --revolutions 0.3 --bound 5 --freeze "v<0.05, v>0.95" --units mm
+    """
+    # the numerical libraries are imported late: --help and usage errors must not wait for them
+    from meshwind.edited import write_redesign
+    from meshwind.editing import redesign as edit_mesh
+    from meshwind.output import folder
+
+    target = Path(out if out is not None else f"{mesh.stem}-redesigned")
+    folder.prepare(target)
+    begin = perf_counter()
+    with display() as progress:
+        edited = edit_mesh(
+            mesh,
+            revolutions=turns(revolutions),
+            paths=paths,
+            particles=particles,
+            rounds=rounds,
+            frozen=freeze,
+            bound=bound,
+            symmetry=symmetry,
+            threshold=threshold,
+            component=component,
+            ends=ends,
+            opening=opening,
+            tolerance=tolerance,
+            progress=progress,
+        )
+        progress("write")
+        report = write_redesign(
+            edited,
+            target,
+            units=units,
+            render=render,
+            command=shlex.join(["meshwind", *sys.argv[1:]]),
+            seconds={"redesign": perf_counter() - begin},
+        )
+    typer.echo(summary(edited, report, target, units))
+    return 0 if edited.windable else UNSETTLED
+
+
+def summary(edited: "Redesign", report: dict[str, Any], folder: Path, units: str) -> str:
+    """Lines for the terminal."""
+    from meshwind.output.words import quantity
+
+    told, wound = report["redesign"], report["wound"]
+    moved, volume = told["displacement"], told["volume"]
+    lines = [
+        f"part      {edited.part.name}: {len(edited.part.vertices)} vertices, {len(edited.part.faces)} faces",
+        f"winding   {report['winding']['revolutions']:.4g} revolutions, {report['winding']['why']}; "
+        f"{report['winding']['paths_per_family']} paths a family",
+    ]
+    lines += [
+        f"round {each['stage']}.{each['round']} bridged {100 * each['bridged']['before']:.2g} % to "
+        f"{100 * each['bridged']['after']:.2g} %, gap {quantity(each['max_gap']['before'], units, 3)} to "
+        f"{quantity(each['max_gap']['after'], units, 3)}"
+        for each in report["rounds"]
+    ]
+    lines += [
+        f"wound     from the edited mesh: bridged {100 * told['bridged']['before']:.3g} % before, "
+        f"{100 * told['bridged']['after']:.3g} % after; largest gap {quantity(told['max_gap']['before'], units, 3)} "
+        f"before, {quantity(told['max_gap']['after'], units, 3)} after (below {quantity(told['threshold'], units, 2)} "
+        "is none)",
+        f"moved     up to {quantity(moved['max'], units, 3)}, {quantity(moved['mean'], units, 3)} on average; "
+        + (f"volume {100 * volume['relative']:+.2g} %" if volume["relative"] is not None else "volume unknown"),
+    ]
+    if told["faces_turned_over"]:
+        lines.append(f"warning   the edit turned {told['faces_turned_over']} faces over; give a --bound")
+    loose = len(wound["after"]["not_converged"])
+    if loose:
+        lines.append(
+            f"warning   {loose} paths do not hold on the edited part: {wound['after']['not_converged'][0]['why']}"
+        )
+    lines += [f"note      {note}" for note in report["notes"]]
+    lines.append(f"{'outcome' if edited.windable else 'warning'}   {told['advice']}")
+    lines.append(f"files     {folder}")
+    return "\n".join(lines)

@@ -1,0 +1,58 @@
+"""Write a redesign into a folder: the edited mesh, its pictures and its report, whole or not at all."""
+
+from os import PathLike
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+from meshwind.editing.redesign import Redesign
+from meshwind.layup.layup import assess
+from meshwind.output import folder
+from meshwind.output.edited_files import redesign_report, write_edited
+from meshwind.output.report import write_report
+from meshwind.pictures import driver
+from meshwind.pictures.page import Page
+from meshwind.pictures.redesign_scene import redesign_scene
+from meshwind.pictures.subject import subject
+from meshwind.pictures.winding_scene import winding_scene
+
+
+def write_redesign(
+    edited: Redesign,
+    out: str | PathLike[str],
+    *,
+    units: str = "",
+    render: bool = True,
+    command: str = "",
+    seconds: dict[str, float] | None = None,
+) -> dict[str, Any]:
+    """Write edited.ply, edited.vtu, report.json and, with `render`, the pictures into the folder `out`.
+
+    before.png and after.png show the windings of the mesh that was read and of the edited one, redesign.png what was
+    moved.  units: name of the mesh's; seconds: of the stages before.  Returns the report, with a note where there are
+    no pictures for want of an OpenGL driver.  Raises BadInputError where `out` cannot be written.
+    """
+    spent, notes = dict(seconds or {}), list[str]()
+    with folder.writing(Path(out)) as staging:
+        begin = perf_counter()
+        write_edited(staging, edited)
+        spent["write"] = perf_counter() - begin
+        if render:
+            begin = perf_counter()
+            missing = driver.paint(_pictures(staging, edited, units), Page())
+            notes += [missing] if missing else []
+            spent["render"] = perf_counter() - begin
+        report = redesign_report(edited, command=command, units=units, seconds=spent) | {"notes": notes}
+        write_report(staging / "report.json", report)
+    return report
+
+
+def _pictures(out: Path, edited: Redesign, units: str) -> dict[Path, dict[str, Any]]:
+    name, turns = edited.part.name, edited.revolutions
+    before = subject(assess(edited.before.paths), f"{name}, as it was", units, turns)
+    after = subject(assess(edited.after.paths), f"{name}, edited", units, turns, before.view)
+    return {
+        out / "before.png": winding_scene(before),
+        out / "after.png": winding_scene(after),
+        out / "redesign.png": redesign_scene(edited.part.vertices, edited.displacement, edited.part.faces, name, units),
+    }

@@ -1,0 +1,109 @@
+"""The files of a redesign but its pictures: the edited mesh with its displacement, and the report's figures."""
+
+from pathlib import Path
+from typing import Any
+
+import meshio
+import numpy as np
+
+from meshwind.editing.redesign import Redesign
+from meshwind.editing.result import Round
+from meshwind.output.report import mesh_figures, plain, this_version, unsettled
+from meshwind.output.vtk_files import write_faces
+from meshwind.path.paths import Status
+
+
+def write_edited(out: Path, edited: Redesign) -> None:
+    """Write edited.ply and edited.vtu: the edited mesh, vertices and faces in the order of the mesh that was read.
+
+    Point data: displacement (n, 3) in edited.vtu, its parts dx, dy, dz in edited.ply, and its size `moved` in both.
+    """
+    moves = np.asarray(edited.displacement)
+    moved = np.linalg.norm(moves, axis=1)
+    faces = np.asarray(edited.mesh.faces)
+    write_faces(
+        out / "edited.vtu",
+        edited.mesh.vertices,
+        np.empty((0, 4), np.int64),
+        faces,
+        {"displacement": moves, "moved": moved},
+    )
+    parts = {name: np.ascontiguousarray(moves[:, k]) for k, name in enumerate(("dx", "dy", "dz"))} | {"moved": moved}
+    cells = [("triangle", faces.astype(np.int32))]
+    mesh = meshio.Mesh(np.asarray(edited.mesh.vertices), cells, point_data=parts)
+    meshio.write(out / "edited.ply", mesh, file_format="ply", binary=True)
+
+
+def redesign_report(
+    edited: Redesign, *, command: str = "", units: str = "", seconds: dict[str, float] | None = None
+) -> dict[str, Any]:
+    """All figures of a redesign as plain Python values; lengths in the mesh's units.
+
+    `wound` holds those of the mesh that was read and of the edited one, each fitted and wound by itself: the second
+    is the proof, and the last of the rounds but foretells it.
+    """
+    moved = np.linalg.norm(edited.displacement, axis=1)
+    gaps = edited.before, edited.after
+    figures = {
+        "meshwind": this_version(),
+        "command": command,
+        "mesh": mesh_figures(edited.part, units) | {"ends": edited.before.chart.annulus.ends},
+        "winding": {
+            "revolutions": edited.revolutions,
+            "paths_per_family": len(edited.paths) // 2,
+            "particles": edited.paths.gap.shape[1],
+            "why": "as asked for" if edited.chosen is None else edited.chosen.why,
+        },
+        "redesign": {
+            "windable": edited.windable,
+            "outcome": edited.outcome.name.lower(),
+            "advice": edited.outcome.advice,
+            "rounds": len(edited.rounds),
+            "threshold": edited.after.threshold,
+            "bridged": {"before": edited.before.bridged, "after": edited.after.bridged},
+            "max_gap": {"before": edited.before.gap, "after": edited.after.gap},
+            "displacement": {
+                "max": moved.max(),
+                "mean": moved.mean(),
+                "vertices_moved": int((moved > 0.01 * max(float(moved.max()), 1e-300)).sum()),
+            },
+            "volume": {
+                "before": edited.volume,
+                "change": edited.volume_change,
+                "relative": edited.volume_change / edited.volume if edited.volume else None,
+            },
+            "faces_turned_over": edited.turned_over,
+        },
+        "rounds": [
+            {"stage": stage + 1, "round": k + 1} | _round(each)
+            for stage, rounds in enumerate(edited.stages)
+            for k, each in enumerate(rounds)
+        ],
+        "wound": {
+            name: {
+                "control_points": list(wound.surface.control_points.shape[:2]),
+                "converged": int((wound.paths.status == Status.CONVERGED).sum()),
+                "not_converged": unsettled(wound.paths),
+                "bridged": wound.bridged,
+                "max_gap": wound.gap,
+                "threshold": wound.threshold,
+            }
+            for name, wound in zip(("before", "after"), gaps, strict=True)
+        },
+        "seconds": dict(seconds or {}),
+    }
+    told: dict[str, Any] = plain(figures)
+    return told
+
+
+def _round(each: Round) -> dict[str, Any]:
+    return {
+        "bridged": {"before": each.bridged_before, "after": each.bridged_after},
+        "max_gap": {"before": each.gap_before, "after": each.gap_after},
+        "largest_move": each.change,
+        "objective": each.objective,
+        "shortfall": each.shortfall,
+        "kkt_residual": max(each.primal, each.dual),
+        "constraints": each.rows,
+        "iterations": each.iterations,
+    }

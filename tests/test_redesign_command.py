@@ -1,0 +1,120 @@
+"""`meshwind redesign` from outside, and the words that say what must not move."""
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+import meshwind as mw
+from meshwind.editing.region import parse
+
+DATA = Path(__file__).parents[1] / "data"
+FILES = {"edited.ply", "edited.vtu", "report.json"}
+
+
+def meshwind(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "meshwind", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=300)
+
+
+@pytest.fixture(scope="module")
+def vase(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    folder = tmp_path_factory.mktemp("redesign")
+    done = meshwind("redesign", DATA / "vase.stl", "--revolutions", "0.8", "--paths", "6", "--units", "mm",
+                    "--out", folder)  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return folder, done.stdout
+
+
+def test_the_folder_holds_the_edited_mesh_pictures_and_a_report(vase: tuple[Path, str]) -> None:
+    folder, told = vase
+    assert {path.name for path in folder.iterdir()} == FILES | {"before.png", "after.png", "redesign.png"}
+    report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+    assert report["redesign"]["windable"] and report["redesign"]["bridged"]["after"] == 0.0
+    assert report["redesign"]["bridged"]["before"] > 0.0
+    for each in report["rounds"]:
+        assert each["kkt_residual"] <= 1e-6
+        assert each["bridged"]["before"] >= each["bridged"]["after"]
+    assert report["mesh"]["units"] == "mm" and "mm" in told
+    assert "no fibre bridges any more" in told
+
+
+def test_the_edited_mesh_is_the_one_that_was_read_moved(vase: tuple[Path, str]) -> None:
+    folder, _ = vase
+    read = mw.read(DATA / "vase.stl")
+    ply, vtu = meshio.read(folder / "edited.ply"), meshio.read(folder / "edited.vtu")
+    for mesh in (ply, vtu):
+        np.testing.assert_array_equal(mesh.cells_dict["triangle"], read.faces)
+    moves = vtu.point_data["displacement"]
+    np.testing.assert_array_equal(np.stack([ply.point_data[name] for name in ("dx", "dy", "dz")], axis=1), moves)
+    np.testing.assert_allclose(ply.points - moves, read.vertices, atol=1e-12 * read.diagonal)
+    report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+    assert np.linalg.norm(moves, axis=1).max() == pytest.approx(report["redesign"]["displacement"]["max"])
+
+
+def test_the_edited_mesh_wound_from_its_file_does_not_bridge(vase: tuple[Path, str]) -> None:
+    folder, _ = vase
+    threshold = json.loads((folder / "report.json").read_text(encoding="utf-8"))["redesign"]["threshold"]
+    before, after = (mw.wind(mesh, paths=6, revolutions=0.8) for mesh in (DATA / "vase.stl", folder / "edited.ply"))
+    assert before.paths.gap.max() > threshold
+    assert after.settled and after.paths.gap.max() <= threshold
+
+
+def test_render_draws_the_folder_again(vase: tuple[Path, str], tmp_path: Path) -> None:
+    folder, _ = vase
+    done = meshwind("render", folder, "--only", "redesign", "--size", "400x300", "--out", tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert {path.name for path in tmp_path.iterdir()} == {"redesign.png"}
+
+
+def test_what_must_not_move_does_not_and_an_impossible_demand_exits_3(tmp_path: Path) -> None:
+    done = meshwind("redesign", DATA / "vase.stl", "--revolutions", "0.3", "--paths", "4", "--bound", "0.01",
+                    "--freeze", "v<0.1", "--rounds", "2", "--no-render", "--out", tmp_path)  # fmt: skip
+    assert done.returncode == 3, done.stderr
+    assert "cannot reach the fibre" in done.stdout
+    report = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
+    assert not report["redesign"]["windable"] and report["redesign"]["bridged"]["after"] > 0.0
+    vtu = meshio.read(tmp_path / "edited.vtu")
+    size = np.linalg.norm(vtu.point_data["displacement"], axis=1)
+    assert size.max() <= 0.01 * (1 + 1e-9)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "says"),
+    [
+        (("--freeze", "w<3"), "ranges of u, v, x, y or z"),
+        (("--freeze", "x>1e9"), "holds nothing of the part"),
+        (("--rounds", "-1"), "rounds"),
+        (("--bound", "0"), "bound"),
+        (("--symmetry", "7"), "symmetry"),
+        (("--revolutions", "many"), "revolutions"),
+    ],
+)
+def test_bad_options_exit_2_with_one_line(wrong: tuple[str, str], says: str, tmp_path: Path) -> None:
+    done = meshwind("redesign", DATA / "vase.stl", "--revolutions", "0.8", *wrong, "--out", tmp_path / "out")
+    assert done.returncode == 2
+    last = done.stderr.strip().splitlines()[-1]
+    assert last.startswith("meshwind: error:") and says in last
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "inside", "outside"),
+    [
+        ("v<0.25", (0.1, 0.2), (0.1, 0.6)),
+        ("0.2<u<0.4", (0.3, 0.9), (0.7, 0.9)),
+        ("z>0.5", (0.0, 0.9), (0.0, 0.5)),
+        ("v<0.1, v>0.9", (0.0, 0.95), (0.0, 0.5)),
+    ],
+)
+def test_a_region_in_words(text: str, inside: tuple[float, float], outside: tuple[float, float]) -> None:
+    surface = mw.shapes.hyperboloid(1.0, 0.6, 1.0, (16, 24))  # z from -1 to 1
+    held = parse(text).control_points(surface, np.empty((0, 2)))
+    freed = replace(surface, control_points=surface.control_points + np.where(held[:, :, None], 0.0, 0.1))
+    stays, moves = (np.linalg.norm(freed.points([at]) - surface.points([at])) for at in (inside, outside))
+    assert stays <= 1e-12 < moves
