@@ -2,6 +2,7 @@
 
 import json
 import zipfile
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
@@ -15,6 +16,7 @@ from meshwind.cast import Bools, floats, frozen
 from meshwind.errors import BadInputError
 from meshwind.export.vtk_reading import Lines, read_lines
 from meshwind.layup.layup import Layup, assess
+from meshwind.output.staging import settle
 from meshwind.path.paths import Counters, Paths, Status
 from meshwind.surface.surface import FitError, Surface
 
@@ -77,6 +79,8 @@ def read_results(folder: str | PathLike[str]) -> Results:
     place = Path(folder)
     if not place.is_dir():
         raise BadInputError(f"{place} is no folder; give one that `meshwind wind MESH --out DIR` left")
+    with suppress(OSError):  # a folder that cannot be written is read as it is
+        settle(place)
     missing = [name for name in _NEEDED if not (place / name).is_file()]
     if missing:
         raise BadInputError(
