@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from meshwind.cast import Floats, Ints
 from meshwind.export.results import Results
+from meshwind.export.skin import read_skin
 from meshwind.export.vtk_reading import Faces, Lines, read_faces, read_lines, read_vertices
 from meshwind.export.xdmf import write_xdmf
 
@@ -50,7 +51,8 @@ def write_formats(folder: Path, results: Results, formats: tuple[str, ...]) -> l
 def _parts(results: Results) -> list[_Part]:
     """What of the run is a mesh; bridges and crossings may be without points."""
     place = results.folder
-    parts = [_of_faces(name, read_faces(place / f"{name}.vtu")) for name in ("surface", "quads")]
+    skin, quads = read_skin(place, results.surface), read_faces(place / "quads.vtu")
+    parts = [_of_faces("surface", skin), _of_faces("quads", quads)]
     parts += [_of_lines(name, read_lines(place / f"{name}.vtp")) for name in ("paths", "bridges")]
     points, data = read_vertices(place / "crossings.vtp")
     parts.append(_Part("crossings", points, (("vertex", np.arange(len(points))[:, None]),), data, {}))
