@@ -98,14 +98,15 @@ class Result:
             linear_density=self.options.linear_density,
         )
 
-    def write(self, out: str | PathLike[str], render: bool = True) -> "Result":
+    def write(self, out: str | PathLike[str], render: bool = True, overwrite: bool = False) -> "Result":
         """Write all files of the run into the folder `out`, whole or not at all.
 
-        Results of an earlier run there are replaced, or removed where this one has none.  Returns the result with
-        the time that writing and drawing took and, where there is no OpenGL driver for the pictures, a note that
-        says what to install.  fit_error.png is drawn where a note warns of the fit.
+        overwrite: whether results of an earlier run there are replaced, or removed where this one has none; without
+        it they raise BadInputError.  Returns the result with the time that writing and drawing took and, where there
+        is no OpenGL driver for the pictures, a note that says what to install.  fit_error.png is drawn where a note
+        warns of the fit.
         """
-        return _write(self, _folder(out), render, _Clock(None))
+        return _write(self, _folder(out), render, overwrite, _Clock(None))
 
 
 class _Clock:
@@ -142,6 +143,7 @@ def wind(
     linear_density: float | None = None,
     pins: str | PathLike[str] | None = None,
     out: str | PathLike[str] | None = None,
+    overwrite: bool = False,
     render: bool = True,
     command: str = "",
     progress: Tell | None = None,
@@ -156,7 +158,8 @@ def wind(
     "" if unknown; particles: a path, None for as many as lengths right to 1e-5 need; spacing: paths are added until
     neighbours lie no further apart; band_width: of the fibre, by default one layer a family; linear_density: its mass
     over its length; pins: a CSV file of the paths' ends (`read_pins`); out: folder for the files;
-    render: draw the pictures as well. Raises BadInputError, in one line, for whatever the caller can mend.
+    overwrite: replace the results that it holds; render: draw the pictures as well.  Raises BadInputError, in one
+    line, for whatever the caller can mend.
     """
     pinned = fspath(pins) if isinstance(pins, PathLike) else pins
     options = Options(
@@ -168,7 +171,7 @@ def wind(
     clock = _Clock(progress)
     target = None if out is None else _folder(out)
     if target is not None:
-        folder.prepare(target)
+        folder.prepare(target, overwrite)
         if render:
             driver.start_probe()
     with clock.stage("read"):
@@ -198,7 +201,7 @@ def wind(
         layup = assess(laid, options.band_width)
         notes = (*notes, *about_layup(layup))
     result = Result(part, chart, layup, options, command, clock.seconds, notes, chosen, spaced)
-    return result if target is None else _write(result, target, render, clock)
+    return result if target is None else _write(result, target, render, overwrite, clock)
 
 
 def _rims(surface: Surface, options: Options, turns: float) -> Families:
@@ -231,9 +234,9 @@ def _folder(out: str | PathLike[str]) -> Path:
     return Path(out)
 
 
-def _write(result: Result, out: Path, render: bool, clock: _Clock) -> Result:
+def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: _Clock) -> Result:
     notes = result.notes
-    with folder.writing(out) as staging:
+    with folder.writing(out, overwrite) as staging:
         with clock.stage("write"):
             write_files(staging, result.layup, result.mesh)
             if result.chosen is not None and render:
@@ -252,7 +255,7 @@ def _draw(result: Result, out: Path) -> str:
     """Draw the winding, what a warning wants to show and the contact sheet; return "" or what is missing and why."""
     name, units = result.mesh.name, result.options.units
     of = subject_in(out, result.layup, name, units, result.revolutions)
-    with TemporaryDirectory() as cells:
+    with TemporaryDirectory(dir=out) as cells:  # a killed run leaves nothing elsewhere
         pictures = placed(scenes_of(of), ("winding", SHEET), Page(), out, Path(cells))
         work = dict(pictures)
         if any(note.picture == FIT_ERROR for note in result.notes):

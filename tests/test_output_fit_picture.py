@@ -194,7 +194,7 @@ def test_a_run_that_warns_of_the_fit_draws_it_and_says_so(tmp_path: Path) -> Non
     assert ("see fit_error.png" in (tmp_path / "report.json").read_text()) == drawn
     worst = apart(result.surface, result.chart.annulus).places[0]
     assert place(worst.on_surface, result.mesh.diagonal) in line
-    again = result.write(tmp_path, render=False)
+    again = result.write(tmp_path, render=False, overwrite=True)
     assert not (tmp_path / FIT_ERROR).exists()  # a picture of an earlier run does not stay
     assert not any("fit_error" in note.text for note in again.notes)
 

@@ -17,7 +17,7 @@ def test_files_move_in_and_others_stay(tmp_path: Path) -> None:
     out.mkdir()
     (out / "notes.txt").write_text("mine")
     (out / "report.json").write_text("old")
-    with writing(out) as staging:
+    with writing(out, overwrite=True) as staging:
         (staging / "report.json").write_text("new")
         (staging / "paths.vtp").write_text("x")
         assert (out / "report.json").read_text() == "old"
@@ -29,10 +29,10 @@ def test_files_move_in_and_others_stay(tmp_path: Path) -> None:
 def test_results_of_an_earlier_run_do_not_stay_beside_a_new_report(tmp_path: Path) -> None:
     (tmp_path / "winding.png").write_text("of the last run")
     (tmp_path / "photo.png").write_text("mine")
-    with pytest.raises(RuntimeError), writing(tmp_path):
+    with pytest.raises(RuntimeError), writing(tmp_path, overwrite=True):
         raise RuntimeError
     assert everything(tmp_path) == ["photo.png", "winding.png"]
-    with writing(tmp_path) as staging:
+    with writing(tmp_path, overwrite=True) as staging:
         (staging / "report.json").write_text("new")
     assert everything(tmp_path) == ["photo.png", "report.json"]
 

@@ -71,6 +71,7 @@ def wind(
     pins: Annotated[
         Path | None, typer.Option(help="CSV of the paths' ends: columns u0,v0,u1,v1 or x0,y0,z0,x1,y1,z1.")
     ] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace results that DIR holds already.")] = False,
     render: Annotated[bool, typer.Option("--render/--no-render", help="Draw the pictures.")] = True,
 ) -> int:
     """Lay two families of taut fibres on MESH and write paths, bridges, crossings, quads, maps and a report.
@@ -102,6 +103,7 @@ def wind(
             linear_density=linear_density,
             pins=pins,
             out=folder,
+            overwrite=overwrite,
             render=render,
             command=shlex.join(["meshwind", *sys.argv[1:]]),
             progress=progress,

@@ -83,6 +83,8 @@ def on_crossings(results: Results) -> Elements:
     used, corner = np.unique(np.concatenate([mesh.quads.ravel(), mesh.triangles.ravel()]), return_inverse=True)
     split = mesh.quads.size
     uv = mesh.point_data["uv"][used].astype(np.float64)
+    if uv.ndim != 2 or not (np.isfinite(uv).all() and np.abs(uv).max() < 1e6):
+        raise BadInputError(f"quads.vtu of {results.folder} is damaged; run `meshwind wind` again")
     return _elements(results.surface, uv, corner[:split].reshape(-1, 4), corner[split:].reshape(-1, 3))
 
 

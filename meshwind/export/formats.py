@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from meshwind.cast import Floats, Ints
 from meshwind.export.results import Results
+from meshwind.export.skin import read_skin
 from meshwind.export.vtk_reading import Faces, Lines, read_faces, read_lines, read_vertices
 from meshwind.export.xdmf import write_xdmf
 
@@ -49,7 +51,8 @@ def write_formats(folder: Path, results: Results, formats: tuple[str, ...]) -> l
 def _parts(results: Results) -> list[_Part]:
     """What of the run is a mesh; bridges and crossings may be without points."""
     place = results.folder
-    parts = [_of_faces(name, read_faces(place / f"{name}.vtu")) for name in ("surface", "quads")]
+    skin, quads = read_skin(place, results.surface), read_faces(place / "quads.vtu")
+    parts = [_of_faces("surface", skin), _of_faces("quads", quads)]
     parts += [_of_lines(name, read_lines(place / f"{name}.vtp")) for name in ("paths", "bridges")]
     points, data = read_vertices(place / "crossings.vtp")
     parts.append(_Part("crossings", points, (("vertex", np.arange(len(points))[:, None]),), data, {}))
@@ -124,6 +127,8 @@ def _gmsh(folder: Path, part: _Part) -> list[str]:
 
 def _ply(folder: Path, part: _Part) -> list[str]:
     """meshio's PLY has faces alone and its numbers at the points: lines are left as their points."""
+    import meshio
+
     lost = [f"ply: no data of cells; of {part.name} it lacks {', '.join(part.cell_data)}"] if part.cell_data else []
     kinds = {kind for kind, _ in part.cells}
     if kinds & {"line", "vertex"}:
@@ -132,7 +137,11 @@ def _ply(folder: Path, part: _Part) -> list[str]:
     mesh = _mesh(replace(part, cell_data={}), _apart(part.point_data, 1))
     for block in mesh.cells:
         block.data = block.data.astype(np.int32)  # PLY has no wider integers
-    mesh.write(folder / f"{part.name}.ply", binary=True)
+    held = BytesIO()
+    meshio.ply.write(held, mesh, binary=True)
+    before, _, after = held.getvalue().partition(b"comment ")
+    # without meshio's comment, which holds the time: the same run gives the same bytes
+    (folder / f"{part.name}.ply").write_bytes(before + after.partition(b"\n")[2])
     return lost
 
 

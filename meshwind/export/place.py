@@ -1,14 +1,11 @@
 """Exports appear in a folder whole and together beside what is there, or not at all."""
 
-import os
-import shutil
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from meshwind.errors import BadInputError
-from meshwind.output.folder import prepare
+from meshwind.output.staging import staged
 
 
 @contextmanager
@@ -19,39 +16,16 @@ def beside(out: Path) -> Iterator[Path]:
     an earlier export do not stay.  All else in `out` is left alone.  Raises BadInputError where `out` cannot be
     written.
     """
-    prepare(out)
-    missing = [folder for folder in (out.absolute(), *out.absolute().parents) if not folder.exists()]
-    staging: Path | None = None
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        staging = Path(tempfile.mkdtemp(prefix=".writing-", dir=out))
+    if out.exists() and not out.is_dir():
+        raise BadInputError(f"{out} is a file; give a folder for the results")
+    with staged(out, lambda fresh: _outdated(out, fresh)) as staging:
         yield staging
-        _move(staging, out)
-    except OSError as error:
-        raise BadInputError(f"cannot write to {out}: {error.strerror or error}; give another folder") from error
-    finally:
-        if staging is not None:
-            shutil.rmtree(staging, ignore_errors=True)
-        for folder in missing:
-            if folder.is_dir() and not any(folder.iterdir()):
-                folder.rmdir()
 
 
-def _move(staging: Path, out: Path) -> None:
-    fresh = sorted(path.relative_to(staging) for path in staging.rglob("*") if path.is_file())
-    for name in fresh:
-        if (out / name).is_dir() or any((out / above).is_file() for above in name.parents):
-            raise BadInputError(f"{out / name} cannot be written: something of another kind is there; move it away")
+def _outdated(out: Path, fresh: list[Path]) -> Iterator[Path]:
+    """What an earlier export left in folders of the same kinds and this one does not have."""
     for top in {name.parts[0] for name in fresh if len(name.parts) > 1}:
-        _clear(out / top, {name.name for name in fresh if name.parts[0] == top})
-    for name in fresh:
-        (out / name).parent.mkdir(exist_ok=True)
-        os.replace(staging / name, out / name)
-
-
-def _clear(folder: Path, fresh: set[str]) -> None:
-    """Remove from a folder what an earlier export left of the same kinds and this one does not have."""
-    kinds = {name.rsplit("_", 1)[0] for name in fresh if "_" in name}
-    for old in folder.iterdir() if folder.is_dir() else ():
-        if old.is_file() and old.name not in fresh and old.name.rsplit("_", 1)[0] in kinds:
-            old.unlink()
+        kinds = {name.name.rsplit("_", 1)[0] for name in fresh if name.parts[0] == top and "_" in name.name}
+        for old in (out / top).iterdir() if (out / top).is_dir() else ():
+            if old.is_file() and old.name.rsplit("_", 1)[0] in kinds:
+                yield Path(top, old.name)

@@ -2,6 +2,7 @@
 
 import json
 import zipfile
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
@@ -15,11 +16,16 @@ from meshwind.cast import Bools, floats, frozen
 from meshwind.errors import BadInputError
 from meshwind.export.vtk_reading import Lines, read_lines
 from meshwind.layup.layup import Layup, assess
+from meshwind.output.staging import settle
 from meshwind.path.paths import Counters, Paths, Status
 from meshwind.surface.surface import FitError, Surface
 
 _NEEDED = "paths.vtp", "surface.npz", "report.json"
-_FIELDS = "uv", "on_surface", "gap", "normal", "slip"
+_FIELDS = {"uv": (2,), "on_surface": (), "gap": (), "normal": (3,), "slip": ()}
+_FARTHEST, _MOST_TURNS = 1e100, 1e6
+"""Of any length of a surface, and of u: beyond them a file is damaged."""
+_OFF = 1e-5
+"""Particles on the surface lie no further off it than this, over its size."""
 
 
 @dataclass(frozen=True)
@@ -77,14 +83,22 @@ def read_results(folder: str | PathLike[str]) -> Results:
     place = Path(folder)
     if not place.is_dir():
         raise BadInputError(f"{place} is no folder; give one that `meshwind wind MESH --out DIR` left")
+    with suppress(OSError):  # a folder that cannot be written is read as it is
+        settle(place)
     missing = [name for name in _NEEDED if not (place / name).is_file()]
     if missing:
         raise BadInputError(
             f"{place} holds no {' and no '.join(missing)}; give a folder that `meshwind wind MESH --out DIR` left"
         )
     report = _report(place / "report.json")
-    surface = _surface(place / "surface.npz", report)
-    return Results(place, _paths(place / "paths.vtp", surface, report), report)
+    try:
+        surface = _surface(place / "surface.npz", report)
+        paths = _paths(place / "paths.vtp", surface, report)
+    except BadInputError:
+        raise
+    except (ArithmeticError, LookupError, TypeError, ValueError) as error:
+        raise _spoilt(place, error) from error
+    return Results(place, paths, report)
 
 
 def _report(path: Path) -> dict[str, Any]:
@@ -103,7 +117,10 @@ def _surface(path: Path, report: dict[str, Any]) -> Surface:
             control, periodic = held["control_points"], bool(held["periodic_u"])
     except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
         raise _spoilt(path, error) from error
-    return Surface(floats(control, f"control_points of {path.name}", -1, -1, 3), periodic, _fit_error(report))
+    points = floats(control, f"control_points of {path.name}", -1, -1, 3)
+    if np.abs(points).max(initial=0.0) > _FARTHEST:
+        raise _spoilt(path, f"it reaches beyond {_FARTHEST:g}")
+    return Surface(points, periodic, _fit_error(report))
 
 
 def _fit_error(report: dict[str, Any]) -> FitError | None:
@@ -125,7 +142,15 @@ def _paths(path: Path, surface: Surface, report: dict[str, Any]) -> Paths:
     lacking += [name for name in ("family", "status") if name not in lines.cell_data]
     if lacking or not len(sizes) or (sizes != sizes[0]).any():
         raise _spoilt(path, f"no {' or '.join(lacking)} in it" if lacking else "its lines are no paths of one run")
-    held = {name: _shaped(lines, name, len(sizes)) for name in _FIELDS}
+    held = {name: _shaped(lines, name, len(sizes), *shape) for name, shape in _FIELDS.items()}
+    if not all(np.isfinite(values).all() for values in (lines.points, *(held[n] for n in _FIELDS if n != "slip"))):
+        raise _spoilt(path, "it holds NaN or infinite values")
+    on = held["on_surface"].astype(bool).ravel()
+    uv, points = np.ascontiguousarray(held["uv"].reshape(-1, 2)[on]), lines.points[on]
+    if np.abs(uv).max(initial=0.0) > _MOST_TURNS or np.abs(surface.points(uv) - points).max(initial=0.0) > (
+        _OFF * surface.size
+    ):
+        raise _spoilt(path, f"its paths are none on the surface of {path.with_name('surface.npz').name}")
     status = lines.cell_data["status"].astype(np.int64)
     worst = _under(report, "paths", "max_residual")
     residual = np.where(status == Status.CONVERGED, np.inf if worst is None else float(worst), np.inf)
@@ -148,9 +173,8 @@ def _paths(path: Path, surface: Surface, report: dict[str, Any]) -> Paths:
     )
 
 
-def _shaped(lines: Lines, name: str, count: int) -> NDArray[Any]:
-    values = lines.point_data[name]
-    return frozen(values.reshape(count, -1, *values.shape[1:]))
+def _shaped(lines: Lines, name: str, count: int, *shape: int) -> NDArray[Any]:
+    return frozen(lines.point_data[name].reshape(count, len(lines.points) // count, *shape))
 
 
 def _counters(report: dict[str, Any]) -> Counters:

@@ -14,6 +14,8 @@ from meshwind.export.splines import clamped_surface, curve_through
 from meshwind.surface.surface import DEGREE, Surface
 
 FILE = "surface.step"
+TIME = "1970-01-01T00:00:00"
+"""In place of the time of writing, which STEP asks for: the same run gives the same bytes."""
 
 
 def write_step(folder: Path, results: Results) -> list[str]:
@@ -65,6 +67,8 @@ def _write(path: Path, shapes: list[tuple[str, Any]]) -> None:
     with quiet():
         writer = control.STEPCAFControl_Writer()
         done = writer.Transfer(document, occ("STEPControl").STEPControl_StepModelType.STEPControl_AsIs)
+        header = occ("APIHeaderSection").APIHeaderSection_MakeHeader(writer.ChangeWriter().Model())
+        header.SetTimeStamp(strings.TCollection_HAsciiString(TIME))
         status = writer.Write(str(path)) if done else None
     if status != occ("IFSelect").IFSelect_ReturnStatus.IFSelect_RetDone:
         raise OSError(f"OpenCASCADE could not write {path.name}")

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from meshwind.cast import Bools, Ints
 from meshwind.errors import BadInputError
 from meshwind.export.results import Results
-from meshwind.export.vtk_reading import Faces, read_faces
+from meshwind.export.skin import read_skin
+from meshwind.export.vtk_reading import Faces
 from meshwind.layup.lengths import lengths
 from meshwind.output.colours import colour_map
 from meshwind.output.looks import MAPS
@@ -46,7 +47,7 @@ def write_viewer(folder: Path, results: Results) -> list[str]:
 
 def scene(results: Results) -> dict[str, Any]:
     """All that the page shows, arrays as base64 of float32 or int32."""
-    skin = read_faces(results.folder / "surface.vtu")
+    skin = read_skin(results.folder, results.surface)
     return {
         "name": results.name,
         "units": results.units,

@@ -1,5 +1,6 @@
-"""VTK's XML files to arrays.  VTK is imported late: it takes longer than small exports."""
+"""VTK's XML files to arrays."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,10 @@ from numpy.typing import NDArray
 
 from meshwind.cast import Floats, Ints
 from meshwind.errors import BadInputError
+from meshwind.mandrel.isolated import Arrays, isolated
+
+POINT, CELL = "point: ", "cell: "
+"""Before the names of data of points and of cells among the arrays of a file."""
 
 
 @dataclass(frozen=True)
@@ -33,54 +38,84 @@ class Faces:
 
 def read_lines(path: Path) -> Lines:
     """Read the polylines of a .vtp file; raises BadInputError where it cannot be read."""
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
-
-    poly = _read(vtkXMLPolyDataReader(), path)
-    starts, corners = _cells(poly.GetLines())
-    points = _points(poly)
+    held = _held(lines_by_vtk, path)
+    starts, corners, points = held["starts"], held["corners"], held["points"]
     if len(starts) < 2 or len(corners) == 0:
-        return Lines(points[:0], np.zeros(1, np.int64), _data(poly.GetPointData()), {})
+        return Lines(points[:0], np.zeros(1, np.int64), _named(held, POINT), {})
     if not np.array_equal(corners, np.arange(len(points))):
         raise BadInputError(f"{path} cannot be used (its lines share points); run `meshwind wind` again")
-    return Lines(points, starts, _data(poly.GetPointData()), _data(poly.GetCellData()))
+    return Lines(points, starts, _named(held, POINT), _named(held, CELL))
 
 
 def read_vertices(path: Path) -> tuple[Floats, dict[str, NDArray[Any]]]:
     """Read the points (n, 3) of a .vtp file and their data; raises BadInputError where it cannot be read."""
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
-
-    poly = _read(vtkXMLPolyDataReader(), path)
-    return _points(poly), _data(poly.GetPointData())
+    held = _held(lines_by_vtk, path)
+    return held["points"], _named(held, POINT)
 
 
-def read_faces(path: Path) -> Faces:
-    """Read the quads and triangles of a .vtu file; raises BadInputError where it cannot be read."""
-    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+def read_faces(path: Path, trusted: bool = False) -> Faces:
+    """Read the quads and triangles of a .vtu file; raises BadInputError where it cannot be read.
 
-    grid = _read(vtkXMLUnstructuredGridReader(), path)
-    starts, corners = _cells(grid.GetCells())
+    trusted: it is read by this process, which saves starting another one.
+    """
+    held = faces_by_vtk(path) if trusted else _held(faces_by_vtk, path)
+    starts, corners = held["starts"], held["corners"]
     sizes = np.diff(starts)
     fours, threes = (
         corners[starts[:-1][sizes == size][:, None] + np.arange(size)].reshape(-1, size) for size in (4, 3)
     )
-    return Faces(_points(grid), fours, threes, _data(grid.GetPointData()))
+    return Faces(held["points"], fours, threes, _named(held, POINT))
+
+
+def _held(work: Callable[[Path], Arrays], path: Path) -> Arrays:
+    """What a file holds, read by another process, which survives no damaged one."""
+    if not path.is_file():
+        raise BadInputError(f"{path} is missing; run `meshwind wind` again")
+    try:
+        held = isolated(work, path)
+    except (OSError, ValueError) as error:
+        raise BadInputError(f"{path} cannot be used (VTK cannot read it); run `meshwind wind` again") from error
+    starts, corners = held["starts"], held["corners"]
+    if len(starts) and (starts[0] != 0 or (np.diff(starts) < 0).any() or starts[-1] != len(corners)):
+        raise BadInputError(f"{path} cannot be used (its cells are damaged); run `meshwind wind` again")
+    if len(corners) and (corners.min() < 0 or corners.max() >= len(held["points"])):
+        raise BadInputError(f"{path} cannot be used (its cells name no points); run `meshwind wind` again")
+    return held
+
+
+def lines_by_vtk(path: Path) -> Arrays:
+    """Points, polylines and data of a .vtp file, for `isolated`."""
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+    poly = _read(vtkXMLPolyDataReader(), path)
+    return _packed(poly, poly.GetLines())
+
+
+def faces_by_vtk(path: Path) -> Arrays:
+    """Points, cells and data of a .vtu file, for `isolated`."""
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+    grid = _read(vtkXMLUnstructuredGridReader(), path)
+    return _packed(grid, grid.GetCells())
+
+
+def _packed(data: Any, cells: Any) -> Arrays:
+    starts, corners = _cells(cells)
+    held = {"points": _points(data), "starts": starts, "corners": corners}
+    for kind, attributes in ((POINT, data.GetPointData()), (CELL, data.GetCellData())):
+        held |= {kind + name: values for name, values in _data(attributes).items()}
+    return held
+
+
+def _named(held: Arrays, kind: str) -> dict[str, NDArray[Any]]:
+    return {name.removeprefix(kind): values for name, values in held.items() if name.startswith(kind)}
 
 
 def _read(reader: Any, path: Path) -> Any:
-    """Run a reader; what VTK complains of on the terminal, in many lines, becomes one error."""
-    from vtkmodules.vtkCommonCore import vtkObject
-
-    if not path.is_file():
-        raise BadInputError(f"{path} is missing; run `meshwind wind` again")
+    """Run a reader."""
     reader.SetFileName(str(path))
-    shown = vtkObject.GetGlobalWarningDisplay()
-    vtkObject.SetGlobalWarningDisplay(0)
-    try:
-        done = reader.GetExecutive().Update()
-    finally:
-        vtkObject.SetGlobalWarningDisplay(shown)
-    if not done or reader.GetErrorCode():
-        raise BadInputError(f"{path} cannot be used (VTK cannot read it); run `meshwind wind` again")
+    if not reader.GetExecutive().Update() or reader.GetErrorCode():
+        raise ValueError("VTK cannot read it")
     return reader.GetOutput()
 
 

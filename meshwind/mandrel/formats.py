@@ -11,6 +11,7 @@ from meshwind.cast import Floats, Ints
 from meshwind.errors import BadInputError
 from meshwind.mandrel.cells import CellBlock, triangles
 from meshwind.mandrel.damage import check_obj, check_stl
+from meshwind.mandrel.isolated import Arrays
 from meshwind.mandrel.legacy import check_legacy
 
 _VTK_KINDS = {
@@ -18,15 +19,6 @@ _VTK_KINDS = {
     22: "triangle6", 23: "quad8", 24: "tetra10", 25: "hexahedron20", 26: "vtk-wedge15", 27: "pyramid13",
     28: "quad9", 29: "hexahedron27", 69: "triangle", 70: "quad", 71: "tetra", 72: "hexahedron",
 }  # fmt: skip
-
-
-def reader_errors(suffix: str) -> tuple[type[BaseException], ...]:
-    """Exception types of the format's own library, which no builtin covers."""
-    if suffix in (".msh", ".inp"):
-        import meshio
-
-        return (meshio.ReadError,)
-    return ()
 
 
 def by_trimesh(path: Path) -> tuple[Floats, Ints]:
@@ -41,7 +33,7 @@ def by_trimesh(path: Path) -> tuple[Floats, Ints]:
     log = logging.getLogger("trimesh")
     before, log.disabled = log.disabled, True
     try:
-        loaded = trimesh.load(path, force="mesh", process=False)
+        loaded = trimesh.load(path, force="mesh", process=False, skip_materials=True, resolver=_Beside(path))
     except (LookupError, ValueError):
         if kind == ".obj":
             check_obj(path, failed=True)
@@ -52,21 +44,40 @@ def by_trimesh(path: Path) -> tuple[Floats, Ints]:
     return np.asarray(loaded.vertices, dtype=np.float64), faces
 
 
-def by_meshio(path: Path) -> tuple[Floats, Ints]:
-    """Read MSH or INP: surface cells, or the skin of the volume cells where there are any."""
+class _Beside:
+    """What a file may name: a file in its own folder, or below."""
+
+    def __init__(self, file: Path) -> None:
+        self.folder = file.parent.resolve()
+
+    def __getitem__(self, name: str) -> bytes:
+        path = (self.folder / name).resolve()
+        if not path.is_relative_to(self.folder):
+            raise ValueError("it names a file outside its folder")
+        return path.read_bytes()
+
+
+def by_meshio(path: Path) -> Arrays:
+    """For `isolated`, read MSH or INP: surface cells, or the skin of the volume cells where there are any."""
     import meshio
 
     if path.suffix.lower() == ".msh":
         _check_sections(path.read_bytes())
-    mesh = meshio.read(path)
+    elif re.search(rb"^\s*\*\s*include\b", path.read_bytes(), re.MULTILINE | re.IGNORECASE):
+        raise BadInputError(f"{path.name}: includes another file, and none that a file names is read; make them one")
+    try:
+        mesh = meshio.read(path)
+    except meshio.ReadError as error:
+        raise ValueError(str(error)) from error
     points = np.asarray(mesh.points, dtype=np.float64)
     if points.shape[1] == 2:
         points = np.column_stack([points, np.zeros(len(points))])
-    return points, triangles([(block.type, _sizes_and_nodes(block.data)) for block in mesh.cells], len(points))
+    blocks = [(block.type, _sizes_and_nodes(block.data)) for block in mesh.cells]
+    return {"vertices": points, "faces": triangles(blocks, len(points))}
 
 
-def by_vtk(path: Path) -> tuple[Floats, Ints]:
-    """Read VTP, VTU or legacy VTK of polygons or of an unstructured grid.
+def by_vtk(path: Path) -> Arrays:
+    """For `isolated`, read VTP, VTU or legacy VTK of polygons or of an unstructured grid.
 
     VTK's filters end the process on damaged connectivity, so only its raw arrays are used.
     """
@@ -80,7 +91,7 @@ def by_vtk(path: Path) -> tuple[Floats, Ints]:
     else:
         raise BadInputError(f"{path.name}: holds no polygons or cells; save the part's surface as VTP, PLY or STL")
     if data.GetPoints() is None or cells is None or cells.GetNumberOfCells() == 0:
-        return np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
+        return {"vertices": np.empty((0, 3)), "faces": np.empty((0, 3), dtype=np.int64)}
     points = _array(data.GetPoints().GetData(), np.float64)
     offsets = _array(cells.GetOffsetsArray(), np.int64)
     nodes = _array(cells.GetConnectivityArray(), np.int64)
@@ -96,7 +107,7 @@ def by_vtk(path: Path) -> tuple[Floats, Ints]:
         for code, name in _VTK_KINDS.items()
         if (kind == code).any()
     ]
-    return points, triangles(blocks, len(points))
+    return {"vertices": points, "faces": triangles(blocks, len(points))}
 
 
 def _kinds(grid: Any) -> Ints:

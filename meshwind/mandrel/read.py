@@ -14,10 +14,22 @@ from xml.etree.ElementTree import ParseError
 from meshwind.cast import Floats, Ints
 from meshwind.errors import BadInputError
 from meshwind.mandrel import formats, threemf
+from meshwind.mandrel.isolated import DAMAGED, Arrays, isolated
 from meshwind.mandrel.mesh import Mesh
 from meshwind.mandrel.repair import mesh_from
 
-_READERS: dict[str, Callable[[Path], tuple[Floats, Ints]]] = {
+_Read = Callable[[Path], tuple[Floats, Ints]]
+
+
+def _apart(work: Callable[[Path], Arrays]) -> _Read:
+    def read(path: Path) -> tuple[Floats, Ints]:
+        held = isolated(work, path)
+        return held["vertices"], held["faces"]
+
+    return read
+
+
+_READERS: dict[str, _Read] = {
     ".stl": formats.by_trimesh,
     ".ply": formats.by_trimesh,
     ".obj": formats.by_trimesh,
@@ -25,17 +37,17 @@ _READERS: dict[str, Callable[[Path], tuple[Floats, Ints]]] = {
     ".glb": formats.by_trimesh,
     ".gltf": formats.by_trimesh,
     ".3mf": threemf.read,
-    ".vtk": formats.by_vtk,
-    ".vtu": formats.by_vtk,
-    ".vtp": formats.by_vtk,
-    ".msh": formats.by_meshio,
-    ".inp": formats.by_meshio,
+    ".vtk": _apart(formats.by_vtk),
+    ".vtu": _apart(formats.by_vtk),
+    ".vtp": _apart(formats.by_vtk),
+    ".msh": _apart(formats.by_meshio),
+    ".inp": _apart(formats.by_meshio),
 }
 SUFFIXES = tuple(_READERS)
 """File name endings that `read` understands."""
 
-# What the libraries were seen to raise on cut, overwritten and foreign files; meshio ends the process, and
-# RuntimeWarning comes from a cast where the caller turns warnings into errors.
+# What trimesh was seen to raise on cut, overwritten and foreign files; RuntimeWarning
+# comes from a cast where the caller turns warnings into errors.
 _GARBAGE = (
     ValueError, LookupError, NameError, ArithmeticError, TypeError, AttributeError, AssertionError, NotImplementedError,
     RuntimeError, RuntimeWarning, EOFError, MemoryError, OSError, struct.error, zlib.error, zipfile.BadZipFile,
@@ -65,7 +77,7 @@ def load(path: str | PathLike[str]) -> tuple[Floats, Ints]:
             vertices, faces = reader(file)
     except BadInputError:
         raise
-    except formats.reader_errors(file.suffix.lower()) + _GARBAGE as error:
+    except _GARBAGE as error:
         kind = file.suffix[1:].upper()
         raise BadInputError(
             f"{file.name}: cannot be read as {kind} ({_first_line(error)}); export the mesh again, or convert it to STL"
@@ -80,7 +92,7 @@ def _type(value: object) -> str:
     return f"of type {type(value).__name__}"
 
 
-def _reader(file: Path) -> Callable[[Path], tuple[Floats, Ints]]:
+def _reader(file: Path) -> _Read:
     """Choose the reader by the file's suffix, once the file is known to be there and to hold something."""
     advice = "give the path of a triangle mesh (STL, OBJ, PLY, ...)"
     try:
@@ -105,5 +117,5 @@ def _first_line(error: BaseException) -> str:
     lines = str(error).strip().splitlines()
     words = lines[0].strip() if lines else ""
     if isinstance(error, SystemExit | KeyError) or not words:
-        words = "damaged, cut short or of another format"
+        words = DAMAGED
     return words if len(words) <= 100 else words[:97] + "..."

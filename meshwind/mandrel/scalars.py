@@ -11,7 +11,8 @@ import numpy as np
 
 from meshwind.cast import Floats, frozen
 from meshwind.errors import BadInputError
-from meshwind.mandrel.formats import reader_errors, vtk_output
+from meshwind.mandrel.formats import vtk_output
+from meshwind.mandrel.isolated import Arrays, isolated
 
 _BY_VTK = (".vtk", ".vtp", ".vtu")
 _BY_MESHIO = (".ply", ".msh")
@@ -35,19 +36,18 @@ def read_scalars(path: str | Path, name: str) -> Scalars:
     if kind not in _BY_VTK + _BY_MESHIO:
         known = ", ".join(end[1:].upper() for end in _BY_VTK + _BY_MESHIO)
         raise BadInputError(f"{path.name}: this format holds no scalars; save the part with {name!r} as {known}")
-    errors: tuple[type[BaseException], ...] = (OSError, ValueError, LookupError, AttributeError, TypeError)
-    errors += reader_errors(".msh")
     try:
-        points, fields = _by_vtk(path) if kind in _BY_VTK else _by_meshio(path)
-    except errors as error:
+        read = isolated(by_vtk if kind in _BY_VTK else by_meshio, path)
+    except (OSError, ValueError) as error:
         raise BadInputError(
             f"{path.name}: its scalars cannot be read; is it a whole {kind[1:].upper()} file?"
         ) from error
-    if name not in fields:
-        there = ", ".join(sorted(fields)) or "none"
+    names = read["names"].tolist()
+    if name not in names:
+        there = ", ".join(sorted(names)) or "none"
         raise BadInputError(f"{path.name}: has no scalar {name!r}; it holds: {there}")
-    on_cells, values = fields[name]
-    places = on_cells if on_cells is not None else points
+    number = names.index(name)
+    values, places = read[f"values {number}"], read.get(f"places {number}", read["points"])
     if len(values) != len(places) or not np.isfinite(values).all() or not np.isfinite(places).all():
         raise BadInputError(f"{path.name}: scalar {name!r} is not one finite number a vertex or cell; mend it first")
     return Scalars(frozen(places), frozen(values))
@@ -57,8 +57,8 @@ _Fields = dict[str, tuple[Floats | None, Floats]]
 """Per name the cells' middles, None for scalars of the points, and the values."""
 
 
-def _by_vtk(path: Path) -> tuple[Floats, _Fields]:
-    """By raw arrays only, as in `formats`: VTK's filters end the process on damaged cells."""
+def by_vtk(path: Path) -> Arrays:
+    """Points and scalars of a file for `isolated`, by raw arrays only as in `formats`."""
     from vtkmodules.util import numpy_support
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
@@ -74,7 +74,7 @@ def _by_vtk(path: Path) -> tuple[Floats, _Fields]:
         middles = np.add.reduceat(points[nodes], offsets[:-1], axis=0) / sizes[:, None]
         _keep_all(fields, data.GetCellData(), middles)
     _keep_all(fields, data.GetPointData(), None)
-    return points, fields
+    return _packed(points, fields)
 
 
 def _keep_all(fields: _Fields, data: Any, places: Floats | None) -> None:
@@ -87,7 +87,8 @@ def _keep_all(fields: _Fields, data: Any, places: Floats | None) -> None:
             _keep(fields, array.GetName(), numpy_support.vtk_to_numpy(array), places)  # type: ignore[no-untyped-call]
 
 
-def _by_meshio(path: Path) -> tuple[Floats, _Fields]:
+def by_meshio(path: Path) -> Arrays:
+    """Points and scalars of a file for `isolated`."""
     import meshio
 
     mesh = meshio.read(path)
@@ -102,7 +103,17 @@ def _by_meshio(path: Path) -> tuple[Floats, _Fields]:
                 _keep(fields, name, np.concatenate(blocks), middles)
     for name, values in mesh.point_data.items():
         _keep(fields, name, values, None)
-    return points, fields
+    return _packed(points, fields)
+
+
+def _packed(points: Floats, fields: _Fields) -> Arrays:
+    """As arrays by name: the cells' middles only where the scalar is theirs."""
+    packed: Arrays = {"points": points, "names": np.array(list(fields), dtype=np.str_)}
+    for number, (places, values) in enumerate(fields.values()):
+        packed[f"values {number}"] = values
+        if places is not None:
+            packed[f"places {number}"] = places
+    return packed
 
 
 def _keep(fields: _Fields, name: str, values: object, places: Floats | None) -> None:

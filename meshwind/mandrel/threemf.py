@@ -11,18 +11,19 @@ from meshwind.cast import Floats, Ints
 
 _Parts = list[tuple[Floats, Ints]]
 _DEPTH = 16  # objects within objects: deeper means that they hold themselves
+_USES = 20_000  # of objects by others: a few that hold each other many times would never come to an end
+_LARGEST = 1 << 30  # bytes of XML
 
 
 def read(path: Path) -> tuple[Floats, Ints]:
     """Vertices (n, 3) in the file's units and triangles (m, 3) of every object that the build places."""
     parts: _Parts = []
     with zipfile.ZipFile(path) as archive:
-        models = [name for name in archive.namelist() if name.lower().endswith(".model")]
-        for name in models:
-            root = ElementTree.fromstring(archive.read(name))
-            objects = {item.get("id"): item for item in root.iterfind("{*}resources/{*}object")}
-            for item in root.iterfind("{*}build/{*}item"):
-                parts += _object(objects, item, _DEPTH)
+        for held in archive.infolist():
+            if held.filename.lower().endswith(".model"):
+                if held.file_size > _LARGEST:
+                    raise ValueError(f"it unpacks to more than {_LARGEST >> 30} GB")
+                parts += _Model(ElementTree.fromstring(archive.read(held))).placed()
     if not parts:
         return np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
     starts = np.cumsum([0] + [len(points) for points, _ in parts[:-1]])
@@ -30,22 +31,33 @@ def read(path: Path) -> tuple[Floats, Ints]:
     return np.concatenate([points for points, _ in parts]), np.concatenate(faces)
 
 
-def _object(objects: dict[str | None, Element], use: Element, depth: int) -> _Parts:
-    """Meshes of the object that a build item or component uses, moved by that use's transform."""
-    item = objects.get(use.get("objectid"))
-    if item is None or depth == 0:
-        raise ValueError("an object is missing or holds itself")
-    mesh = item.find("{*}mesh")
-    if mesh is not None:
-        parts = [_mesh(mesh)]
-    else:
-        parts = [part for inner in item.iterfind("{*}components/{*}component")
-                 for part in _object(objects, inner, depth - 1)]  # fmt: skip
-    text = use.get("transform")
-    if text is None:
-        return parts
-    matrix = np.array(text.split(), dtype=np.float64).reshape(4, 3)
-    return [(points @ matrix[:3] + matrix[3], faces) for points, faces in parts]
+class _Model:
+    """The objects of one part of the archive."""
+
+    def __init__(self, root: Element) -> None:
+        self.root, self.uses = root, 0
+        self.objects = {item.get("id"): item for item in root.iterfind("{*}resources/{*}object")}
+
+    def placed(self) -> _Parts:
+        """Meshes of all that the build places."""
+        return [part for item in self.root.iterfind("{*}build/{*}item") for part in self._used(item, _DEPTH)]
+
+    def _used(self, use: Element, depth: int) -> _Parts:
+        """Meshes of the object that a build item or component uses, moved by that use's transform."""
+        item = self.objects.get(use.get("objectid"))
+        if item is None or depth == 0:
+            raise ValueError("an object is missing or holds itself")
+        self.uses += 1
+        if self.uses > _USES:
+            raise ValueError(f"it uses objects more than {_USES} times")
+        mesh = item.find("{*}mesh")
+        inner = item.iterfind("{*}components/{*}component")
+        parts = [_mesh(mesh)] if mesh is not None else [part for each in inner for part in self._used(each, depth - 1)]
+        text = use.get("transform")
+        if text is None:
+            return parts
+        matrix = np.array(text.split(), dtype=np.float64).reshape(4, 3)
+        return [(points @ matrix[:3] + matrix[3], faces) for points, faces in parts]
 
 
 def _mesh(mesh: Element) -> tuple[Floats, Ints]:

@@ -1,13 +1,11 @@
-"""The output folder: files appear in it whole and together, or not at all."""
+"""The output folder: files appear in it whole and together, or not at all, and results are replaced only on demand."""
 
-import os
-import shutil
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from meshwind.errors import BadInputError
+from meshwind.output.staging import staged
 
 RESULTS = frozenset(
     ("paths.vtp", "bridges.vtp", "crossings.vtp", "quads.vtu", "quads.obj", "surface.vtu", "surface.npz")
@@ -18,76 +16,46 @@ RESULTS = frozenset(
 """All that a run, or what is made of it, may leave in its folder."""
 
 
-def prepare(out: Path) -> None:
-    """Make sure that files can be written into `out`, and leave nothing behind.
+class _TrialError(Exception):
+    """Ends a trial before anything has been written."""
 
-    Raises BadInputError where a file is in the way or the place cannot be written.
+
+def prepare(out: Path, overwrite: bool = False) -> None:
+    """Make sure that files can be written into `out`, and leave nothing behind; first finish what a killed run left.
+
+    Raises BadInputError where a file is in the way, where the place cannot be written or where, without `overwrite`,
+    it holds results.
     """
-    made = _missing(out)
     try:
-        trial = _staging(out)
-        trial.rmdir()
-    finally:
-        _remove_empty(made)
+        with writing(out, overwrite):
+            raise _TrialError
+    except _TrialError:
+        pass
 
 
 @contextmanager
-def writing(out: Path) -> Iterator[Path]:
-    """Give a folder to write files into; on leaving they move to `out`, on an error they vanish.
+def writing(out: Path, overwrite: bool = False) -> Iterator[Path]:
+    """Give a folder to write a run's files into; on leaving they move to `out`, on an error they vanish.
 
-    Files of the same names in `out` are replaced; results of an earlier run that this one does not have are
-    removed, as they would belong to another report; all else is left alone.  On an error nothing is left, not
-    even `out` itself where it was missing.  Raises BadInputError where `out` cannot be written.
+    With `overwrite` all results of an earlier run in `out` are removed, also those that this one does not have, as
+    they would belong to another report; all else is left alone.  On an error nothing is left, not even `out` itself
+    where it was missing, and killed on the way the next run into `out` finishes the move or clears away.  Raises
+    BadInputError where `out` cannot be written or, without `overwrite`, holds results.
     """
-    made = _missing(out)
-    staging: Path | None = None
-    try:
-        staging = _staging(out)
-        yield staging
-        _move(staging, out)
-    except OSError as error:
-        raise _unwritable(out, error) from error
-    finally:
-        if staging is not None:
-            shutil.rmtree(staging, ignore_errors=True)
-        _remove_empty(made)
-
-
-def _unwritable(out: Path, error: OSError) -> BadInputError:
-    return BadInputError(f"cannot write to {out}: {error.strerror or error}; give another folder")
-
-
-def _missing(out: Path) -> list[Path]:
-    """Folders that have to be made for `out`, the innermost first."""
-    absolute = out.absolute()
-    return [folder for folder in (absolute, *absolute.parents) if not os.path.lexists(folder)]
-
-
-def _staging(out: Path) -> Path:
-    """Make `out` and a folder within it, so that a move to `out` is a rename on one file system."""
     if out.exists() and not out.is_dir():
         raise BadInputError(f"{out} is a file; give a folder for the results")
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        return Path(tempfile.mkdtemp(prefix=".writing-", dir=out))
-    except OSError as error:
-        raise _unwritable(out, error) from error
+    with staged(out, lambda _: map(Path, held)) as staging:
+        held = _held(out, overwrite)
+        yield staging
+        held = _held(out, overwrite)
 
 
-def _move(staging: Path, out: Path) -> None:
-    for file in sorted(staging.iterdir()):
-        if (out / file.name).is_dir():
-            raise BadInputError(f"{out / file.name} is a folder where a file belongs; move it away")
-    fresh = sorted(staging.iterdir())
-    for name in RESULTS - {file.name for file in fresh}:
-        if (out / name).is_file():
-            (out / name).unlink()
-    for file in fresh:
-        os.replace(file, out / file.name)
-
-
-def _remove_empty(folders: list[Path]) -> None:
-    """Remove those folders that are there and empty; results keep theirs."""
-    for folder in folders:
-        if folder.is_dir() and not any(folder.iterdir()):
-            folder.rmdir()
+def _held(out: Path, overwrite: bool) -> list[str]:
+    """Names of the results in `out`; raises BadInputError where there are some that must not be replaced."""
+    held = sorted(name for name in RESULTS if (out / name).is_file())
+    if held and not overwrite:
+        what = ", ".join(held[:2]) + ", ..." * (len(held) > 2)
+        raise BadInputError(
+            f"{out} holds results already ({what}); give another folder, or --overwrite to replace them"
+        )
+    return held

@@ -101,13 +101,15 @@ def _write_png(path: Path, levels: NDArray[np.uint16], texts: dict[str, str]) ->
     picture.SetDimensions(width, height, 1)
     picture.GetPointData().SetScalars(convert(_upside_down(levels).reshape(-1, 3), deep=True))
     writer = vtkPNGWriter()
-    writer.SetFileName(str(path))
+    writer.WriteToMemoryOn()  # VTK itself cannot tell of a full disk
     writer.SetInputData(picture)
     for key, text in texts.items():
         writer.AddText(key, text)
     writer.Write()
     if writer.GetErrorCode():
         raise OSError(f"VTK could not write {path.name}")
+    back: Any = numpy_support.vtk_to_numpy
+    path.write_bytes(back(writer.GetResult()).tobytes())
 
 
 def _read_png(path: Path) -> tuple[NDArray[Any], dict[str, str]]:

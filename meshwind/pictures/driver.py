@@ -79,6 +79,9 @@ class Painter:
         words, late = self._work(packed.getvalue(), tell)
         complaint = self._complained()
         self.close()
+        for picture in scenes:
+            if picture.name not in words:
+                picture.unlink(missing_ok=True)  # a process that has stopped may leave half of it
         missing = " and ".join(name for name in names if name not in words)
         if late:
             return f"no {missing}: drawing took more than {_PATIENCE:.0f} s"

@@ -58,7 +58,7 @@ def render(
         lacking = [name for name in only if name != SHEET and name not in scenes]
         if lacking or (animate and of is None):
             raise BadInputError(f"{source} holds nothing to draw {(lacking or list(animate))[0]} from; leave it out")
-        with beside(target) as staging, tempfile.TemporaryDirectory() as cells:
+        with beside(target) as staging, tempfile.TemporaryDirectory(dir=staging) as cells:
             work = placed(scenes, only or (() if animate else (*scenes, SHEET)), paper, staging, Path(cells))
             pictures = list(work)
             if animate and of is not None:
@@ -67,7 +67,7 @@ def render(
             _paint(work, tell)
             if SHEET in only or not (only or animate):
                 write_sheet(staging / f"{SHEET}.png", pictures, paper.transparent)
-            names = sorted(path.name for path in staging.iterdir())
+            names = sorted(path.name for path in staging.iterdir() if path.is_file())
     finally:
         driver.stop()
     return Rendered(tuple(target / name for name in names))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from meshwind.cast import Bools, Floats, Ints
 from meshwind.export.results import Results
-from meshwind.export.vtk_reading import read_faces
+from meshwind.export.skin import read_skin
 from meshwind.layup.layup import Layup
 from meshwind.layup.lengths import lengths
 from meshwind.output.figures import PathFigures, path_figures
@@ -116,10 +116,19 @@ def subject(
 
 
 def subject_in(
-    folder: Path, layup: Layup, name: str, units: str = "", revolutions: float | None = None, seen_from: str = "auto"
+    folder: Path,
+    layup: Layup,
+    name: str,
+    units: str = "",
+    revolutions: float | None = None,
+    seen_from: str = "auto",
+    trusted: bool = True,
 ) -> Subject:
-    """A layup to draw with the maps of the surface.vtu in a folder; raises BadInputError where there is none."""
-    skin = read_faces(folder / "surface.vtu")
+    """A layup to draw with the maps of the surface.vtu in a folder; raises BadInputError where there is none.
+
+    trusted: this very process has written the file.
+    """
+    skin = read_skin(folder, layup.paths.surface, trusted)
     maps = dict(skin.point_data)
     normals = maps.pop("normal")
     return Subject(layup, skin.points, skin.quads, normals, name, units, revolutions, maps, seen_from)
@@ -128,4 +137,4 @@ def subject_in(
 def subject_of(results: Results, seen_from: str = "auto") -> Subject:
     """A results folder to draw."""
     turns = results.report.get("winding", {}).get("revolutions")
-    return subject_in(results.folder, results.layup, results.name, results.units, turns, seen_from)
+    return subject_in(results.folder, results.layup, results.name, results.units, turns, seen_from, trusted=False)
