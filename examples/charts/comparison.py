@@ -113,6 +113,7 @@ def draw_failures(results: Results, rows: Sequence[dict[str, Any]]) -> None:
     figure, axes = plt.subplots(figsize=(1.0 + 0.72 * len(problems) + 3, 0.42 * len(methods) + 2.2))
     words = {
         "no friction": "no\nfriction",
+        "the step's error outweighs the rule's": "no gain",
         "stays on the surface": "cannot\nbridge",
         "finds the shortest path, not one of several turns": "shortest\nonly",
     }
@@ -156,6 +157,7 @@ CAPABILITIES = (
         "residual",
     ),
     ("backward-euler-reuse", "yes", "as backward Euler", "as backward Euler", "a surface: any point", "residual"),
+    ("backward-euler-ruled", "yes", "as backward Euler", "not tried", "a surface: any point", "residual"),
     ("explicit-euler", "yes", "yes", "yes (4.19)", "a surface: any point", "residual"),
     ("symplectic-euler", "yes", "yes", "yes (4.19)", "a surface: any point", "residual"),
     ("rk4", "yes", "yes", "yes (4.19)", "a surface: any point", "residual"),

@@ -39,6 +39,10 @@ def slowest(n: int) -> float:
     return 2.0 * np.pi / (n - 1)
 
 
+RULED = "backward-euler-ruled"
+"""Backward Euler with and without reuse, its lengths told by our rule rather than by the polyline."""
+
+
 def trials(method: str, problem: Problem, n: int) -> list[Trial]:
     """All settings of a method for n particles."""
     scheme = "backward-euler" if method.startswith("backward-euler") else method
@@ -53,6 +57,9 @@ def trials(method: str, problem: Problem, n: int) -> list[Trial]:
 def _grid(method: str, problem: Problem, n: int) -> dict[str, dict[str, Any]]:
     if method == "meshwind":
         return {"tolerance 1e-10 (default)": {}, "tolerance 1e-6": {"tolerance": 1e-6}}
+    if method == RULED:
+        both = _grid("backward-euler", problem, n) | _grid("backward-euler-reuse", problem, n)
+        return {key: setting | {"rule": True} for key, setting in both.items()}
     if method == "backward-euler":
         if problem.friction:
             return {f"h={h:g}, damping 0.05": dict(step_size=h, damping=0.05) for h in (0.1, 0.3, 1.0, 10.0)}

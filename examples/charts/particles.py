@@ -15,7 +15,7 @@ LEAST = 26
 
 
 def draw(results: Results, points: Sequence[Point]) -> None:
-    """A panel a kind, each problem a line, with slope 2 beside."""
+    """A panel a kind, each problem a line, with slopes 2 and 4 beside."""
     kinds = [kind for kind in Kind if any(p.kind == kind for p in points)]
     figure, grid = plt.subplots(1, len(kinds), figsize=(4.2 * len(kinds), 4.4), sharey=True, squeeze=False)
     for axes, kind in zip(grid[0], kinds, strict=True):
@@ -34,7 +34,9 @@ def draw(results: Results, points: Sequence[Point]) -> None:
                     [p.size for p in mine], [p.error for p in mine], marker=marker, ms=4.5, color=colour, label=name
                 )
         n = np.array([LEAST, 6401.0])
-        axes.plot(n, 1e-2 * (n / LEAST) ** -2, "k--", lw=1, label="slope -2")
+        axes.plot(n, 1e-2 * (n / LEAST) ** -2, "k--", lw=1, label="slope -2, a polyline's")
+        axes.plot(n, 1e-4 * (n / LEAST) ** -4, "k:", lw=1, label="slope -4")
+        axes.set_ylim(1e-13, 1e-1)
         log_axes(axes, "particles", "relative error of the length")
         axes.set_title(str(kind))
         axes.legend()

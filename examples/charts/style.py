@@ -50,6 +50,7 @@ LOOKS = {
     "meshwind": Look("meshwind (Newton, this work)", RED, "o"),
     "backward-euler": Look("backward Euler (4.16, 4.17)", BLUE, "s"),
     "backward-euler-reuse": Look("backward Euler, matrix reused", SKY, "s", "--"),
+    "backward-euler-ruled": Look("backward Euler, lengths by our rule", BLUE, "s", ":"),
     "explicit-euler": Look("explicit Euler (4.10-4.12)", ORANGE, "v"),
     "symplectic-euler": Look("symplectic Euler", ORANGE, "^", "--"),
     "rk4": Look("Runge-Kutta 4", PURPLE, "D"),

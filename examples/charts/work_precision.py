@@ -9,7 +9,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 
-from charts.ladders import KEPT, QUICK_SIZES, SIZES, trials
+from charts.ladders import KEPT, QUICK_SIZES, RULED, SIZES, trials
 from charts.record import Results
 from charts.style import LOOKS, log_axes, save
 from charts.timing import least, timed
@@ -21,6 +21,7 @@ CHAINS = (
     "meshwind",
     "backward-euler",
     "backward-euler-reuse",
+    RULED,
     "explicit-euler",
     "symplectic-euler",
     "rk4",
@@ -36,6 +37,8 @@ MESHES = ("flipout", "mmp-pygeodesic", "mmp-libigl")
 VERTICES = (250, 1000, 4000, 16_000)
 LARGEST_EXACT = 4000
 """Vertices beyond which the exact polyhedral methods take seconds a path."""
+LARGEST_RULED = 801
+"""Particles with which the rule of the fourth order is right to round-off."""
 FAR = 0.3
 """A path whose length is off by more is another path: a wrong answer."""
 QUICK = ("barrel-1.5", "barrel-4", "vase", "catenary-0.3", "bottle-turn")
@@ -95,6 +98,8 @@ def measure(problem: Problem, method: str, size: int, setting: str, call: Callab
 def cannot(problem: Problem, method: str) -> str | None:
     """Why a method cannot solve a problem, None where it can."""
     turns = abs(problem.end[0] - problem.start[0])
+    if method == RULED and problem.friction:
+        return "the step's error outweighs the rule's"
     if method in ("kkt", "penalty") and problem.friction:
         return "no friction"
     if method not in CHAINS:
@@ -112,6 +117,8 @@ def climb(problem: Problem, method: str, sizes: Sequence[int]) -> list[Point]:
     points: list[Point] = []
     kept: list[str] | None = None
     for n in sizes:
+        if method == RULED and n > LARGEST_RULED:
+            break
         rung = []
         for trial in trials(method, problem, n):
             if kept is not None and trial.key not in kept:

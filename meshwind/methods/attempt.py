@@ -11,6 +11,7 @@ from meshwind.cast import Floats
 from meshwind.methods.driver import run
 from meshwind.methods.problems import Problem
 from meshwind.methods.run import Ending
+from meshwind.path.length import fibre_lengths
 from meshwind.path.paths import Status
 from meshwind.path.solve import solve
 
@@ -55,8 +56,13 @@ def polyline(points: Floats) -> float:
 
 
 def attempt(method: str, problem: Problem, particles: int, setting: Mapping[str, Any] | None = None) -> Attempt:
-    """Solve a problem by one of `Method` or by ours, from the problem's starting curve."""
+    """Solve a problem by one of `Method` or by ours, from the problem's starting curve.
+
+    The setting `rule` tells the length of another method's chain by our own rule of the fourth order instead of its
+    polyline's, so that solvers can be compared apart from rules.
+    """
     given = dict(setting or {})
+    by_rule = bool(given.pop("rule", False))
     curve = None if problem.initial is None else problem.initial(particles)
     if method == OURS:
         return _ours(problem, particles, curve, given)
@@ -64,11 +70,14 @@ def attempt(method: str, problem: Problem, particles: int, setting: Mapping[str,
         given["friction"] = problem.friction
     if method not in ("penalty", "kkt"):
         given = {"lifting": problem.bridges, "weighted": True} | given
-    found = run(method, problem.surface(), problem.start, problem.end, particles=particles, initial=curve, **given)
-    c = found.counters
+    surface = problem.surface()
+    found = run(method, surface, problem.start, problem.end, particles=particles, initial=curve, **given)
+    c, length = found.counters, found.length
+    if by_rule and found.status != Ending.DIVERGED:
+        length = float(fibre_lengths(surface, found.points[None], found.uv[None], found.on_surface[None])[0])
     return Attempt(
         ENDINGS[found.status],
-        found.length,
+        length,
         c.evaluations,
         c.feet,
         c.solves,

@@ -8,8 +8,11 @@ is straight from where it truly leaves the surface, between particles, to where 
 import numpy as np
 from numba import njit
 
+from meshwind.cast import Bools, Floats
 from meshwind.path.state import distance
 from meshwind.path.touchdown import touchdown
+from meshwind.surface.surface import Surface
+from meshwind.threads import spread
 
 
 @njit(cache=True)
@@ -33,6 +36,13 @@ def run_length(X, first, last):
         k2 = 0.5 * (bend(X, a) + bend(X, b)) if last - first > 1 else 0.0
         total += chord * (1.0 + chord * chord * k2 / 24.0)
     return total
+
+
+def fibre_lengths(surface: Surface, points: Floats, uv: Floats, touching: Bools) -> Floats:
+    """Lengths (p,) of fibres with particles points (p, n, 3), at or above uv (p, n, 2), in the surface's units."""
+    length = np.empty(len(points))
+    spread(lengths_all, len(points), 8, surface.net, surface.periodic, points, uv, touching, length)
+    return length
 
 
 @njit(nogil=True, cache=True)

@@ -7,9 +7,8 @@ from functools import cached_property
 import numpy as np
 
 from meshwind.cast import Bools, Floats, Ints, frozen
-from meshwind.path.length import lengths_all
+from meshwind.path.length import fibre_lengths
 from meshwind.surface.surface import Surface
-from meshwind.threads import spread
 
 
 class Status(IntEnum):
@@ -93,10 +92,7 @@ class Paths:
 
         The polyline through its particles is shorter by the chords' share, h^2 k^2 / 24 at distance h and curvature k.
         """
-        length = np.empty(len(self))
-        spread(lengths_all, len(self), 8, self.surface.net, self.surface.periodic, self.points, self.uv,
-               self.on_surface, length)  # fmt: skip
-        return frozen(length)
+        return frozen(fibre_lengths(self.surface, self.points, self.uv, self.on_surface))
 
     @property
     def sharpest_turn(self) -> Floats:
