@@ -62,7 +62,7 @@ def noise(results: Results, quick: bool) -> None:
         ylabel="noise of the vertices over the diagonal",
         title=(
             f"meshwind from an irregular mesh of the barrel, {VERTICES} vertices, 201 particles\nright: at rest, length"
-            " within 1e-4 + 10 x noise of Clairaut's; beyond the limit a refusal is the right answer, below 0.001 of"
+            " within 1e-4 + 10 x noise of Clairaut's;\nbeyond the limit a refusal is the right answer, below 0.001 of"
             " noise the only one"
         ),
     )

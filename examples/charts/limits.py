@@ -63,8 +63,10 @@ def near_rest(n: int) -> tuple[Any, float]:
 
 
 def bisect(scheme: str, n: int, damping: float, curve: Any, theory: float) -> float:
-    """The measured limit to 2 %."""
-    low, high = 0.3 * theory, 3.0 * theory
+    """The measured limit to 2 %: the least step that explodes, as above it there are islands where the rims hold on."""
+    low, high = 0.3 * theory, 0.33 * theory
+    while high < 3.0 * theory and not explodes(scheme, n, high, damping, curve):
+        low, high = high, 1.1 * high
     while high / low > 1.02:
         middle = np.sqrt(low * high)
         low, high = (low, middle) if explodes(scheme, n, middle, damping, curve) else (middle, high)

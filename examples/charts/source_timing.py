@@ -177,7 +177,7 @@ def _draw(results: Results, here: dict[str, float], figures: dict[str, float]) -
         f"The source's Table 7.1 and the same steps here (h = {STEP:g} sqrt(m/K), damping {DAMPING:g} sqrt(K m)); the"
         f" source gives neither part nor particles.\nThe steps compiled whole: {figures['whole_ms']:.3g} ms, error"
         f" {figures['their_error']:.1e}; meshwind: {figures['ours_ms']:.3g} ms, error {figures['our_error']:.1e},"
-        f" {figures['ratio']:.0f} times quicker; with {figures['equal_particles']} particles no less accurate and"
+        f" {figures['ratio']:.0f} times quicker;\nwith {figures['equal_particles']} particles no less accurate and"
         f" {figures['equal_ratio']:.0f} times quicker",
         fontsize=8.5,
     )
