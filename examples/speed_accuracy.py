@@ -3,7 +3,7 @@
     python examples/speed_accuracy.py --out out/speed
 
 needs `pip install 'meshwind[peers]'` for the mesh peers.  Writes PNG charts, their figures as CSV, and everything as
-results.json, in under 10 minutes on two cores; --quick takes five problems and under 2 minutes.  One thread, least of
+results.json, in under 10 minutes on two cores; --quick takes six problems and under 2 minutes.  One thread, least of
 several repeats after a warm-up.
 """
 
@@ -22,7 +22,7 @@ def main() -> None:
     """Measure, draw and write."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
     parser.add_argument("--out", type=Path, default=Path("out/speed_accuracy"), help="folder for charts and figures")
-    parser.add_argument("--quick", action="store_true", help="five problems and fewer settings")
+    parser.add_argument("--quick", action="store_true", help="six problems and fewer settings")
     parser.add_argument("--golden", type=Path, help="only rewrite the golden file of errors and counts, here")
     given = parser.parse_args()
     if given.golden is not None:

@@ -10,7 +10,9 @@ from irregular import annulus
 import meshwind as mw
 from meshwind.cast import Floats
 from meshwind.chart import flatten
-from meshwind.methods.problems import TURN, Problem, vase_radius
+from meshwind.methods.problem import Problem
+from meshwind.methods.problems import vase_radius
+from meshwind.methods.rubbing import TURN
 from meshwind.surface import Surface, fit, shapes
 
 DATA = Path(__file__).parents[1] / "data"

@@ -6,7 +6,9 @@ from forward_shapes import fine_barrel, gutter, parabola, tube
 from scipy.optimize import brentq
 
 from meshwind.cast import Floats
-from meshwind.methods.problems import PROBLEMS, TURN, Problem, barrel_clairaut, barrel_length, hyperboloid
+from meshwind.methods.problem import Problem
+from meshwind.methods.problems import PROBLEMS, barrel_clairaut, barrel_length, hyperboloid
+from meshwind.methods.rubbing import TURN
 from meshwind.path import Stop, trace
 from meshwind.surface import shapes
 

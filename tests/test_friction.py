@@ -7,7 +7,8 @@ from scipy.optimize import brentq
 
 from meshwind.cast import Floats
 from meshwind.errors import BadInputError
-from meshwind.methods.problems import SLIDING, TABLE, TURN, Sliding, barrel, tube
+from meshwind.methods.problems import SLIDING, TABLE, barrel
+from meshwind.methods.rubbing import TURN, Sliding, tube
 from meshwind.path import Paths, Status, solve
 from meshwind.path.friction import Friction, friction_from, friction_of
 

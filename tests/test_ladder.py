@@ -12,7 +12,8 @@ import pytest
 from friction_checks import bent, wavy
 
 from meshwind.cast import Floats
-from meshwind.methods.problems import FREEFORM, PROBLEMS, TABLE, Problem, barrel, vase
+from meshwind.methods.problem import Problem
+from meshwind.methods.problems import FREEFORM, PROBLEMS, TABLE, barrel, vase
 from meshwind.path import Counters, Paths, Status, solve
 
 

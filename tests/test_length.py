@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from meshwind.cast import Floats
-from meshwind.methods.problems import FREEFORM, LONG, PROBLEMS, TABLE, Problem
+from meshwind.methods.problem import Problem
+from meshwind.methods.problems import FREEFORM, LONG, PROBLEMS, TABLE
 from meshwind.path import Paths, Status, solve
 from meshwind.surface import Surface
 

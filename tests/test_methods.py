@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from meshwind.errors import BadInputError
 from meshwind.methods import Ending, Method, Run, largest_frequency, run, stable_step
-from meshwind.methods.problems import PROBLEMS, Problem, barrel, sphere
+from meshwind.methods.problem import Problem
+from meshwind.methods.problems import PROBLEMS, barrel, sphere
 from meshwind.path import solve
 from meshwind.surface import Surface, shapes
 

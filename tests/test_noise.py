@@ -8,7 +8,8 @@ from meshwind.cast import Floats
 from meshwind.chart import flatten
 from meshwind.mandrel import annulus as opened
 from meshwind.mandrel import mesh_from
-from meshwind.methods.problems import TURN, vase_radius
+from meshwind.methods.problems import vase_radius
+from meshwind.methods.rubbing import TURN
 from meshwind.surface import fit
 from meshwind.surface.interpolate import Formula
 from meshwind.surface.noise import roughness

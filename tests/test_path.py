@@ -6,18 +6,9 @@ from scipy.optimize import brentq
 
 from meshwind.errors import BadInputError
 from meshwind.layup.lengths import bridges
-from meshwind.methods.problems import (
-    PROBLEMS,
-    RULING,
-    TABLE,
-    TURN,
-    Problem,
-    barrel,
-    barrel_clairaut,
-    bottle,
-    hyperboloid,
-    vase_radius,
-)
+from meshwind.methods.problem import Problem
+from meshwind.methods.problems import PROBLEMS, RULING, TABLE, barrel, barrel_clairaut, bottle, hyperboloid, vase_radius
+from meshwind.methods.rubbing import TURN
 from meshwind.path import Paths, Status, solve
 from meshwind.path.touchdown import touchdowns
 from meshwind.surface import shapes

@@ -21,7 +21,8 @@ from scipy.spatial import cKDTree
 
 import meshwind as mw
 from meshwind.cast import Floats, Ints
-from meshwind.methods.problems import TURN, barrel_radius, vase_radius
+from meshwind.methods.problems import barrel_radius, vase_radius
+from meshwind.methods.rubbing import TURN
 from meshwind.surface.foot import feet
 
 

@@ -9,7 +9,8 @@ from charts.maps import classify, key, paint
 from charts.record import Results
 from charts.style import save
 from meshwind.methods.attempt import attempt, polyline
-from meshwind.methods.problems import TABLE, Problem
+from meshwind.methods.problem import Problem
+from meshwind.methods.problems import TABLE
 
 N = 51
 ALLOWED = 1e-3

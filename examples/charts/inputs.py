@@ -15,7 +15,9 @@ from meshwind.cast import Floats
 from meshwind.errors import BadInputError
 from meshwind.mandrel import mesh_from
 from meshwind.methods.attempt import attempt
-from meshwind.methods.problems import BARREL_LIMIT, TABLE, TURN, Problem, barrel_length, barrel_radius
+from meshwind.methods.problem import Problem
+from meshwind.methods.problems import BARREL_LIMIT, TABLE, barrel_length, barrel_radius
+from meshwind.methods.rubbing import TURN
 from meshwind.surface import Surface, shapes
 
 NOISE = (0.0, 1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2)

@@ -8,7 +8,8 @@ import numpy as np
 from charts.record import Results
 from charts.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, log_axes, save
 from charts.work_precision import Point
-from meshwind.methods.problems import TABLE, Kind
+from meshwind.methods.problem import Kind
+from meshwind.methods.problems import TABLE
 
 CYCLE = (RED, BLUE, GREEN, ORANGE, PURPLE, SKY, BLACK, GREY)
 LEAST = 26

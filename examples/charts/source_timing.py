@@ -17,7 +17,8 @@ from meshwind.methods.attempt import attempt
 from meshwind.methods.chain import Physics, carry, gather, link, place
 from meshwind.methods.lifting import PULL, contact
 from meshwind.methods.march import forces_for
-from meshwind.methods.problems import TABLE, Problem
+from meshwind.methods.problem import Problem
+from meshwind.methods.problems import TABLE
 
 SOURCE = {"build": 233.22, "solve": 204.35, "lift and land": 149.65, "other": 15.86}
 """Milliseconds, C++ on 6 threads of a Core i7 7700K; its surface and number of particles are not given."""

@@ -13,7 +13,8 @@ from charts.maps import classify, key, paint
 from charts.record import Results
 from charts.style import save
 from meshwind.methods.attempt import Attempt, attempt
-from meshwind.methods.problems import TURN, Problem, Sliding
+from meshwind.methods.problem import Problem
+from meshwind.methods.rubbing import TURN, Sliding
 from meshwind.surface import Surface, shapes
 
 N = 201

@@ -1,7 +1,7 @@
 """Any method on any problem, with the outcome in one form: what charts, tests and golden figures compare."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from enum import StrEnum
 from typing import Any
 
@@ -9,10 +9,11 @@ import numpy as np
 
 from meshwind.cast import Floats
 from meshwind.methods.driver import run
-from meshwind.methods.problems import Problem
+from meshwind.methods.problem import Problem
 from meshwind.methods.run import Ending
+from meshwind.path.drag import drag
 from meshwind.path.length import fibre_lengths
-from meshwind.path.paths import Status
+from meshwind.path.paths import Counters, Status
 from meshwind.path.solve import solve
 
 OURS = "meshwind"
@@ -71,8 +72,14 @@ def attempt(method: str, problem: Problem, particles: int, setting: Mapping[str,
     if method not in ("penalty", "kkt"):
         given = {"lifting": problem.bridges, "weighted": True} | given
     surface = problem.surface()
-    found = run(method, surface, problem.start, problem.end, particles=particles, initial=curve, **given)
-    c, length = found.counters, found.length
+    starts, ends = problem.way if problem.before else ([problem.start], [problem.end])
+    counts = np.zeros(4, np.int64)
+    for start, end in zip(starts, ends, strict=True):
+        found = run(method, surface, start, end, particles=particles, initial=curve, **given)
+        curve, counts = found.uv, counts + astuple(found.counters)
+        if found.status != Ending.CONVERGED:
+            break
+    c, length = Counters(*(int(k) for k in counts)), found.length
     if by_rule and found.status != Ending.DIVERGED:
         length = float(fibre_lengths(surface, found.points[None], found.uv[None], found.on_surface[None])[0])
     return Attempt(
@@ -88,26 +95,22 @@ def attempt(method: str, problem: Problem, particles: int, setting: Mapping[str,
 
 
 def _ours(problem: Problem, particles: int, curve: Floats | None, given: dict[str, Any]) -> Attempt:
-    found = solve(
-        problem.surface(),
-        [problem.start],
-        [problem.end],
-        particles=particles,
-        friction=problem.friction,
-        initial=None if curve is None else curve[None],
-        **given,
-    )
+    given |= dict(particles=particles, friction=problem.friction)
+    if problem.before:
+        found = drag(problem.surface(), *problem.way, **given)
+    else:
+        initial = None if curve is None else curve[None]
+        found = solve(problem.surface(), [problem.start], [problem.end], initial=initial, **given)
     c = found.counters
-    outcome = Outcome.REST if found.status[0] == Status.CONVERGED else Outcome.REFUSED
-    if found.status[0] == Status.STALLED:
-        outcome = Outcome.STALLED
+    worst = next((status for status in found.status if status != Status.CONVERGED), Status.CONVERGED)
+    outcome = {Status.CONVERGED: Outcome.REST, Status.STALLED: Outcome.STALLED}.get(Status(int(worst)), Outcome.REFUSED)
     return Attempt(
         outcome,
-        float(found.length[0]),
+        float(found.length[-1]),
         c.evaluations,
         c.feet,
         c.solves,
         c.iterations,
-        float(found.gap[0].max()),
-        found.points[0],
+        float(found.gap[-1].max()),
+        found.points[-1],
     )

@@ -8,7 +8,8 @@ from typing import Any
 
 from meshwind.methods.attempt import OURS, Attempt, attempt
 from meshwind.methods.peers_smooth import collocate, shoot, shoot_traced
-from meshwind.methods.problems import TABLE, Problem
+from meshwind.methods.problem import Problem
+from meshwind.methods.problems import TABLE
 
 PARTICLES = 41
 SETTINGS: dict[str, tuple[str, dict[str, Any]]] = {

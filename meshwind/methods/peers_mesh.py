@@ -17,7 +17,7 @@ import pygeodesic.geodesic
 
 from meshwind.cast import Floats, Ints
 from meshwind.methods.attempt import Attempt, Outcome, polyline
-from meshwind.methods.problems import Problem
+from meshwind.methods.problem import Problem
 
 JITTER = 0.25
 """Of the vertices, over their pitch in (u, v): no mesh of practice is a regular grid."""

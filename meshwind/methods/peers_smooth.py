@@ -12,7 +12,7 @@ from scipy.optimize import root
 
 from meshwind.cast import Floats
 from meshwind.methods.attempt import Attempt, Outcome
-from meshwind.methods.problems import Problem
+from meshwind.methods.problem import Problem
 from meshwind.path.forward import Stop, trace
 from meshwind.path.geodesic_equation import rates
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV

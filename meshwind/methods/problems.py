@@ -5,8 +5,7 @@ length is a dense reference with an error estimate of its own.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from enum import StrEnum
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -14,47 +13,9 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from meshwind.cast import Floats
+from meshwind.methods.problem import Kind, Problem
+from meshwind.methods.rubbing import TURN, Dragged, Sliding, tube
 from meshwind.surface import Surface, shapes
-
-TURN = 2 * np.pi
-
-
-class Kind(StrEnum):
-    """What a problem asks of a method."""
-
-    ON_SURFACE = "on the surface"
-    BRIDGING = "bridging"
-    FRICTION = "friction"
-    FREEFORM = "freeform"
-    LONG = "long windings"
-
-
-@dataclass(frozen=True)
-class Problem:
-    """A path whose answer is known.
-
-    start, end (u, v): u in turns and unwrapped; length in the surface's units; bridges: whether the fibre leaves the
-    surface; gap: its largest distance from the surface, None where not asked; friction: Coulomb's coefficient;
-    initial: the starting curve for a number of particles, (n, 2), None for a straight line in (u, v); accuracy: how
-    well `length` is known on the spline that stands for the shape, relative.
-    """
-
-    name: str
-    hard: str
-    surface: Callable[[], Surface]
-    start: tuple[float, float]
-    end: tuple[float, float]
-    length: float
-    bridges: bool = False
-    gap: float | None = None
-    kind: Kind = Kind.ON_SURFACE
-    friction: float = 0.0
-    initial: Callable[[int], Floats] | None = None
-    accuracy: float = 1e-12
-
-    def error(self, length: float) -> float:
-        """Relative error of a length, at least this table's own."""
-        return max(abs(length / self.length - 1.0), self.accuracy)
 
 
 def cone_length(twist: float) -> float:
@@ -151,12 +112,6 @@ def elbow() -> Surface:
     return shapes.elbow(3.0, 1.0, np.pi / 2, (128, 128))
 
 
-@cache
-def tube(low: float, high: float) -> Surface:
-    """A cylinder of radius 1 for z from low to high."""
-    return shapes.revolution(np.ones_like, low, high, (256, 8))
-
-
 def great_circle(longitude: float) -> float:
     """On a sphere of radius 2 from polar angle pi/4 to 3 pi/4 over `longitude`."""
     return float(2.0 * np.arccos(0.5 * np.cos(longitude) - 0.5))
@@ -204,77 +159,17 @@ LONG = (
 """Windings so long that they need many particles or hardly hold."""
 
 
-@dataclass(frozen=True)
-class Sliding:
-    """A fibre on a cylinder of radius 1 that starts as z = k/2 (half^2 - t^2), |t| <= half, with friction mu.
-
-    Where it slides it comes to rest as a catenary z = const - cosh(mu t) / mu, on which friction is used up
-    everywhere: kg / kn = z'' / sqrt(1 + z'^2) = -mu.  The catenary leaves the untouched parabola with the same
-    tangent at t = slid, or reaches the ends.
-    """
-
-    mu: float
-    k: float
-    half: float
-
-    @property
-    def slid(self) -> float:
-        """Largest |t| of a particle that moves: 0 where none does, `half` where all do."""
-        if self.k <= self.mu:
-            return 0.0
-        if self.k * self.half >= np.sinh(self.mu * self.half):
-            return self.half
-        low = np.arccosh(self.k / self.mu) / self.mu  # where k t - sinh(mu t) is largest
-        return float(brentq(lambda x: self.k * x - np.sinh(self.mu * x), low, self.half, xtol=1e-15))
-
-    @property
-    def length(self) -> float:
-        """Length at rest: the catenary's and twice the parabola's tail."""
-        tail = self._arc(self.half) - self._arc(self.slid)
-        middle = np.sinh(self.mu * self.slid) / self.mu if self.mu > 0 else self.slid
-        return float(2.0 * (middle + tail))
-
-    @property
-    def middle(self) -> float:
-        """z at t = 0, at rest."""
-        rise = 0.5 * self.k * (self.half**2 - self.slid**2)
-        return float(rise + ((np.cosh(self.mu * self.slid) - 1) / self.mu if self.mu > 0 else 0.0))
-
-    def _arc(self, t: float) -> float:
-        x = self.k * t
-        return float((x * np.sqrt(1 + x * x) + np.arcsinh(x)) / (2 * self.k))
-
-    @property
-    def top(self) -> float:
-        """Height of the start's middle."""
-        return 0.5 * self.k * self.half**2
-
-    def surface(self) -> Surface:
-        """The cylinder, with a margin of 1 at both ends."""
-        return tube(-1.0, self.top + 1.0)
-
-    def initial(self, particles: int) -> Floats:
-        """The starting parabola in (u, v), at even steps of t."""
-        t = np.linspace(-self.half, self.half, particles)
-        z = self.k / 2 * (self.half**2 - t * t)
-        return np.stack([t / TURN, (z + 1.0) / (self.top + 2.0)], axis=1)
-
-    def problem(self, name: str, hard: str) -> Problem:
-        """This as an entry of the table."""
-        a, b = ((s * self.half / TURN, 1.0 / (self.top + 2.0)) for s in (-1, 1))
-        return Problem(name, hard, self.surface, a, b, self.length, kind=Kind.FRICTION, friction=self.mu,
-                       initial=self.initial)  # fmt: skip
-
-
 SLIDING = {
     "catenary-0.3": Sliding(0.3, 0.8, np.pi),
     "catenary-0.2": Sliding(0.2, 0.5, 0.75 * np.pi),
     "stick-slip": Sliding(0.3, 0.4, 2 * np.pi),
 }
+DRAGGED = Dragged(0.3, np.pi, 1.0)
 FRICTION = (
     SLIDING["catenary-0.3"].problem("catenary-0.3", "all of it slides; friction 0.3"),
     SLIDING["catenary-0.2"].problem("catenary-0.2", "all of it slides; friction 0.2"),
     SLIDING["stick-slip"].problem("stick-slip", "the middle slides, the tails never move; friction 0.3"),
+    DRAGGED.problem("dragged", "the ends are drawn along, the middle never moves; friction 0.3"),
 )
 
 
