@@ -231,30 +231,52 @@ def panel(axes: Axes, problem: Problem, points: Sequence[Point], cost: str) -> N
     axes.set_ylim(low, min(max(high, 1e-2), 1.0))
 
 
+HEADLINE = ("barrel-1.5", "bottle-turn", "bottle-neck", "catenary-0.3")
+"""What is shown first: convex, freeform, bridging, friction."""
+
+
 def draw(results: Results, points: Sequence[Point]) -> None:
-    """A figure a kind and cost."""
+    """A figure a kind and cost, and one of the headline's problems."""
+    done = [problem for problem in TABLE.values() if any(q.problem == problem.name for q in points)]
+    chosen = [problem for problem in done if problem.name in HEADLINE]
+    _figure(results, points, chosen, "seconds", "", "speed_and_accuracy", columns=2)
     for kind in Kind:
-        problems = [p for p in TABLE.values() if p.kind == kind and any(q.problem == p.name for q in points)]
+        problems = [p for p in done if p.kind == kind]
         for cost, word in (("seconds", "time"), ("evaluations", "evaluations")):
-            if not problems:
-                continue
-            columns = min(4, len(problems)) if len(problems) != 5 else 3
-            rows = -(-len(problems) // columns)
-            figure, grid = plt.subplots(rows, columns, figsize=(5.0 * columns, 4.2 * rows + 0.8), squeeze=False)
-            for axes in grid.flat[len(problems) :]:
-                axes.set_visible(False)
-            for axes, problem in zip(grid.flat, problems, strict=False):
-                panel(axes, problem, [p for p in points if p.problem == problem.name], cost)
-            handles: dict[str, Any] = {}
-            for axes in grid.flat[: len(problems)]:
-                handles |= {
-                    label: h for h, label in zip(*axes.get_legend_handles_labels(), strict=True) if len(h.get_xdata())
-                }
-            figure.suptitle(
-                f"Taut paths, {kind}: error against {word}. Down and left is better. Each dot is a setting that came to"
-                " rest, the line joins a method's best.",
-                fontsize=11,
-            )
-            figure.tight_layout(rect=(0, 0.09 if rows > 1 else 0.16, 1, 0.98))
-            figure.legend(handles.values(), handles.keys(), loc="lower center", ncol=min(5, len(handles)))
-            save(figure, results.folder, f"work_precision_{kind.name.lower()}_{word}")
+            if problems:
+                columns = min(4, len(problems)) if len(problems) != 5 else 3
+                name = f"work_precision_{kind.name.lower()}_{word}"
+                _figure(results, points, problems, cost, f", {kind}", name, columns)
+
+
+def _figure(
+    results: Results,
+    points: Sequence[Point],
+    problems: Sequence[Problem],
+    cost: str,
+    kind: str,
+    name: str,
+    columns: int,
+) -> None:
+    """A panel a problem, and one legend."""
+    rows = -(-len(problems) // columns)
+    wide = max(5.0 * columns, 10.0)
+    figure, grid = plt.subplots(rows, columns, figsize=(wide, 4.2 * rows + 0.8), squeeze=False)
+    for axes in grid.flat[len(problems) :]:
+        axes.set_visible(False)
+    for axes, problem in zip(grid.flat, problems, strict=False):
+        panel(axes, problem, [p for p in points if p.problem == problem.name], cost)
+    handles: dict[str, Any] = {}
+    for axes in grid.flat[: len(problems)]:
+        handles |= {label: h for h, label in zip(*axes.get_legend_handles_labels(), strict=True) if len(h.get_xdata())}
+    word = "time" if cost == "seconds" else "evaluations"
+    figure.suptitle(
+        f"Taut paths{kind}: error against {word}. Down and left is better.\nEach dot is a setting that came to"
+        " rest, the line joins a method's best.",
+        fontsize=11,
+    )
+    across = max(2, min(5, int(wide / 3.0)))
+    lines = -(-len(handles) // across)
+    figure.tight_layout(rect=(0, (0.25 * lines + 0.2) / (4.2 * rows + 0.8), 1, 0.99))
+    figure.legend(handles.values(), handles.keys(), loc="lower center", ncol=across)
+    save(figure, results.folder, name)
