@@ -40,6 +40,8 @@ LARGEST_EXACT = 4000
 """Vertices beyond which the exact polyhedral methods take seconds a path."""
 LARGEST_RULED = 801
 """Particles with which the rule of the fourth order is right to round-off."""
+LARGEST_DRAGGED = 201
+"""Particles of a fibre that is solved for in every frame."""
 FAR = 0.3
 """A path whose length is off by more is another path: a wrong answer."""
 QUICK = ("barrel-1.5", "barrel-4", "vase", "catenary-0.3", "dragged", "bottle-turn")
@@ -118,7 +120,7 @@ def climb(problem: Problem, method: str, sizes: Sequence[int]) -> list[Point]:
     points: list[Point] = []
     kept: list[str] | None = None
     for n in sizes:
-        if method == RULED and n > LARGEST_RULED:
+        if n > (LARGEST_RULED if method == RULED else LARGEST_DRAGGED if problem.before else n):
             break
         rung = []
         for trial in trials(method, problem, n):
