@@ -155,10 +155,10 @@ def wind(
     "field:NAME" for a scalar of the mesh file; component: which piece of a file, by its rank of area; ends: "auto",
     "x", "y", "z", two points "x,y,z x,y,z" or two rims "loops 0 1"; opening: radius at a closed end in the mesh's
     units; tolerance: largest distance of a vertex from the surface over the mesh's diagonal; worst_fit: largest
-    distance between surface and mesh, over the diagonal, that is wound at all; units: the name of the mesh's unit,
-    "" if unknown; particles: a path, None for as many as lengths right to 1e-5 need; spacing: paths are added until
-    neighbours lie no further apart; band_width: of the fibre, by default one layer a family; linear_density: its mass
-    over its length; pins: a CSV file of the paths' ends (`read_pins`); out: folder for the files;
+    distance between surface and mesh, over the diagonal, that is wound at all; units: the name of the mesh's unit
+    (mm, cm, m, um, in, ft), "" if unknown; particles: a path, None for as many as lengths right to 1e-5 need;
+    spacing: paths are added until neighbours lie no further apart; band_width: of the fibre, by default one layer a
+    family; linear_density: its mass over its length; pins: a CSV file of the paths' ends (`read_pins`); out: folder for the files;
     overwrite: replace the results that it holds; render: draw the pictures as well.  Raises BadInputError, in one
     line, for whatever the caller can mend.
     """
@@ -244,7 +244,7 @@ def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: _Clo
     notes = result.notes
     with folder.writing(out, overwrite) as staging:
         with clock.stage("write"):
-            write_files(staging, result.layup, result.mesh)
+            write_files(staging, result.layup, result.mesh, result.options.units)
             if result.chosen is not None and render:
                 draw_revolutions(staging / "revolutions.png", result.chosen, result.mesh.name)
         if render:

@@ -12,6 +12,7 @@ ORDER = [
     "errors",
     "cast",
     "threads",
+    "units",
     "mandrel",
     "chart",
     "surface",

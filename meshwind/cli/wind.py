@@ -55,7 +55,9 @@ def wind(
     worst_fit: Annotated[
         float, typer.Option(help="Largest distance between surface and mesh, over the diagonal, to wind at all.")
     ] = 0.1,
-    units: Annotated[str, typer.Option(help="Name of the mesh's unit, as in mm, for report and picture.")] = "",
+    units: Annotated[
+        str, typer.Option(metavar="UNIT", help="Unit of the mesh: mm, cm, m, um, in, ft; nothing is converted.")
+    ] = "mm",
     particles: Annotated[
         str, typer.Option(metavar="COUNT", help="Particles a path, or auto: as many as lengths right to 1e-5 need.")
     ] = "401",
