@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from os import PathLike, fspath
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -22,7 +22,9 @@ from meshwind.mandrel.scalars import Scalars, read_scalars
 from meshwind.notes import FIT_ERROR, Note, about_choice, about_fit, about_layup, about_paths, about_spacing
 from meshwind.options import AUTO, FIELD, STEPS_A_TURN, Options
 from meshwind.output import folder
-from meshwind.output.report import report, write_report
+from meshwind.output.config_file import NAME as CONFIG
+from meshwind.output.config_file import write_config
+from meshwind.output.report import report, version, write_report
 from meshwind.output.write import write_files
 from meshwind.path import Paths, Status, solve
 from meshwind.path.friction import Friction, friction_from
@@ -45,7 +47,8 @@ class Result:
     """A wound part: what every stage made, and what the run cost.
 
     options are those it was wound with; seconds holds each stage's wall time; notes say what the user should
-    know beside the figures; chosen and spaced: how revolutions and spacing were found, where that was asked for.
+    know beside the figures; chosen and spaced: how revolutions and spacing were found, where that was asked for;
+    source: the mesh's file, if it came from one.
     """
 
     mesh: Mesh
@@ -57,6 +60,7 @@ class Result:
     notes: tuple[Note, ...] = ()
     chosen: Revolutions | None = None
     spaced: Spaced | None = None
+    source: Path | None = None
 
     def __repr__(self) -> str:
         at_rest = int((self.paths.status == Status.CONVERGED).sum())
@@ -201,7 +205,8 @@ def wind(
     with clock.stage("assess"):
         layup = assess(laid, options.band_width)
         notes = (*notes, *about_layup(layup))
-    result = Result(part, chart, layup, options, command, clock.seconds, notes, chosen, spaced)
+    source = None if isinstance(mesh, Mesh) else Path(mesh)
+    result = Result(part, chart, layup, options, command, clock.seconds, notes, chosen, spaced, source)
     return result if target is None else _write(result, target, render, overwrite, clock)
 
 
@@ -253,8 +258,16 @@ def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: _Clo
             notes = (*notes, Note(missing)) if missing else notes
         notes = tuple(note.shown((staging / note.picture).is_file()) for note in notes)
         result = replace(result, seconds=result.seconds | clock.seconds, notes=notes)
+        write_config(staging / CONFIG, out, _told(result, out, render), version())
         write_report(staging / "report.json", result.report())
     return result
+
+
+def _told(result: Result, out: Path, render: bool) -> dict[str, object]:
+    """All options as used, for another run like this one."""
+    options = asdict(result.options)
+    pins = None if result.options.pins is None else Path(result.options.pins)
+    return {"mesh": result.source, "out": out} | options | {"pins": pins, "render": render}
 
 
 def _draw(result: Result, out: Path) -> str:

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from meshwind.cli.arguments import Ends, MeshFile, Opening
+from meshwind.cli.config import Config
 from meshwind.cli.display import display
 from meshwind.cli.summary import summary
 from meshwind.errors import BadInputError
@@ -75,6 +76,7 @@ def wind(
     ] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace results that DIR holds already.")] = False,
     render: Annotated[bool, typer.Option("--render/--no-render", help="Draw the pictures.")] = True,
+    config: Config = None,
 ) -> int:
     """Lay two families of taut fibres on MESH and write paths, bridges, crossings, quads, maps and a report.
 
@@ -86,6 +88,7 @@ def wind(
     # the numerical libraries are imported late: --help and usage errors must not wait for them
     from meshwind import pipeline
 
+    del config  # its values have become those of the others
     folder = out if out is not None else f"{mesh.stem}-wound"
     with display() as progress:
         result = pipeline.wind(

@@ -11,7 +11,7 @@ RESULTS = frozenset(
     ("paths.vtp", "bridges.vtp", "crossings.vtp", "quads.vtu", "quads.obj", "surface.vtu", "surface.npz")
     + ("chart.png", "report.json", "winding.png", "fit_error.png", "revolutions.png", "sheet.png", "crossings.png")
     + ("coverage.png", "windability.png", "slip.png", "fit.png", "unrolled.png", "quads.png", "redesign.png")
-    + ("winding.gif", "winding.mp4", "viewer.html")
+    + ("winding.gif", "winding.mp4", "viewer.html", "meshwind.toml")
 )
 """All that a run, or what is made of it, may leave in its folder."""
 

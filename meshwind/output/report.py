@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Mapping, Sequence
-from importlib.metadata import PackageNotFoundError, version
+from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -53,7 +53,7 @@ def report(
     """
     paths = layup.paths
     figures = {
-        "meshwind": _version(),
+        "meshwind": version(),
         "command": command,
         "mesh": _mesh(mesh, units) | ({} if chart is None else {"ends": chart.annulus.ends}),
         "surface": _surface(paths.surface, chart, tolerance),
@@ -98,10 +98,11 @@ def plain(value: Any) -> Any:
     return value
 
 
-def _version() -> str:
+def version() -> str:
+    """The version of meshwind that runs."""
     try:
-        return version("meshwind")
-    except PackageNotFoundError:  # run from a source tree that was not installed
+        return metadata.version("meshwind")
+    except metadata.PackageNotFoundError:  # run from a source tree that was not installed
         return "source"
 
 
