@@ -1,12 +1,12 @@
 """`meshwind check`: what a mesh is and what `wind` would do with it; nothing is changed or written."""
 
-import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from meshwind.cli.arguments import Ends, MeshFile, Opening
+from meshwind.cli.arguments import AsJson, Ends, MeshFile, Opening, Quiet
+from meshwind.cli.outcome import tell
 from meshwind.errors import BadInputError
 
 if TYPE_CHECKING:
@@ -20,7 +20,8 @@ def check(
     ends: Ends = "auto",
     opening: Opening = None,
     component: Annotated[int, typer.Option(help="Which piece, by its rank of area; 0 is the largest.", min=0)] = 0,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the same as JSON.")] = False,
+    as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> int:
     """Tell what MESH is, its pieces, rims and faults, and what `wind` would do with it.  Writes nothing.
 
@@ -31,7 +32,7 @@ def check(
     from meshwind.mandrel import inspect
 
     findings = inspect(mesh, ends, opening, component)
-    typer.echo(json.dumps(asdict(findings), indent=2) if as_json else "\n".join(_lines(findings)))
+    tell(_lines(findings), asdict(findings), as_json, quiet)
     if findings.problem:
         raise BadInputError(findings.problem)
     return 0

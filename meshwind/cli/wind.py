@@ -8,9 +8,10 @@ from typing import Annotated
 
 import typer
 
-from meshwind.cli.arguments import Ends, MeshFile, Opening
+from meshwind.cli.arguments import AsJson, Ends, MeshFile, Opening, Quiet
 from meshwind.cli.config import Config
 from meshwind.cli.display import display
+from meshwind.cli.outcome import tell
 from meshwind.cli.summary import summary
 from meshwind.errors import BadInputError
 
@@ -77,6 +78,8 @@ def wind(
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace results that DIR holds already.")] = False,
     render: Annotated[bool, typer.Option("--render/--no-render", help="Draw the pictures.")] = True,
     config: Config = None,
+    as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> int:
     """Lay two families of taut fibres on MESH and write paths, bridges, crossings, quads, maps and a report.
 
@@ -90,7 +93,7 @@ def wind(
 
     del config  # its values have become those of the others
     folder = out if out is not None else f"{mesh.stem}-wound"
-    with display() as progress:
+    with display(quiet) as progress:
         result = pipeline.wind(
             mesh,
             paths=paths,
@@ -113,5 +116,6 @@ def wind(
             command=shlex.join(["meshwind", *sys.argv[1:]]),
             progress=progress,
         )
-    typer.echo(summary(result, Path(folder)))
+    figures = result.report() | {"folder": str(folder)}
+    tell(summary(result, Path(folder)).splitlines(), figures, as_json, quiet)
     return 0 if result.settled else UNSETTLED
