@@ -24,7 +24,7 @@ from meshwind.options import AUTO, FIELD, STEPS_A_TURN, Options
 from meshwind.output import folder
 from meshwind.output.config_file import NAME as CONFIG
 from meshwind.output.config_file import write_config
-from meshwind.output.report import report, version, write_report
+from meshwind.output.report import report, write_report
 from meshwind.output.write import write_files
 from meshwind.path import Paths, Status, solve
 from meshwind.path.friction import Friction, friction_from
@@ -37,6 +37,7 @@ from meshwind.pictures.revolutions_picture import draw_revolutions
 from meshwind.pictures.sheet import write_sheet
 from meshwind.pictures.subject import subject_in
 from meshwind.surface import Surface, fit
+from meshwind.version import version
 
 Tell = Callable[[str], None]
 """Called with a stage's name as it starts."""
@@ -162,9 +163,9 @@ def wind(
     distance between surface and mesh, over the diagonal, that is wound at all; units: the name of the mesh's unit
     (mm, cm, m, um, in, ft), "" if unknown; particles: a path, None for as many as lengths right to 1e-5 need;
     spacing: paths are added until neighbours lie no further apart; band_width: of the fibre, by default one layer a
-    family; linear_density: its mass over its length; pins: a CSV file of the paths' ends (`read_pins`); out: folder for the files;
-    overwrite: replace the results that it holds; render: draw the pictures as well.  Raises BadInputError, in one
-    line, for whatever the caller can mend.
+    family; linear_density: its mass over its length; pins: a CSV file of the paths' ends (`read_pins`); out: folder
+    for the files; overwrite: replace the results that it holds; render: draw the pictures as well.  Raises
+    BadInputError, in one line, for whatever the caller can mend.
     """
     pinned = fspath(pins) if isinstance(pins, PathLike) else pins
     options = Options(

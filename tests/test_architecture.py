@@ -13,6 +13,7 @@ ORDER = [
     "cast",
     "threads",
     "units",
+    "version",
     "mandrel",
     "chart",
     "surface",

@@ -40,6 +40,11 @@ def check(
 
 def _lines(found: "Findings") -> list[str]:
     """The findings for a person, a label before each line."""
+    return [*described(found), *(f"repair    {act}" for act in found.repairs), *_verdict(found)]
+
+
+def described(found: "Findings") -> list[str]:
+    """What the mesh is, before anything is done to it."""
     size = " x ".join(f"{length:.4g}" for length in found.size)
     rims = _count(len(found.rims), "open rim") if found.rims else "open"
     shape = ["closed" if found.closed else rims]
@@ -60,8 +65,6 @@ def _lines(found: "Findings") -> list[str]:
         f"shape     {', '.join(shape)}",
         *_listed("rim", [_rim(rim, found.diagonal) for rim in found.rims], len(found.rims)),
         *(f"fault     {fault}" for fault in faults),
-        *(f"repair    {act}" for act in found.repairs),
-        *_verdict(found),
     ]
 
 

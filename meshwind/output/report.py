@@ -3,7 +3,6 @@
 import json
 import math
 from collections.abc import Mapping, Sequence
-from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +25,7 @@ from meshwind.output.layup_figures import (
 )
 from meshwind.path.paths import Paths, Status
 from meshwind.surface.surface import Surface
+from meshwind.version import version
 
 
 def report(
@@ -96,14 +96,6 @@ def plain(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
-
-
-def version() -> str:
-    """The version of meshwind that runs."""
-    try:
-        return metadata.version("meshwind")
-    except metadata.PackageNotFoundError:  # run from a source tree that was not installed
-        return "source"
 
 
 def _mesh(mesh: Mesh, units: str) -> dict[str, Any]:
