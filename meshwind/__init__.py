@@ -54,6 +54,8 @@ if TYPE_CHECKING:
     from meshwind.surface import shapes as shapes
     from meshwind.surface import surface_image as surface_image
 
+    __version__: str
+
 _HOME = {
     "BadInputError": "errors",
     "Mesh": "mandrel", "Annulus": "mandrel", "read": "mandrel", "annulus": "mandrel",
@@ -74,6 +76,8 @@ __all__ = sorted(_HOME)
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        return import_module("meshwind.version").version()
     if name not in _HOME:
         raise AttributeError(f"module 'meshwind' has no attribute {name!r}")
     value = getattr(import_module(f"meshwind.{_HOME[name]}"), name)

@@ -6,9 +6,9 @@ from time import perf_counter
 from typing import Any
 
 from meshwind.editing.redesign import Redesign
+from meshwind.export.edited_files import redesign_report, write_edited
 from meshwind.layup.layup import assess
 from meshwind.output import folder
-from meshwind.output.edited_files import redesign_report, write_edited
 from meshwind.output.report import write_report
 from meshwind.pictures import driver
 from meshwind.pictures.page import Page
@@ -23,19 +23,21 @@ def write_redesign(
     *,
     units: str = "",
     render: bool = True,
+    overwrite: bool = False,
     command: str = "",
     seconds: dict[str, float] | None = None,
 ) -> dict[str, Any]:
     """Write edited.ply, edited.vtu, report.json and, with `render`, the pictures into the folder `out`.
 
     before.png and after.png show the windings of the mesh that was read and of the edited one, redesign.png what was
-    moved.  units: name of the mesh's; seconds: of the stages before.  Returns the report, with a note where there are
-    no pictures for want of an OpenGL driver.  Raises BadInputError where `out` cannot be written.
+    moved.  units: name of the mesh's; overwrite: replace the results that `out` holds; seconds: of the stages before.
+    Returns the report, with a note where there are no pictures for want of an OpenGL driver.  Raises BadInputError
+    where `out` cannot be written or, without `overwrite`, holds results.
     """
     spent, notes = dict(seconds or {}), list[str]()
-    with folder.writing(Path(out)) as staging:
+    with folder.writing(Path(out), overwrite) as staging:
         begin = perf_counter()
-        write_edited(staging, edited)
+        write_edited(staging, edited, units)
         spent["write"] = perf_counter() - begin
         if render:
             begin = perf_counter()

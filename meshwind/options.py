@@ -7,6 +7,7 @@ from numbers import Integral, Real
 from meshwind.errors import BadInputError
 from meshwind.layup.revolutions import AUTO, STEPS_A_TURN
 from meshwind.mandrel.ends import parse
+from meshwind.units import check_units
 
 FIELD = "field:"
 """Before the name of a scalar field in a mesh file."""
@@ -14,7 +15,6 @@ MEMORY = 4e9
 """Most bytes that a run may take."""
 _BYTES_A_PARTICLE, _BYTES_A_CROSSING = 350, 1500
 """Peak memory of a run, measured from 3e5 to 1.6e6 particles and 2e4 to 5e5 crossings."""
-_LONGEST_UNIT = 12
 _MOST_CHOSEN = 1601
 """Particles a path that memory is checked for where their number is left open."""
 
@@ -68,7 +68,7 @@ class Options:
             set_(self, "opening", _number(self.opening, "opening", 0.0, above=True))
         set_(self, "tolerance", _number(self.tolerance, "tolerance", 1e-12, 1.0))
         set_(self, "worst_fit", _number(self.worst_fit, "worst_fit", 0.0, above=True))
-        _check_units(self.units)
+        check_units(self.units)
         for name in ("spacing", "band_width", "linear_density"):
             if getattr(self, name) is not None:
                 set_(self, name, _number(getattr(self, name), name, 0.0, above=True))
@@ -116,13 +116,6 @@ def _told(value: object) -> str:
     """The value as a few characters of text."""
     text = f"{float(value):g}" if isinstance(value, Real) and not isinstance(value, bool) else repr(value)
     return text if len(text) <= 40 else text[:37] + "..."
-
-
-def _check_units(units: object) -> None:
-    if not isinstance(units, str):
-        raise BadInputError(f"units is {_told(units)}; give a short word such as mm")
-    if units and (len(units) > _LONGEST_UNIT or not units.isprintable() or " " in units):
-        raise BadInputError(f"units is {_told(units)}; give a word of at most {_LONGEST_UNIT} letters such as mm")
 
 
 def _check_memory(paths: int, particles: int, revolutions: float) -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from os import PathLike, fspath
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -21,6 +21,8 @@ from meshwind.mandrel.scalars import Scalars, read_scalars
 from meshwind.notes import FIT_ERROR, Note, about_choice, about_fit, about_layup, about_paths, about_spacing
 from meshwind.options import FIELD, Options
 from meshwind.output import folder
+from meshwind.output.config_file import NAME as CONFIG
+from meshwind.output.config_file import write_config
 from meshwind.output.report import report, write_report
 from meshwind.output.write import write_files
 from meshwind.path import Paths, Status, solve
@@ -34,6 +36,7 @@ from meshwind.pictures.revolutions_picture import draw_revolutions
 from meshwind.pictures.sheet import write_sheet
 from meshwind.pictures.subject import subject_in
 from meshwind.surface import Surface, fit
+from meshwind.version import version
 
 Tell = Callable[[str], None]
 """Called with a stage's name as it starts."""
@@ -44,7 +47,8 @@ class Result:
     """A wound part: what every stage made, and what the run cost.
 
     options are those it was wound with; seconds holds each stage's wall time; notes say what the user should
-    know beside the figures; chosen and spaced: how revolutions and spacing were found, where that was asked for.
+    know beside the figures; chosen and spaced: how revolutions and spacing were found, where that was asked for;
+    source: the mesh's file, if it came from one.
     """
 
     mesh: Mesh
@@ -56,6 +60,7 @@ class Result:
     notes: tuple[Note, ...] = ()
     chosen: Revolutions | None = None
     spaced: Spaced | None = None
+    source: Path | None = None
 
     def __repr__(self) -> str:
         at_rest = int((self.paths.status == Status.CONVERGED).sum())
@@ -154,12 +159,12 @@ def wind(
     "field:NAME" for a scalar of the mesh file; component: which piece of a file, by its rank of area; ends: "auto",
     "x", "y", "z", two points "x,y,z x,y,z" or two rims "loops 0 1"; opening: radius at a closed end in the mesh's
     units; tolerance: largest distance of a vertex from the surface over the mesh's diagonal; worst_fit: largest
-    distance between surface and mesh, over the diagonal, that is wound at all; units: the name of the mesh's unit,
-    "" if unknown; particles: a path, None for as many as lengths right to 1e-5 need; spacing: paths are added until
-    neighbours lie no further apart; band_width: of the fibre, by default one layer a family; linear_density: its mass
-    over its length; pins: a CSV file of the paths' ends (`read_pins`); out: folder for the files;
-    overwrite: replace the results that it holds; render: draw the pictures as well.  Raises BadInputError, in one
-    line, for whatever the caller can mend.
+    distance between surface and mesh, over the diagonal, that is wound at all; units: the name of the mesh's unit
+    (mm, cm, m, um, in, ft), "" if unknown; particles: a path, None for as many as lengths right to 1e-5 need;
+    spacing: paths are added until neighbours lie no further apart; band_width: of the fibre, by default one layer a
+    family; linear_density: its mass over its length; pins: a CSV file of the paths' ends (`read_pins`); out: folder
+    for the files; overwrite: replace the results that it holds; render: draw the pictures as well.  Raises
+    BadInputError, in one line, for whatever the caller can mend.
     """
     pinned = fspath(pins) if isinstance(pins, PathLike) else pins
     options = Options(
@@ -200,7 +205,8 @@ def wind(
     with clock.stage("assess"):
         layup = assess(laid, options.band_width)
         notes = (*notes, *about_layup(layup))
-    result = Result(part, chart, layup, options, command, clock.seconds, notes, chosen, spaced)
+    source = None if isinstance(mesh, Mesh) else Path(mesh)
+    result = Result(part, chart, layup, options, command, clock.seconds, notes, chosen, spaced, source)
     return result if target is None else _write(result, target, render, overwrite, clock)
 
 
@@ -238,7 +244,7 @@ def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: _Clo
     notes = result.notes
     with folder.writing(out, overwrite) as staging:
         with clock.stage("write"):
-            write_files(staging, result.layup, result.mesh)
+            write_files(staging, result.layup, result.mesh, result.options.units)
             if result.chosen is not None and render:
                 draw_revolutions(staging / "revolutions.png", result.chosen, result.mesh.name)
         if render:
@@ -247,8 +253,16 @@ def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: _Clo
             notes = (*notes, Note(missing)) if missing else notes
         notes = tuple(note.shown((staging / note.picture).is_file()) for note in notes)
         result = replace(result, seconds=result.seconds | clock.seconds, notes=notes)
+        write_config(staging / CONFIG, out, _told(result, out, render), version())
         write_report(staging / "report.json", result.report())
     return result
+
+
+def _told(result: Result, out: Path, render: bool) -> dict[str, object]:
+    """All options as used, for another run like this one."""
+    options = asdict(result.options)
+    pins = None if result.options.pins is None else Path(result.options.pins)
+    return {"mesh": result.source, "out": out} | options | {"pins": pins, "render": render}
 
 
 def _draw(result: Result, out: Path) -> str:

@@ -19,7 +19,7 @@ def leave(folder: Path, paths: Paths, units: str = "mm") -> Results:
     layup = assess(paths)
     on = grid(paths.surface)
     part = Mesh(on.points, np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]]), "part.stl")
-    write_files(folder, layup)
+    write_files(folder, layup, units=units)
     write_report(folder / "report.json", report(layup, part, None, revolutions=0.25, units=units))
     return read_results(folder)
 

@@ -12,6 +12,8 @@ ORDER = [
     "errors",
     "cast",
     "threads",
+    "units",
+    "version",
     "mandrel",
     "chart",
     "surface",

@@ -21,6 +21,7 @@ FILES = {
     "surface.npz",
     "chart.png",
     "report.json",
+    "meshwind.toml",
 }
 
 
@@ -191,11 +192,12 @@ def test_surface_lies_on_the_mesh(tank: tuple[Path, subprocess.CompletedProcess[
     assert np.abs(off[steep]).max() < 0.01
 
 
-def test_without_a_unit_none_is_made_up(tmp_path: Path) -> None:
-    done = meshwind("wind", DATA / "elbow.obj", "--out", tmp_path, "--paths", "3", "--no-render")
+@pytest.mark.parametrize("given", [[], ["--units", ""]])
+def test_lengths_are_in_millimetres_unless_the_unit_is_not_known(given: list[str], tmp_path: Path) -> None:
+    done = meshwind("wind", DATA / "elbow.obj", "--out", tmp_path, "--paths", "3", "--no-render", *given)
     assert done.returncode == 0
-    assert "mm" not in done.stdout.replace(str(tmp_path), "")
-    assert json.loads((tmp_path / "report.json").read_text())["mesh"]["units"] == "unknown"
+    assert (" mm" in done.stdout) == (not given)
+    assert json.loads((tmp_path / "report.json").read_text())["mesh"]["units"] == ("unknown" if given else "mm")
 
 
 @pytest.mark.parametrize("arguments", [["wind", "--help"], ["wind", str(DATA / "tank.ply"), "--no-render"]])

@@ -39,8 +39,8 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"pins": ""}, "pins is ''; give the path of a CSV file"),
     ({"pins": 3}, "pins is 3; give the path of a CSV file"),
     ({"pins": "pins.csv", "spacing": 1.0}, "give one of both"),
-    ({"units": "a b"}, "units is 'a b'; give a word of at most 12 letters such as mm"),
-    ({"units": None}, "units is None; give a short word such as mm"),
+    ({"units": "milimeter"}, "units is 'milimeter'; give mm, cm, m, um, in, inch, ft, or"),
+    ({"units": None}, "units is None; give mm, cm"),
     ({"paths": 100000}, "100000 paths a family of 401 particles and 0.5 revolutions would need about 15,028 GB"),
     ({"particles": 10**9}, "would need about"),
 ]

@@ -15,3 +15,5 @@ Opening = Annotated[
     float | None,
     typer.Option(help="Radius of the opening at a closed end, in the mesh's units.  [default: from the part]"),
 ]
+AsJson = Annotated[bool, typer.Option("--json", help="Print what there is to tell as JSON, and nothing else.")]
+Quiet = Annotated[bool, typer.Option("--quiet", help="No progress and no summary: only warnings and errors.")]

@@ -1,12 +1,12 @@
 """`meshwind check`: what a mesh is and what `wind` would do with it; nothing is changed or written."""
 
-import json
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from meshwind.cli.arguments import Ends, MeshFile, Opening
+from meshwind.cli.arguments import AsJson, Ends, MeshFile, Opening, Quiet
+from meshwind.cli.outcome import tell
 from meshwind.errors import BadInputError
 
 if TYPE_CHECKING:
@@ -20,7 +20,8 @@ def check(
     ends: Ends = "auto",
     opening: Opening = None,
     component: Annotated[int, typer.Option(help="Which piece, by its rank of area; 0 is the largest.", min=0)] = 0,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the same as JSON.")] = False,
+    as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> int:
     """Tell what MESH is, its pieces, rims and faults, and what `wind` would do with it.  Writes nothing.
 
@@ -31,7 +32,7 @@ def check(
     from meshwind.mandrel import inspect
 
     findings = inspect(mesh, ends, opening, component)
-    typer.echo(json.dumps(asdict(findings), indent=2) if as_json else "\n".join(_lines(findings)))
+    tell(_lines(findings), asdict(findings), as_json, quiet)
     if findings.problem:
         raise BadInputError(findings.problem)
     return 0
@@ -39,6 +40,11 @@ def check(
 
 def _lines(found: "Findings") -> list[str]:
     """The findings for a person, a label before each line."""
+    return [*described(found), *(f"repair    {act}" for act in found.repairs), *_verdict(found)]
+
+
+def described(found: "Findings") -> list[str]:
+    """What the mesh is, before anything is done to it."""
     size = " x ".join(f"{length:.4g}" for length in found.size)
     rims = _count(len(found.rims), "open rim") if found.rims else "open"
     shape = ["closed" if found.closed else rims]
@@ -59,8 +65,6 @@ def _lines(found: "Findings") -> list[str]:
         f"shape     {', '.join(shape)}",
         *_listed("rim", [_rim(rim, found.diagonal) for rim in found.rims], len(found.rims)),
         *(f"fault     {fault}" for fault in faults),
-        *(f"repair    {act}" for act in found.repairs),
-        *_verdict(found),
     ]
 
 

@@ -6,8 +6,11 @@ from contextlib import contextmanager, suppress
 
 
 @contextmanager
-def display() -> Iterator[Callable[[str], None]]:
-    """Yield a function that is told each stage as it starts.  Progress goes to standard error."""
+def display(quiet: bool = False) -> Iterator[Callable[[str], None]]:
+    """Yield a function that is told each stage as it starts.  Progress goes to standard error, if not `quiet`."""
+    if quiet:
+        yield lambda _stage: None
+        return
     if sys.stderr is None or not sys.stderr.isatty():
         yield _plain
         return
@@ -29,10 +32,11 @@ def display() -> Iterator[Callable[[str], None]]:
 
 
 @contextmanager
-def counter(what: str) -> Iterator[Callable[[str, int, int], None]]:
+def counter(what: str, quiet: bool = False) -> Iterator[Callable[[str, int, int], None]]:
     """Yield a function that is told of each thing done, how many are and how many there are: a bar on a terminal."""
-    if sys.stderr is None or not sys.stderr.isatty():
-        _plain(what)
+    if quiet or sys.stderr is None or not sys.stderr.isatty():
+        if not quiet:
+            _plain(what)
         yield lambda _name, _done, _total: None
         return
     from rich.console import Console

@@ -5,6 +5,9 @@ from typing import Annotated
 
 import typer
 
+from meshwind.cli.arguments import AsJson, Quiet
+from meshwind.cli.outcome import tell_files
+
 
 def export(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `meshwind wind --out DIR` left.")],
@@ -36,6 +39,8 @@ def export(
     angle: Annotated[
         float | None, typer.Option(help="Largest turn from frame to frame, in degrees.  [default: 5]")
     ] = None,
+    as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> int:
     """Write results for other programs; nothing is wound again.
 
@@ -50,21 +55,9 @@ def export(
 
     wishes = Wishes(thickness, band_width, step, angle, shell, elements, _names(formats))
     done = write(folder, _names(to), out, wishes)
-    for note in done.notes:
-        typer.echo(f"note      {note}")
-    for file in _told(done.files):
-        typer.echo(f"file      {file}")
+    tell_files(done.files, done.notes, as_json, quiet)
     return 0
 
 
 def _names(text: str) -> list[str]:
     return [name.strip().lower() for name in text.split(",") if name.strip()]
-
-
-def _told(files: tuple[Path, ...]) -> list[str]:
-    """The files, one a line; many of one kind in one folder as one line."""
-    numbered = [file for file in files if file.stem.rpartition("_")[2].isdigit()]
-    lines = [str(file) for file in files if file not in numbered]
-    if numbered:
-        lines.append(f"{numbered[0]} and {len(numbered) - 1} more" if len(numbered) > 1 else str(numbered[0]))
-    return lines

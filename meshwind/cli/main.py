@@ -10,6 +10,7 @@ import typer
 
 from meshwind.cli.check import check
 from meshwind.cli.export import export
+from meshwind.cli.info import info
 from meshwind.cli.redesign import redesign
 from meshwind.cli.render import render
 from meshwind.cli.wind import wind
@@ -33,13 +34,14 @@ app.command()(check)
 app.command()(redesign)
 app.command()(export)
 app.command()(render)
+app.command()(info)
 
 
 def _version(wanted: bool) -> None:
     if wanted:
-        from importlib.metadata import version
+        from meshwind.version import version
 
-        typer.echo(f"meshwind {version('meshwind')}")
+        typer.echo(f"meshwind {version()}")
         raise typer.Exit
 
 

@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from meshwind.cli.arguments import Ends, MeshFile, Opening
+from meshwind.cli.arguments import AsJson, Ends, MeshFile, Opening, Quiet
+from meshwind.cli.config import Config
 from meshwind.cli.display import display
+from meshwind.cli.outcome import tell
 from meshwind.cli.wind import UNSETTLED, turns
+from meshwind.units import check_units
 
 if TYPE_CHECKING:
     from meshwind.editing import Redesign
@@ -44,8 +47,14 @@ def redesign(
     tolerance: Annotated[
         float, typer.Option(help="Largest distance of a vertex from the surface, over the part's diagonal.")
     ] = 1e-5,
-    units: Annotated[str, typer.Option(help="Name of the mesh's unit, as in mm, for report and picture.")] = "",
+    units: Annotated[
+        str, typer.Option(metavar="UNIT", help="Unit of the mesh: mm, cm, m, um, in, ft; nothing is converted.")
+    ] = "mm",
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace results that DIR holds already.")] = False,
     render: Annotated[bool, typer.Option("--render/--no-render", help="Draw the pictures.")] = True,
+    config: Config = None,
+    as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> int:
     """Change MESH as little as possible until no fibre bridges, and write the edited mesh, pictures and a report.
 
@@ -62,10 +71,12 @@ def redesign(
     from meshwind.editing import redesign as edit_mesh
     from meshwind.output import folder
 
+    del config  # its values have become those of the others
+    check_units(units)
     target = Path(out if out is not None else f"{mesh.stem}-redesigned")
-    folder.prepare(target)
+    folder.prepare(target, overwrite)
     begin = perf_counter()
-    with display() as progress:
+    with display(quiet) as progress:
         edited = edit_mesh(
             mesh,
             revolutions=turns(revolutions),
@@ -87,15 +98,16 @@ def redesign(
             edited,
             target,
             units=units,
+            overwrite=overwrite,
             render=render,
             command=shlex.join(["meshwind", *sys.argv[1:]]),
             seconds={"redesign": perf_counter() - begin},
         )
-    typer.echo(summary(edited, report, target, units))
+    tell(summary(edited, report, target, units), report | {"folder": str(target)}, as_json, quiet)
     return 0 if edited.windable else UNSETTLED
 
 
-def summary(edited: "Redesign", report: dict[str, Any], folder: Path, units: str) -> str:
+def summary(edited: "Redesign", report: dict[str, Any], folder: Path, units: str) -> list[str]:
     """Lines for the terminal."""
     from meshwind.output.words import quantity
 
@@ -130,4 +142,4 @@ def summary(edited: "Redesign", report: dict[str, Any], folder: Path, units: str
     lines += [f"note      {note}" for note in report["notes"]]
     lines.append(f"{'outcome' if edited.windable else 'warning'}   {told['advice']}")
     lines.append(f"files     {folder}")
-    return "\n".join(lines)
+    return lines

@@ -5,7 +5,9 @@ from typing import Annotated
 
 import typer
 
+from meshwind.cli.arguments import AsJson, Quiet
 from meshwind.cli.display import counter
+from meshwind.cli.outcome import tell_files
 
 
 def render(
@@ -33,6 +35,8 @@ def render(
     ] = "",
     seconds: Annotated[float, typer.Option(help="How long the fibres take to be laid in a movie.")] = 5.0,
     out: Annotated[Path | None, typer.Option(help="Folder for the files.  [default: DIR]")] = None,
+    as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> int:
     """Draw the pictures of a run; nothing is wound again.
 
@@ -46,10 +50,9 @@ def render(
     kinds, names = _names(animate), _names(only)
     width, height = parse_size(size) if size else ((960, 720) if kinds and not names else (1600, 1200))
     page = Page(width, height, transparent, not parallel, scale_bar, view.strip().lower())
-    with counter("drawing") as tell:
+    with counter("drawing", quiet) as tell:
         done = draw(folder, names, page, kinds, seconds, out, tell)
-    for file in done.files:
-        typer.echo(f"file      {file}")
+    tell_files(done.files, (), as_json, quiet)
     return 0
 
 

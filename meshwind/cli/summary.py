@@ -9,21 +9,28 @@ if TYPE_CHECKING:
 
 def summary(result: "Result", folder: Path) -> str:
     """Lines for the terminal; lengths with the unit that the run was told."""
-    report = result.report()
-    seconds = report["seconds"]
-    lines = [
-        f"part      {result.mesh.name}: {report['mesh']['vertices']} vertices, {report['mesh']['faces']} faces; "
-        f"{report['mesh']['ends']}",
-        *_surface(report["surface"], report["mesh"]["diagonal"], result.options.units),
-        *_paths(report["paths"], result.options.units),
+    return "\n".join([*described(result.report()), f"files     {folder}"])
+
+
+def described(report: dict[str, Any]) -> list[str]:
+    """A run's report in a few lines; raises LookupError or TypeError where a figure is missing."""
+    part = report["mesh"]
+    units = "" if part["units"] == "unknown" else part["units"]
+    return [
+        f"part      {part['name']}: {part['vertices']} vertices, {part['faces']} faces; {part['ends']}",
+        *_surface(report["surface"], part["diagonal"], units),
+        *_paths(report["paths"], units),
+        *_layup(report, units),
+        *_unsettled(report["paths"]["not_converged"]),
+        *(f"repair    {act}" for act in part["repairs"]),
+        *(_note(note) for note in report["notes"]),
+        "seconds   " + ", ".join(f"{stage} {value:.2f}" for stage, value in report["seconds"].items()),
     ]
-    lines += _layup(report, result.options.units)
-    lines += _unsettled(report["paths"]["not_converged"])
-    lines += [f"repair    {act}" for act in report["mesh"]["repairs"]]
-    lines += [f"{'warning' if note.warning else 'note':<10}{note.text}" for note in result.notes]
-    lines.append("seconds   " + ", ".join(f"{stage} {value:.2f}" for stage, value in seconds.items()))
-    lines.append(f"files     {folder}")
-    return "\n".join(lines)
+
+
+def _note(told: str) -> str:
+    text = told.removeprefix("warning: ")
+    return f"{'note' if text == told else 'warning':<10}{text}"
 
 
 def _surface(surface: dict[str, Any], size: float, units: str) -> list[str]:

@@ -8,8 +8,10 @@ from typing import Annotated
 
 import typer
 
-from meshwind.cli.arguments import Ends, MeshFile, Opening
+from meshwind.cli.arguments import AsJson, Ends, MeshFile, Opening, Quiet
+from meshwind.cli.config import Config
 from meshwind.cli.display import display
+from meshwind.cli.outcome import tell
 from meshwind.cli.summary import summary
 from meshwind.errors import BadInputError
 
@@ -55,7 +57,9 @@ def wind(
     worst_fit: Annotated[
         float, typer.Option(help="Largest distance between surface and mesh, over the diagonal, to wind at all.")
     ] = 0.1,
-    units: Annotated[str, typer.Option(help="Name of the mesh's unit, as in mm, for report and picture.")] = "",
+    units: Annotated[
+        str, typer.Option(metavar="UNIT", help="Unit of the mesh: mm, cm, m, um, in, ft; nothing is converted.")
+    ] = "mm",
     particles: Annotated[
         str, typer.Option(metavar="COUNT", help="Particles a path, or auto: as many as lengths right to 1e-5 need.")
     ] = "401",
@@ -73,6 +77,9 @@ def wind(
     ] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace results that DIR holds already.")] = False,
     render: Annotated[bool, typer.Option("--render/--no-render", help="Draw the pictures.")] = True,
+    config: Config = None,
+    as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> int:
     """Lay two families of taut fibres on MESH and write paths, bridges, crossings, quads, maps and a report.
 
@@ -84,8 +91,9 @@ def wind(
     # the numerical libraries are imported late: --help and usage errors must not wait for them
     from meshwind import pipeline
 
+    del config  # its values have become those of the others
     folder = out if out is not None else f"{mesh.stem}-wound"
-    with display() as progress:
+    with display(quiet) as progress:
         result = pipeline.wind(
             mesh,
             paths=paths,
@@ -108,5 +116,6 @@ def wind(
             command=shlex.join(["meshwind", *sys.argv[1:]]),
             progress=progress,
         )
-    typer.echo(summary(result, Path(folder)))
+    figures = result.report() | {"folder": str(folder)}
+    tell(summary(result, Path(folder)).splitlines(), figures, as_json, quiet)
     return 0 if result.settled else UNSETTLED

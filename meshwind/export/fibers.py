@@ -7,11 +7,12 @@ import numpy as np
 from meshwind.cast import Floats
 from meshwind.export.elements import Elements
 from meshwind.export.plies import Plies
+from meshwind.export.signature import sign
 
 FILES = "fibers.vtu", "fibers.vtk"
 
 
-def write_fibers(folder: Path, elements: Elements, laid: Plies) -> None:
+def write_fibers(folder: Path, elements: Elements, laid: Plies, units: str = "") -> None:
     """Write both files into a folder that is there; the fields are those of `cell_data`."""
     import meshio
 
@@ -23,6 +24,7 @@ def write_fibers(folder: Path, elements: Elements, laid: Plies) -> None:
     mesh = meshio.Mesh(np.array(elements.points), cells, point_data={"u": u, "v": v}, cell_data=data)
     for name in FILES:
         mesh.write(folder / name)
+        sign(folder / name, units)
 
 
 def cell_data(laid: Plies) -> dict[str, Floats]:

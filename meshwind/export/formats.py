@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -11,9 +10,11 @@ from numpy.typing import NDArray
 
 from meshwind.cast import Floats, Ints
 from meshwind.export.results import Results
+from meshwind.export.signature import sign
 from meshwind.export.skin import read_skin
 from meshwind.export.vtk_reading import Faces, Lines, read_faces, read_lines, read_vertices
 from meshwind.export.xdmf import write_xdmf
+from meshwind.units import lengths_in
 
 FOLDER = "formats"
 
@@ -29,6 +30,7 @@ class _Part:
     cells: tuple[tuple[str, Ints], ...]
     point_data: Data
     cell_data: Data
+    units: str
 
 
 def write_formats(folder: Path, results: Results, formats: tuple[str, ...]) -> list[str]:
@@ -52,25 +54,25 @@ def _parts(results: Results) -> list[_Part]:
     """What of the run is a mesh; bridges and crossings may be without points."""
     place = results.folder
     skin, quads = read_skin(place, results.surface), read_faces(place / "quads.vtu")
-    parts = [_of_faces("surface", skin), _of_faces("quads", quads)]
-    parts += [_of_lines(name, read_lines(place / f"{name}.vtp")) for name in ("paths", "bridges")]
+    parts = [_of_faces("surface", skin, results.units), _of_faces("quads", quads, results.units)]
+    parts += [_of_lines(name, read_lines(place / f"{name}.vtp"), results.units) for name in ("paths", "bridges")]
     points, data = read_vertices(place / "crossings.vtp")
-    parts.append(_Part("crossings", points, (("vertex", np.arange(len(points))[:, None]),), data, {}))
+    parts.append(_Part("crossings", points, (("vertex", np.arange(len(points))[:, None]),), data, {}, results.units))
     return parts
 
 
-def _of_faces(name: str, read: Faces) -> _Part:
+def _of_faces(name: str, read: Faces, units: str) -> _Part:
     cells = tuple((kind, block) for kind, block in (("quad", read.quads), ("triangle", read.triangles)) if len(block))
-    return _Part(name, read.points, cells or (_each(read.points),), read.point_data, {})
+    return _Part(name, read.points, cells or (_each(read.points),), read.point_data, {}, units)
 
 
-def _of_lines(name: str, read: Lines) -> _Part:
+def _of_lines(name: str, read: Lines, units: str) -> _Part:
     """Polylines as line cells: each segment carries the data of its line."""
     sizes = np.diff(read.starts)
     line = np.repeat(np.arange(len(sizes)), np.maximum(sizes - 1, 0))
     first = np.delete(np.arange(len(read.points)), read.starts[1:] - 1) if len(sizes) else np.zeros(0, dtype=np.int64)
     data = {key: values[line] for key, values in read.cell_data.items()}
-    return _Part(name, read.points, (("line", np.stack([first, first + 1], axis=1)),), read.point_data, data)
+    return _Part(name, read.points, (("line", np.stack([first, first + 1], axis=1)),), read.point_data, data, units)
 
 
 def _each(points: Floats) -> tuple[str, Ints]:
@@ -98,16 +100,19 @@ def _apart(data: Data, widest: int) -> dict[str, NDArray[Any]]:
 
 def _vtu(folder: Path, part: _Part) -> list[str]:
     _mesh(part, _apart(part.point_data, 3)).write(folder / f"{part.name}.vtu")
+    sign(folder / f"{part.name}.vtu", part.units)
     return []
 
 
 def _vtk(folder: Path, part: _Part) -> list[str]:
     _mesh(part, _apart(part.point_data, 3)).write(folder / f"{part.name}.vtk")
+    sign(folder / f"{part.name}.vtk", part.units)
     return []
 
 
 def _xdmf(folder: Path, part: _Part) -> list[str]:
-    write_xdmf(folder / f"{part.name}.xdmf", part.points, part.cells, _apart(part.point_data, 3), part.cell_data)
+    data = _apart(part.point_data, 3)
+    write_xdmf(folder / f"{part.name}.xdmf", part.points, part.cells, data, part.cell_data, part.units)
     return []
 
 
@@ -122,13 +127,11 @@ def _gmsh(folder: Path, part: _Part) -> list[str]:
     point_data = {name: values.astype(float) for name, values in _apart(part.point_data, 3).items()}
     mesh = _mesh(part, point_data, cell_data | tags)
     meshio.gmsh.write(str(folder / f"{part.name}.msh"), mesh, fmt_version="2.2", binary=True)
-    return []
+    return [f"gmsh: no place for the unit of length; {lengths_in(part.units)}"]
 
 
 def _ply(folder: Path, part: _Part) -> list[str]:
     """meshio's PLY has faces alone and its numbers at the points: lines are left as their points."""
-    import meshio
-
     lost = [f"ply: no data of cells; of {part.name} it lacks {', '.join(part.cell_data)}"] if part.cell_data else []
     kinds = {kind for kind, _ in part.cells}
     if kinds & {"line", "vertex"}:
@@ -137,11 +140,8 @@ def _ply(folder: Path, part: _Part) -> list[str]:
     mesh = _mesh(replace(part, cell_data={}), _apart(part.point_data, 1))
     for block in mesh.cells:
         block.data = block.data.astype(np.int32)  # PLY has no wider integers
-    held = BytesIO()
-    meshio.ply.write(held, mesh, binary=True)
-    before, _, after = held.getvalue().partition(b"comment ")
-    # without meshio's comment, which holds the time: the same run gives the same bytes
-    (folder / f"{part.name}.ply").write_bytes(before + after.partition(b"\n")[2])
+    mesh.write(folder / f"{part.name}.ply", binary=True)
+    sign(folder / f"{part.name}.ply", part.units)
     return lost
 
 
@@ -149,7 +149,7 @@ def _obj(folder: Path, part: _Part) -> list[str]:
     """OBJ by hand: meshio writes its faces alone, and it has lines and points too."""
     letters = {"quad": "f", "triangle": "f", "line": "l", "vertex": "p"}
     with (folder / f"{part.name}.obj").open("w", encoding="ascii") as file:
-        file.write(f"# {part.name} of a winding\n")
+        file.write(f"# {part.name} of a winding, {lengths_in(part.units)}\n")
         np.savetxt(file, part.points, fmt="v %.17g %.17g %.17g")
         for kind, block in part.cells:
             np.savetxt(file, block + 1, fmt=" ".join([letters[kind]] + block.shape[1] * ["%d"]))

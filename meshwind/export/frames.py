@@ -7,8 +7,8 @@ import numpy as np
 
 from meshwind.cast import Floats, frozen
 from meshwind.errors import BadInputError
-from meshwind.export.material import millimetres
 from meshwind.export.results import Results
+from meshwind.units import millimetres
 
 HEADER = (
     "index,arc_length,parameter_s,x,y,z,tx,ty,tz,nx,ny,nz,sx,sy,sz,width,left_x,left_y,left_z,right_x,right_y,right_z"

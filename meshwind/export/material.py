@@ -2,10 +2,7 @@
 
 from dataclasses import dataclass
 
-from meshwind.errors import BadInputError
-
-MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "in": 25.4, "inch": 25.4, "ft": 304.8}
-"""Length of a unit in mm."""
+from meshwind.units import millimetres
 
 
 @dataclass(frozen=True)
@@ -38,14 +35,3 @@ class Material:
     def mass(self, units: str) -> float:
         """Density in N s2 over the unit of length to the fourth: consistent with newtons and that unit."""
         return self.density * millimetres(units) ** 4
-
-
-def millimetres(units: str) -> float:
-    """Length of a unit in mm; "" counts as mm.  Raises BadInputError for a unit that is not known."""
-    if not units:
-        return 1.0
-    if units.lower() not in MILLIMETRES:
-        raise BadInputError(
-            f"the run's unit {units!r} has no known length; wind with --units {' or '.join(sorted(MILLIMETRES))}"
-        )
-    return MILLIMETRES[units.lower()]

@@ -16,11 +16,11 @@ from meshwind.cast import Bools, floats, frozen
 from meshwind.errors import BadInputError
 from meshwind.export.vtk_reading import Lines, read_lines
 from meshwind.layup.layup import Layup, assess
-from meshwind.output.staging import settle
+from meshwind.output.staging import REPORT, settle
 from meshwind.path.paths import Counters, Paths, Status
 from meshwind.surface.surface import FitError, Surface
 
-_NEEDED = "paths.vtp", "surface.npz", "report.json"
+_NEEDED = "paths.vtp", "surface.npz", REPORT
 _FIELDS = {"uv": (2,), "on_surface": (), "gap": (), "normal": (3,), "slip": ()}
 _FARTHEST, _MOST_TURNS = 1e100, 1e6
 """Of any length of a surface, and of u: beyond them a file is damaged."""
@@ -80,17 +80,8 @@ class Results:
 
 def read_results(folder: str | PathLike[str]) -> Results:
     """Read the folder of a run; raises BadInputError where it is none, or its files do not belong together."""
-    place = Path(folder)
-    if not place.is_dir():
-        raise BadInputError(f"{place} is no folder; give one that `meshwind wind MESH --out DIR` left")
-    with suppress(OSError):  # a folder that cannot be written is read as it is
-        settle(place)
-    missing = [name for name in _NEEDED if not (place / name).is_file()]
-    if missing:
-        raise BadInputError(
-            f"{place} holds no {' and no '.join(missing)}; give a folder that `meshwind wind MESH --out DIR` left"
-        )
-    report = _report(place / "report.json")
+    place = _place(folder, _NEEDED)
+    report = _report(place / REPORT)
     try:
         surface = _surface(place / "surface.npz", report)
         paths = _paths(place / "paths.vtp", surface, report)
@@ -99,6 +90,26 @@ def read_results(folder: str | PathLike[str]) -> Results:
     except (ArithmeticError, LookupError, TypeError, ValueError) as error:
         raise _spoilt(place, error) from error
     return Results(place, paths, report)
+
+
+def read_report(folder: str | PathLike[str]) -> dict[str, Any]:
+    """Read the report in the folder of a run; raises BadInputError where there is none, or it cannot be read."""
+    return _report(_place(folder, (REPORT,)) / REPORT)
+
+
+def _place(folder: str | PathLike[str], needed: tuple[str, ...]) -> Path:
+    """The folder, once it is known to be one and to hold the needed files."""
+    place = Path(folder)
+    if not place.is_dir():
+        raise BadInputError(f"{place} is no folder; give one that `meshwind wind MESH --out DIR` left")
+    with suppress(OSError):  # a folder that cannot be written is read as it is
+        settle(place)
+    missing = [name for name in needed if not (place / name).is_file()]
+    if missing:
+        raise BadInputError(
+            f"{place} holds no {' and no '.join(missing)}; give a folder that `meshwind wind MESH --out DIR` left"
+        )
+    return place
 
 
 def _report(path: Path) -> dict[str, Any]:

@@ -7,11 +7,11 @@ import numpy as np
 
 from meshwind.cast import Floats
 from meshwind.errors import BadInputError
-from meshwind.export.material import millimetres
 from meshwind.export.opencascade import knots_array, need, occ, points_array, quiet
 from meshwind.export.results import Results
 from meshwind.export.splines import clamped_surface, curve_through
 from meshwind.surface.surface import DEGREE, Surface
+from meshwind.units import millimetres
 
 FILE = "surface.step"
 TIME = "1970-01-01T00:00:00"

@@ -106,7 +106,7 @@ def _deck(folder: Path, results: Results, wishes: Wishes) -> list[str]:
 
 def _fibers(folder: Path, results: Results, wishes: Wishes) -> list[str]:
     elements = _elements(results, wishes, 10_000)
-    write_fibers(folder, elements, plies(results, elements, wishes.thickness, wishes.width))
+    write_fibers(folder, elements, plies(results, elements, wishes.thickness, wishes.width), results.units)
     return []
 
 

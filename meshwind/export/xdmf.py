@@ -20,7 +20,7 @@ Data: TypeAlias = Mapping[str, NDArray[Any]]
 
 
 def write_xdmf(
-    path: Path, points: Floats, cells: Sequence[tuple[str, Ints]], point_data: Data, cell_data: Data
+    path: Path, points: Floats, cells: Sequence[tuple[str, Ints]], point_data: Data, cell_data: Data, units: str = ""
 ) -> None:
     """Write points (n, 3), cells by kind, data of the points and of the cells in their order; PATH.xdmf and PATH.raw.
 
@@ -29,6 +29,7 @@ def write_xdmf(
     raw = path.with_suffix(".raw")
     with path.open("w", encoding="utf-8") as file, raw.open("wb") as numbers:
         file.write('<?xml version="1.0"?>\n<Xdmf Version="3.0"><Domain><Grid Name="Grid">\n')
+        file.write(f'<Information Name="units" Value={quoteattr(units)}/>\n')
         file.write(f'<Geometry GeometryType="XYZ">{_item(numbers, points)}</Geometry>\n{_topology(numbers, cells)}')
         for centre, data in (("Node", point_data), ("Cell", cell_data)):
             for name, values in data.items():

@@ -36,12 +36,7 @@ def read_scalars(path: str | Path, name: str) -> Scalars:
     if kind not in _BY_VTK + _BY_MESHIO:
         known = ", ".join(end[1:].upper() for end in _BY_VTK + _BY_MESHIO)
         raise BadInputError(f"{path.name}: this format holds no scalars; save the part with {name!r} as {known}")
-    try:
-        read = isolated(by_vtk if kind in _BY_VTK else by_meshio, path)
-    except (OSError, ValueError) as error:
-        raise BadInputError(
-            f"{path.name}: its scalars cannot be read; is it a whole {kind[1:].upper()} file?"
-        ) from error
+    read = _read(path)
     names = read["names"].tolist()
     if name not in names:
         there = ", ".join(sorted(names)) or "none"
@@ -51,6 +46,27 @@ def read_scalars(path: str | Path, name: str) -> Scalars:
     if len(values) != len(places) or not np.isfinite(values).all() or not np.isfinite(places).all():
         raise BadInputError(f"{path.name}: scalar {name!r} is not one finite number a vertex or cell; mend it first")
     return Scalars(frozen(places), frozen(values))
+
+
+def scalar_names(path: str | Path) -> tuple[str, ...]:
+    """Names of the scalars that `read_scalars` finds in a file; none where its format holds none.
+
+    Raises BadInputError where the file cannot be read.
+    """
+    path = Path(path)
+    if path.suffix.lower() not in _BY_VTK + _BY_MESHIO:
+        return ()
+    return tuple(sorted(_read(path)["names"].tolist()))
+
+
+def _read(path: Path) -> Arrays:
+    kind = path.suffix.lower()
+    try:
+        return isolated(by_vtk if kind in _BY_VTK else by_meshio, path)
+    except (OSError, ValueError) as error:
+        raise BadInputError(
+            f"{path.name}: its scalars cannot be read; is it a whole {kind[1:].upper()} file?"
+        ) from error
 
 
 _Fields = dict[str, tuple[Floats | None, Floats]]

@@ -10,7 +10,7 @@ from meshwind.output.vtk_files import write_lines, write_vertices
 from meshwind.path.paths import Paths
 
 
-def write_paths(path: Path, paths: Paths) -> None:
+def write_paths(path: Path, paths: Paths, units: str = "") -> None:
     """Write one polyline a path, with all that is known at its particles."""
     p, n = paths.gap.shape
     figures = lengths(paths)
@@ -32,10 +32,10 @@ def write_paths(path: Path, paths: Paths) -> None:
         "max_slip": figures.max_slip,
         "status": paths.status,
     }
-    write_lines(path, paths.points.reshape(-1, 3), np.arange(p + 1) * n, point_data, cell_data)
+    write_lines(path, paths.points.reshape(-1, 3), np.arange(p + 1) * n, point_data, cell_data, units)
 
 
-def write_bridges(path: Path, paths: Paths) -> None:
+def write_bridges(path: Path, paths: Paths, units: str = "") -> None:
     """Write one polyline a span off the surface, its two ends on the surface, with the gap along it."""
     spans = bridges(paths)
     sizes = spans.last - spans.first + 1
@@ -45,10 +45,10 @@ def write_bridges(path: Path, paths: Paths) -> None:
     cell_data = {"path": spans.path, "length": spans.length, "max_gap": spans.max_gap}
     points = paths.points[row, column]
     points[starts[:-1]], points[starts[1:] - 1] = spans.ends[:, 0], spans.ends[:, 1]
-    write_lines(path, points, starts, {"gap": paths.gap[row, column]}, cell_data)
+    write_lines(path, points, starts, {"gap": paths.gap[row, column]}, cell_data, units)
 
 
-def write_crossings(path: Path, crossings: Crossings) -> None:
+def write_crossings(path: Path, crossings: Crossings, units: str = "") -> None:
     """Write one vertex a crossing; the angle in degrees."""
     write_vertices(
         path,
@@ -61,4 +61,5 @@ def write_crossings(path: Path, crossings: Crossings) -> None:
             "uv": crossings.uv,
             "on_surface": crossings.on_surface,
         },
+        units,
     )

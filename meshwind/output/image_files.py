@@ -15,20 +15,21 @@ from meshwind.surface.image import from_image, surface_image
 from meshwind.surface.surface import Surface
 
 LEVELS = 65535
-LOW, HIGH = "meshwind XYZ min", "meshwind XYZ max"
-"""Text entries of the PNG: the x, y and z, in the mesh's units, of a channel's darkest and lightest level."""
+LOW, HIGH, UNITS = "meshwind XYZ min", "meshwind XYZ max", "meshwind units"
+"""Text entries of the PNG: the x, y and z, in the mesh's units, of a channel's darkest and lightest level, and
+that unit's name."""
 PIXELS, LEAST, MOST = 2, 256, 2048
 """Pixels a span, and bounds: the spline between them is then closer than 16 bits can tell."""
 
 
-def write_chart_image(path: Path, surface: Surface) -> None:
+def write_chart_image(path: Path, surface: Surface, units: str = "") -> None:
     """Write the surface as a picture, two pixels a span: PNG to 1/65535 of the part's size, or NPZ in full."""
     width, height = (int(np.clip(PIXELS * spans, LEAST, MOST)) for spans in surface.spans)
-    write_image(path, surface_image(surface, width, height))
+    write_image(path, surface_image(surface, width, height), units)
 
 
-def write_image(path: Path, image: ArrayLike) -> None:
-    """Write an image (height, width, 3) of a surface: .png in 16 bits, .npz as it is.
+def write_image(path: Path, image: ArrayLike, units: str = "") -> None:
+    """Write an image (height, width, 3) of a surface: .png in 16 bits, .npz as it is; units: of its lengths.
 
     Rows of the array are rows of the picture from the top.  Raises BadInputError for another ending.
     """
@@ -42,7 +43,7 @@ def write_image(path: Path, image: ArrayLike) -> None:
     scale = np.where(high > low, high - low, 1.0)
     levels = np.rint((pixels - low) / scale * LEVELS).astype(np.uint16)
     texts = {key: " ".join(repr(float(x)) for x in corner) for key, corner in ((LOW, low), (HIGH, high))}
-    _write_png(path, levels, texts)
+    _write_png(path, levels, texts | ({UNITS: units} if units else {}))
 
 
 def read_image(path: str | Path) -> Surface:

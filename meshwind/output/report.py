@@ -3,7 +3,6 @@
 import json
 import math
 from collections.abc import Mapping, Sequence
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +25,7 @@ from meshwind.output.layup_figures import (
 )
 from meshwind.path.paths import Paths, Status
 from meshwind.surface.surface import Surface
+from meshwind.version import version
 
 
 def report(
@@ -53,7 +53,7 @@ def report(
     """
     paths = layup.paths
     figures = {
-        "meshwind": this_version(),
+        "meshwind": version(),
         "command": command,
         "mesh": mesh_figures(mesh, units) | ({} if chart is None else {"ends": chart.annulus.ends}),
         "surface": _surface(paths.surface, chart, tolerance),
@@ -96,14 +96,6 @@ def plain(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
-
-
-def this_version() -> str:
-    """The version of meshwind that runs."""
-    try:
-        return version("meshwind")
-    except PackageNotFoundError:  # run from a source tree that was not installed
-        return "source"
 
 
 def mesh_figures(mesh: Mesh, units: str) -> dict[str, Any]:

@@ -1,4 +1,7 @@
-"""VTK's XML files from arrays.  VTK is imported late: it takes longer than small runs."""
+"""VTK's XML files from arrays.  VTK is imported late: it takes longer than small runs.
+
+Points and fields carry the name of their unit as VTK's own key UNITS_LABEL; `units` is that of lengths.
+"""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -8,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshwind.cast import Floats, Ints
+from meshwind.output.field_units import unit_of
 
 Data: TypeAlias = Mapping[str, NDArray[Any]]
 
@@ -15,21 +19,21 @@ VERTEX, TRIANGLE, QUAD = 1, 5, 9
 """VTK's numbers of the cell types."""
 
 
-def write_lines(path: Path, points: Floats, starts: Ints, point_data: Data, cell_data: Data) -> None:
+def write_lines(path: Path, points: Floats, starts: Ints, point_data: Data, cell_data: Data, units: str = "") -> None:
     """Write polylines over consecutive points: line k holds points starts[k] to starts[k + 1] (l + 1,)."""
-    poly = _polydata(points, point_data, cell_data)
+    poly = _polydata(points, point_data, cell_data, units)
     poly.SetLines(_cells(starts, np.arange(len(points))))
     _write_polydata(path, poly)
 
 
-def write_vertices(path: Path, points: Floats, point_data: Data) -> None:
+def write_vertices(path: Path, points: Floats, point_data: Data, units: str = "") -> None:
     """Write points, each with a vertex cell."""
-    poly = _polydata(points, point_data, {})
+    poly = _polydata(points, point_data, {}, units)
     poly.SetVerts(_cells(np.arange(len(points) + 1), np.arange(len(points))))
     _write_polydata(path, poly)
 
 
-def write_faces(path: Path, points: Floats, quads: Ints, triangles: Ints, point_data: Data) -> None:
+def write_faces(path: Path, points: Floats, quads: Ints, triangles: Ints, point_data: Data, units: str = "") -> None:
     """Write an unstructured grid of quads (q, 4) and triangles (t, 3), in this order.
 
     Without faces the points become vertex cells: meshio cannot read a grid that has no cell.
@@ -38,8 +42,8 @@ def write_faces(path: Path, points: Floats, quads: Ints, triangles: Ints, point_
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
     grid = vtkUnstructuredGrid()
-    grid.SetPoints(_points(points))
-    _add(grid.GetPointData(), point_data)
+    grid.SetPoints(_points(points, units))
+    _add(grid.GetPointData(), point_data, units)
     blocks = [(QUAD, quads), (TRIANGLE, triangles)]
     if not len(quads) + len(triangles):
         blocks = [(VERTEX, np.arange(len(points))[:, None])]
@@ -50,13 +54,13 @@ def write_faces(path: Path, points: Floats, quads: Ints, triangles: Ints, point_
     _write(vtkXMLUnstructuredGridWriter(), path, grid)
 
 
-def _polydata(points: Floats, point_data: Data, cell_data: Data) -> Any:
+def _polydata(points: Floats, point_data: Data, cell_data: Data, units: str) -> Any:
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
     poly = vtkPolyData()
-    poly.SetPoints(_points(points))
-    _add(poly.GetPointData(), point_data)
-    _add(poly.GetCellData(), cell_data)
+    poly.SetPoints(_points(points, units))
+    _add(poly.GetPointData(), point_data, units)
+    _add(poly.GetCellData(), cell_data, units)
     return poly
 
 
@@ -80,11 +84,11 @@ def _write(writer: Any, path: Path, data: Any) -> None:
     path.write_text(writer.GetOutputString(), encoding="utf-8", newline="\n")
 
 
-def _points(points: Floats) -> Any:
+def _points(points: Floats, units: str) -> Any:
     from vtkmodules.vtkCommonCore import vtkPoints
 
     out = vtkPoints()
-    out.SetData(_array(points.reshape(-1, 3)))
+    out.SetData(_labelled(_array(points.reshape(-1, 3)), units))
     return out
 
 
@@ -96,11 +100,18 @@ def _cells(starts: Ints, corners: Ints) -> Any:
     return out
 
 
-def _add(attributes: Any, data: Data) -> None:
+def _add(attributes: Any, data: Data, units: str) -> None:
     for name, values in data.items():
         array = _array(values)
         array.SetName(name)
-        attributes.AddArray(array)
+        attributes.AddArray(_labelled(array, unit_of(name, units)))
+
+
+def _labelled(array: Any, unit: str) -> Any:
+    """The array with the name of its unit, if it has one."""
+    if unit:
+        array.GetInformation().Set(array.UNITS_LABEL(), unit)
+    return array
 
 
 def _array(values: NDArray[Any]) -> Any:

@@ -134,6 +134,11 @@ def stop() -> None:
         _waiting.pop().close()
 
 
+def can_draw() -> str:
+    """Find out whether this machine can draw: "" or one line that says why it cannot."""
+    return paint({})
+
+
 def draw(
     picture: str | PathLike[str], layup: Layup, name: str, units: str = "", revolutions: float | None = None
 ) -> str:

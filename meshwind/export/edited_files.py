@@ -8,12 +8,14 @@ import numpy as np
 
 from meshwind.editing.redesign import Redesign
 from meshwind.editing.result import Round
-from meshwind.output.report import mesh_figures, plain, this_version, unsettled
+from meshwind.export.signature import sign
+from meshwind.output.report import mesh_figures, plain, unsettled
 from meshwind.output.vtk_files import write_faces
 from meshwind.path.paths import Status
+from meshwind.version import version
 
 
-def write_edited(out: Path, edited: Redesign) -> None:
+def write_edited(out: Path, edited: Redesign, units: str = "") -> None:
     """Write edited.ply and edited.vtu: the edited mesh, vertices and faces in the order of the mesh that was read.
 
     Point data: displacement (n, 3) in edited.vtu, its parts dx, dy, dz in edited.ply, and its size `moved` in both.
@@ -32,6 +34,7 @@ def write_edited(out: Path, edited: Redesign) -> None:
     cells = [("triangle", faces.astype(np.int32))]
     mesh = meshio.Mesh(np.asarray(edited.mesh.vertices), cells, point_data=parts)
     meshio.write(out / "edited.ply", mesh, file_format="ply", binary=True)
+    sign(out / "edited.ply", units)
 
 
 def redesign_report(
@@ -45,7 +48,7 @@ def redesign_report(
     moved = np.linalg.norm(edited.displacement, axis=1)
     gaps = edited.before, edited.after
     figures = {
-        "meshwind": this_version(),
+        "meshwind": version(),
         "command": command,
         "mesh": mesh_figures(edited.part, units) | {"ends": edited.before.chart.annulus.ends},
         "winding": {

@@ -1,0 +1,66 @@
+"""`meshwind info`: what a mesh holds, what a run found, or what this installation can do; nothing is written."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from meshwind.cli.arguments import AsJson, Quiet
+from meshwind.cli.outcome import tell
+from meshwind.errors import BadInputError
+
+
+def info(
+    what: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[FILE_OR_DIR]", help="A mesh, or a folder of `meshwind wind`; without it this program."
+        ),
+    ] = None,
+    as_json: AsJson = False,
+    quiet: Quiet = False,
+) -> int:
+    """Tell what a mesh file holds, what the run that left a folder found, or what this installation can do.
+
+    Example: meshwind info part-wound
+    """
+    if what is None:
+        lines, figures = _installation()
+    elif what.is_dir():
+        lines, figures = _run(what)
+    else:
+        lines, figures = _mesh(what)
+    tell(lines, figures, as_json, quiet)
+    return 0
+
+
+def _installation() -> tuple[list[str], dict[str, Any]]:
+    from meshwind.cli.installation import installation, told
+
+    found = installation()
+    return told(found), found
+
+
+def _run(folder: Path) -> tuple[list[str], dict[str, Any]]:
+    from meshwind.cli.summary import described
+    from meshwind.export.results import read_report
+
+    report = read_report(folder)
+    try:
+        run = f"run       {report['command'] or 'wound by the library'} (meshwind {report['meshwind']})"
+        return [run, *described(report)], report
+    except (LookupError, TypeError, ValueError, AttributeError) as error:
+        raise BadInputError(f"the report in {folder} lacks figures ({error}); run `meshwind wind` again") from error
+
+
+def _mesh(file: Path) -> tuple[list[str], dict[str, Any]]:
+    from dataclasses import asdict
+
+    from meshwind.cli.check import described
+    from meshwind.mandrel import inspect
+    from meshwind.mandrel.scalars import scalar_names
+
+    found = inspect(file)
+    fields = scalar_names(file)
+    named = ", ".join(fields) or "none"
+    return [*described(found), f"fields    {named}"], asdict(found) | {"fields": list(fields)}

@@ -1,0 +1,81 @@
+"""`meshwind info`: what a mesh holds, what a run found, what this installation can do."""
+
+import json
+import subprocess
+import sys
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+from export_results import waisted_results
+
+import meshwind as mw
+
+DATA = Path(__file__).parents[1] / "data"
+
+
+def info(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "meshwind", "info", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120)
+
+
+def test_a_mesh() -> None:
+    done = info(DATA / "tank.ply")
+    assert done.returncode == 0
+    lines = done.stdout.splitlines()
+    assert lines[0] == "mesh      tank.ply: PLY, 5000 vertices, 9996 faces"
+    assert lines[1].startswith("size      120 x 120 x 240, diagonal")
+    assert lines[2].startswith("piece     0: ")
+    assert lines[3] == "shape     closed, genus 0"
+    assert lines[4] == "fields    none"
+    assert "verdict" not in done.stdout
+
+
+def test_a_mesh_with_fields_and_rims(tmp_path: Path) -> None:
+    waisted_results(tmp_path)
+    told = json.loads(info(tmp_path / "surface.vtu", "--json").stdout)
+    assert {"coverage", "angle", "windability"} <= set(told["fields"])
+    assert len(told["rims"]) == 2
+    assert told["format"] == "VTU"
+
+
+def test_a_run(tmp_path: Path) -> None:
+    mw.wind(DATA / "tank.ply", paths=2, out=tmp_path, render=False, units="mm", command="meshwind wind tank.ply")
+    done = info(tmp_path)
+    labels = [line.split()[0] for line in done.stdout.splitlines()]
+    assert labels == ["run", "part", "surface", "paths", "coverage", "seconds"]
+    assert f"meshwind wind tank.ply (meshwind {mw.__version__})" in done.stdout
+    assert "4 of 4 at rest" in done.stdout
+    assert json.loads(info(tmp_path, "--json").stdout) == json.loads((tmp_path / "report.json").read_text())
+
+
+def test_this_installation() -> None:
+    done = info()
+    assert done.returncode == 0
+    lines = done.stdout.splitlines()
+    assert lines[0].startswith(f"meshwind  {mw.__version__}, Python 3.")
+    assert f"numpy {version('numpy')}" in lines[1]
+    assert "missing" not in lines[1]
+    told = json.loads(info("--json").stdout)
+    assert told["meshwind"] == mw.__version__ == version("meshwind")
+    assert (told["pictures"] == "") == ("can be drawn" in done.stdout)
+    assert told["extras"] == {"cad": True, "viewer": True}
+
+
+@pytest.mark.parametrize(("name", "content", "says"), [
+    ("none", None, "file not found"), ("report.json", "{}", "lacks figures"), ("report.json", "[", "cannot be used"),
+    ("report.json", '{"mesh": 3}', "lacks figures"), ("mine.txt", "x", "holds no report.json"),
+])  # fmt: skip
+def test_what_tells_nothing_is_refused(name: str, content: str | None, says: str, tmp_path: Path) -> None:
+    if content is not None:
+        (tmp_path / name).write_text(content)
+    done = info(tmp_path if content is not None else tmp_path / name)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert len(done.stderr.splitlines()) == 1
+    assert says in done.stderr
+
+
+def test_the_version() -> None:
+    done = subprocess.run([sys.executable, "-m", "meshwind", "--version"], capture_output=True, text=True, check=True)
+    assert done.stdout == f"meshwind {mw.__version__}\n"
