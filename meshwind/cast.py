@@ -34,3 +34,19 @@ def floats(values: ArrayLike, name: str, *shape: int) -> Floats:
 def ints(values: ArrayLike, name: str, *shape: int) -> Ints:
     """Cast to an int64 array of the given shape, where -1 stands for any length."""
     return floats(values, name, *shape).astype(np.int64)
+
+
+class Kept:
+    """A frozen dataclass that comes back from a pickle as it went in: arrays read-only, cached properties left out.
+
+    Kernels are compiled for read-only arrays; others would have them compiled again.
+    """
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: self.__dict__[name] for name in self.__dataclass_fields__}  # type: ignore[attr-defined]
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for value in state.values():
+            if isinstance(value, np.ndarray):
+                value.flags.writeable = False
+        self.__dict__.update(state)

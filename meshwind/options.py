@@ -5,8 +5,9 @@ from math import isfinite
 from numbers import Integral, Real
 
 from meshwind.errors import BadInputError
-from meshwind.layup.revolutions import AUTO, STEPS_A_TURN
+from meshwind.layup.revolutions import STEPS_A_TURN
 from meshwind.mandrel.ends import parse
+from meshwind.spelled import AUTO
 from meshwind.units import check_units
 
 FIELD = "field:"

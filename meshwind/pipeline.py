@@ -14,7 +14,7 @@ from meshwind.errors import BadInputError
 from meshwind.layup.families import Families, families
 from meshwind.layup.layup import Layup, assess
 from meshwind.layup.pins import read_pins
-from meshwind.layup.revolutions import AUTO, Revolutions, choose_revolutions
+from meshwind.layup.revolutions import Revolutions, choose_revolutions
 from meshwind.layup.spacing import Spaced, space_out
 from meshwind.mandrel import Mesh, annulus, read
 from meshwind.mandrel.scalars import Scalars, read_scalars
@@ -35,6 +35,7 @@ from meshwind.pictures.render import placed
 from meshwind.pictures.revolutions_picture import draw_revolutions
 from meshwind.pictures.sheet import write_sheet
 from meshwind.pictures.subject import subject_in
+from meshwind.spelled import AUTO
 from meshwind.surface import Surface, fit
 from meshwind.version import version
 
@@ -111,10 +112,10 @@ class Result:
         is no OpenGL driver for the pictures, a note that says what to install.  fit_error.png is drawn where a note
         warns of the fit.
         """
-        return _write(self, _folder(out), render, overwrite, _Clock(None))
+        return _write(self, _folder(out), render, overwrite, Clock(None))
 
 
-class _Clock:
+class Clock:
     """Tells each stage as it starts and adds up what it took."""
 
     def __init__(self, tell: Tell | None) -> None:
@@ -123,6 +124,7 @@ class _Clock:
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
+        """Time what is done within it."""
         if self.tell is not None:
             self.tell(name)
         start = perf_counter()
@@ -173,25 +175,51 @@ def wind(
     )  # fmt: skip
     if not isinstance(mesh, str | PathLike | Mesh):
         raise BadInputError(f"mesh is of type {type(mesh).__name__}; give the path of a mesh file or a meshwind.Mesh")
-    clock = _Clock(progress)
+    clock = Clock(progress)
     target = None if out is None else _folder(out)
     if target is not None:
         folder.prepare(target, overwrite)
         if render:
             driver.start_probe()
+    result = wind_part(fit_part(mesh, options, clock), options, command, clock)
+    return result if target is None else _write(result, target, render, overwrite, clock)
+
+
+@dataclass(frozen=True)
+class Part:
+    """A mesh with all that its windings share: the scalars of its friction field, chart, surface, and its file."""
+
+    mesh: Mesh
+    field: Scalars | None
+    chart: Chart
+    surface: Surface
+    source: Path | None = None
+
+
+def fit_part(mesh: str | PathLike[str] | Mesh, options: Options, clock: Clock, field: Scalars | None = None) -> Part:
+    """Read, open, flatten and fit; field: of a mesh that is no file."""
     with clock.stage("read"):
         part = mesh if isinstance(mesh, Mesh) else read(mesh, options.component)
-    field = _field(mesh, options.friction)
+    held = _field(mesh, options.friction) if field is None else field
     with clock.stage("ends"):
         opened = annulus(part, ends=options.ends, opening=options.opening)
     with clock.stage("flatten"):
         chart = flatten(opened)
     with clock.stage("fit"):
         surface = fit(chart, options.tolerance)
-        notes = about_fit(surface, chart, options.tolerance, options.worst_fit, options.units)
-        rough: float | Friction = float(options.friction) if field is None else friction_from(
-            surface, field.points, field.values
-        )  # fmt: skip
+    return Part(part, held, chart, surface, None if isinstance(mesh, Mesh) else Path(mesh))
+
+
+def wind_part(part: Part, options: Options, command: str, clock: Clock) -> Result:
+    """Lay the paths on a part that was fitted with the same options, and assess them."""
+    surface = part.surface
+    with clock.stage("fit"):
+        notes = about_fit(surface, part.chart, options.tolerance, options.worst_fit, options.units)
+        rough: float | Friction = 0.0
+        if isinstance(options.friction, float):
+            rough = options.friction
+        elif part.field is not None:
+            rough = friction_from(surface, part.field.points, part.field.values)
     chosen = _chosen(surface, options, rough, clock)
     turns = float(options.revolutions) if chosen is None else chosen.choice
     with clock.stage("wind"):
@@ -205,9 +233,9 @@ def wind(
     with clock.stage("assess"):
         layup = assess(laid, options.band_width)
         notes = (*notes, *about_layup(layup))
-    source = None if isinstance(mesh, Mesh) else Path(mesh)
-    result = Result(part, chart, layup, options, command, clock.seconds, notes, chosen, spaced, source)
-    return result if target is None else _write(result, target, render, overwrite, clock)
+    return Result(
+        part.mesh, part.chart, layup, options, command, clock.seconds, notes, chosen, spaced, part.source
+    )  # fmt: skip
 
 
 def _rims(surface: Surface, options: Options, turns: float) -> Families:
@@ -217,7 +245,7 @@ def _rims(surface: Surface, options: Options, turns: float) -> Families:
     return families(surface, options.paths, turns)
 
 
-def _chosen(surface: Surface, options: Options, friction: float | Friction, clock: "_Clock") -> Revolutions | None:
+def _chosen(surface: Surface, options: Options, friction: float | Friction, clock: "Clock") -> Revolutions | None:
     """The revolutions, where they are to be chosen."""
     if options.revolutions != AUTO:
         return None
@@ -240,7 +268,7 @@ def _folder(out: str | PathLike[str]) -> Path:
     return Path(out)
 
 
-def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: _Clock) -> Result:
+def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: Clock) -> Result:
     notes = result.notes
     with folder.writing(out, overwrite) as staging:
         with clock.stage("write"):

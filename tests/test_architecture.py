@@ -14,6 +14,7 @@ ORDER = [
     "threads",
     "units",
     "version",
+    "spelled",
     "mandrel",
     "chart",
     "surface",
@@ -28,6 +29,7 @@ ORDER = [
     "notes",
     "pipeline",
     "edited",
+    "sweep",
     "cli",
     "__main__",
 ]

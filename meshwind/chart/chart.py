@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 
-from meshwind.cast import Floats
+from meshwind.cast import Floats, Kept
 from meshwind.mandrel.annulus import Annulus
 
 
 @dataclass(frozen=True)
-class Chart:
+class Chart(Kept):
     """A one-to-one map of an annulus to the periodic rectangle, u in turns (period 1), v in [0, 1].
 
     uv (n, 2) is one representative of each vertex; corner_uv (m, 3, 2) holds the corners of each triangle

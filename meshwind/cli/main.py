@@ -13,6 +13,7 @@ from meshwind.cli.export import export
 from meshwind.cli.info import info
 from meshwind.cli.redesign import redesign
 from meshwind.cli.render import render
+from meshwind.cli.sweep import sweep
 from meshwind.cli.wind import wind
 from meshwind.errors import BadInputError
 
@@ -32,6 +33,7 @@ app = typer.Typer(
 app.command()(wind)
 app.command()(check)
 app.command()(redesign)
+app.command()(sweep)
 app.command()(export)
 app.command()(render)
 app.command()(info)

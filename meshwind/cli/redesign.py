@@ -12,7 +12,8 @@ from meshwind.cli.arguments import AsJson, Ends, MeshFile, Opening, Quiet
 from meshwind.cli.config import Config
 from meshwind.cli.display import display
 from meshwind.cli.outcome import tell
-from meshwind.cli.wind import UNSETTLED, turns
+from meshwind.cli.wind import UNSETTLED
+from meshwind.spelled import turns
 from meshwind.units import check_units
 
 if TYPE_CHECKING:

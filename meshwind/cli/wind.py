@@ -2,7 +2,6 @@
 
 import shlex
 import sys
-from fractions import Fraction
 from pathlib import Path
 from typing import Annotated
 
@@ -13,29 +12,9 @@ from meshwind.cli.config import Config
 from meshwind.cli.display import display
 from meshwind.cli.outcome import tell
 from meshwind.cli.summary import summary
-from meshwind.errors import BadInputError
+from meshwind.spelled import count, turns
 
 UNSETTLED = 3
-
-
-def turns(text: str) -> float | str:
-    """A number or a fraction of whole numbers: 0.5, 5/12; or auto."""
-    if text.strip().lower() == "auto":
-        return "auto"
-    try:
-        return float(Fraction(text)) if "/" in text else float(text)
-    except (ValueError, ZeroDivisionError, OverflowError) as error:
-        raise BadInputError(f"revolutions is {text!r}; give a number as in 0.5 or 5/12, or auto") from error
-
-
-def count(text: str) -> int | None:
-    """A whole number, or None for auto."""
-    if text.strip().lower() == "auto":
-        return None
-    try:
-        return int(text)
-    except ValueError as error:
-        raise BadInputError(f"particles is {text!r}; give a whole number, or auto") from error
 
 
 def wind(

@@ -15,11 +15,12 @@ from meshwind.editing.proof import Winding, Wound, fitted
 from meshwind.editing.region import Region, parse
 from meshwind.editing.result import Outcome, Round
 from meshwind.errors import BadInputError
-from meshwind.layup.revolutions import AUTO, Revolutions, choose_revolutions
+from meshwind.layup.revolutions import Revolutions, choose_revolutions
 from meshwind.mandrel import Mesh, read
 from meshwind.mandrel.measure import volume
 from meshwind.mandrel.scalars import Scalars, read_scalars
 from meshwind.path import Paths, Status
+from meshwind.spelled import AUTO
 from meshwind.surface import Surface
 
 STAGES = 3

@@ -31,8 +31,6 @@ _GAIN = 3.0
 FRICTION, WIDER = 0.2, 1.5
 """What more would allow: this friction (a wet fibre's), and openings so many times as wide."""
 
-AUTO = "auto"
-"""In place of the revolutions: they are chosen."""
 STEPS_A_TURN = 8
 """Fewest steps of a path in a turn: with fewer a polyline is no picture of the fibre."""
 

@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 
-from meshwind.cast import Bools, Floats, Ints
+from meshwind.cast import Bools, Floats, Ints, Kept
 from meshwind.mandrel.mesh import Mesh
 
 
 @dataclass(frozen=True)
-class Annulus:
+class Annulus(Kept):
     """A mesh of genus 0 with exactly two boundary loops, outward oriented.
 
     vertices (n, 3) and faces (m, 3) are the trimmed mesh; rims are the two loops of vertex indices, the start

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshwind.cast import Floats, Ints
+from meshwind.cast import Floats, Ints, Kept
 
 
 @dataclass(frozen=True)
-class Mesh:
+class Mesh(Kept):
     """A triangle mesh, repaired: manifold, one component, one orientation, outward.
 
     vertices (n, 3) in the units of the file; faces (m, 3) indices from 0; repairs says in words what was

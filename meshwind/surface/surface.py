@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshwind.cast import Floats, Ints, floats, frozen
+from meshwind.cast import Floats, Ints, Kept, floats, frozen
 from meshwind.errors import BadInputError
 from meshwind.surface import evaluate, tree
 from meshwind.threads import spread
@@ -45,7 +45,7 @@ class FitError:
 
 
 @dataclass(frozen=True)
-class Surface:
+class Surface(Kept):
     """A uniform bicubic B-spline surface s(u, v) with u in turns and v in [0, 1] from end to end.
 
     control_points (nu, nv, 3); with `periodic` u has nu spans over [0, 1), otherwise nu - 3; v has nv - 3.

@@ -1,0 +1,27 @@
+"""Numbers as people spell them: a fraction of whole numbers, or auto for one that is to be chosen."""
+
+from fractions import Fraction
+
+from meshwind.errors import BadInputError
+
+AUTO = "auto"
+
+
+def turns(text: str) -> float | str:
+    """A number or a fraction of whole numbers: 0.5, 5/12; or auto."""
+    if text.strip().lower() == AUTO:
+        return AUTO
+    try:
+        return float(Fraction(text)) if "/" in text else float(text)
+    except (ValueError, ZeroDivisionError, OverflowError) as error:
+        raise BadInputError(f"revolutions is {text!r}; give a number as in 0.5 or 5/12, or auto") from error
+
+
+def count(text: str) -> int | None:
+    """A whole number, or None for auto."""
+    if text.strip().lower() == AUTO:
+        return None
+    try:
+        return int(text)
+    except ValueError as error:
+        raise BadInputError(f"particles is {text!r}; give a whole number, or auto") from error

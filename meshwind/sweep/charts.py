@@ -1,0 +1,95 @@
+"""tradeoffs.png: what a study's figures do as what is swept changes."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from meshwind.output.staging import staged
+
+_FIGURES = {
+    "bridged_share": "bridged, share of length",
+    "bare_share": "bare, share of the surface",
+    "angle_median": "crossing angle, median [degrees]",
+    "length": "length of fibre",
+}
+_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+_MARKS = "os^Dv*P"
+_DPI = 130
+
+
+def draw_tradeoffs(picture: Path, rows: Sequence[Mapping[str, Any]], swept: Sequence[str]) -> None:
+    """A column for each option with several numbers, a row for each figure; a line joins cases alike in the rest.
+
+    Cases that were refused or lost have no figures, and are counted in the title.
+    """
+    names = [_column(name) for name in swept]
+    done = [row for row in rows if row["status"] not in ("refused", "lost")]
+    numeric = [name for name in names if len(_numbers(done, name)) > 1]
+    if not numeric:
+        return
+    # imported late, as all that draws
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(4.6 * len(numeric) + 1.2, 2.7 * len(_FIGURES) + 0.9), facecolor="white")
+    figure.set_layout_engine("constrained")
+    FigureCanvasAgg(figure)
+    grid = figure.subplots(len(_FIGURES), len(numeric), squeeze=False, sharex="col", sharey="row")
+    for column, name in enumerate(numeric):
+        groups = _lines(done, name, [other for other in names if other != name])
+        for row, (figure_name, label) in enumerate(_FIGURES.items()):
+            axes = grid[row, column]
+            for group, line in groups:
+                style = _style(group, done)
+                at = [each[name] for each in line]
+                axes.plot(at, [each[figure_name] for each in line], lw=1.1, ms=4, alpha=0.85, **style)
+            axes.grid(alpha=0.3, lw=0.5)
+            for side in ("top", "right"):
+                axes.spines[side].set_visible(False)
+            if column == 0:
+                axes.set_ylabel(label, fontsize=9)
+            if row == len(_FIGURES) - 1:
+                axes.set_xlabel(name.replace("_", " "))
+    _legend(figure, grid[0, 0])
+    failed = len(rows) - len(done)
+    loose = sum(row["status"] == "not all at rest" for row in done)
+    figure.suptitle(
+        f"{len(rows)} cases: {len(done) - loose} at rest, {loose} with paths that are not, {failed} without figures.  "
+        "A line joins cases that are alike in the rest.",
+        fontsize=10,
+    )
+    with staged(picture.parent, lambda _: ()) as staging:
+        figure.savefig(staging / picture.name, dpi=_DPI, metadata={"Software": None})
+
+
+def _column(name: str) -> str:
+    """The table's name of an option."""
+    return {"paths": "paths_a_family"}.get(name, name.replace("-", "_"))
+
+
+def _numbers(rows: Sequence[Mapping[str, Any]], name: str) -> set[float]:
+    return {row[name] for row in rows if isinstance(row[name], int | float)}
+
+
+def _lines(
+    rows: Sequence[Mapping[str, Any]], name: str, others: Sequence[str]
+) -> list[tuple[Mapping[str, Any], list[Mapping[str, Any]]]]:
+    """The cases that have a number for `name`, by what they have for the others, each line by growing numbers."""
+    groups: dict[str, list[Mapping[str, Any]]] = {}
+    for row in rows:
+        if isinstance(row[name], int | float):
+            groups.setdefault(repr([row[other] for other in others]), []).append(row)
+    return [(line[0], sorted(line, key=lambda row: float(row[name]))) for line in groups.values()]
+
+
+def _style(row: Mapping[str, Any], rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """A colour and a mark a mesh."""
+    meshes = list(dict.fromkeys(each["mesh"] for each in rows))
+    k = meshes.index(row["mesh"])
+    return {"color": _COLOURS[k % len(_COLOURS)], "marker": _MARKS[k % len(_MARKS)], "label": row["mesh"]}
+
+
+def _legend(figure: Any, axes: Any) -> None:
+    handles, labels = axes.get_legend_handles_labels()
+    once = dict(zip(labels, handles, strict=True))
+    figure.legend(once.values(), once.keys(), loc="outside lower center", ncols=min(len(once), 5), fontsize=9)

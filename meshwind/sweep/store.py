@@ -1,0 +1,131 @@
+"""The folder of a study: a folder a case, whole or not at all, and the table of all that are done.
+
+    cases/NAME/case.json     the case, its row, and its results beside it
+    results.csv, .parquet    the rows in the study's order
+    tradeoffs.png            the figures against what is swept
+
+A case's folder is made beside its place and renamed; what is there is done, and is not done again.
+"""
+
+import csv
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from meshwind.errors import BadInputError
+from meshwind.output.report import plain
+from meshwind.output.staging import staged
+from meshwind.sweep.study import Case, Study
+from meshwind.sweep.work import Done
+
+CASES, RECORD = "cases", "case.json"
+CSV, PARQUET, PICTURE = "results.csv", "results.parquet", "tradeoffs.png"
+Row = dict[str, Any]
+
+_STATUS = ("at rest", "not all at rest", "refused", "lost")
+
+
+class Store:
+    """A study's folder."""
+
+    def __init__(self, out: Path, study: Study) -> None:
+        """Raises BadInputError where `out` cannot be a folder of results."""
+        if out.exists() and not out.is_dir():
+            raise BadInputError(f"{out} is a file; give a folder for the results")
+        self.out, self.study = out, study
+        self.rows: dict[int, Row] = {}
+        for number, case in enumerate(study.cases):
+            row = _kept(out / CASES / case.folder / RECORD, case.key)
+            if row is not None:
+                self.rows[number] = row
+
+    @property
+    def open(self) -> dict[int, Case]:
+        """The cases that are yet to be done, by their numbers."""
+        return {number: case for number, case in enumerate(self.study.cases) if number not in self.rows}
+
+    def keep(self, number: int, done: Done) -> Row:
+        """Write a case that is done; one whose worker was lost is told in the table, and tried anew another time."""
+        case = self.study.cases[number]
+        row = _row(case, done)
+        self.rows[number] = row
+        if done.lost:
+            return row
+        place = self.out / CASES / case.folder
+        place.parent.mkdir(parents=True, exist_ok=True)
+        with staged(place, lambda _: ()) as staging:
+            for name, content in done.files.items():
+                file = staging / name
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_bytes(content)
+            record = {"key": case.key, "row": row}
+            (staging / RECORD).write_text(json.dumps(record, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+        return row
+
+    @property
+    def table(self) -> list[Row]:
+        """The rows of all cases that are done, in the study's order, all with the same columns."""
+        rows = [self.rows[number] for number in sorted(self.rows)]
+        names = dict.fromkeys(name for row in rows for name in row)
+        return [{name: row.get(name) for name in names} for row in rows]
+
+    def write_table(self) -> None:
+        """Write results.csv and results.parquet."""
+        self.out.mkdir(parents=True, exist_ok=True)
+        with staged(self.out, lambda _: ()) as staging:
+            _write_csv(staging / CSV, self.table)
+            _write_parquet(staging / PARQUET, self.table)
+
+
+def _kept(record: Path, key: str) -> Row | None:
+    """The row of a case that is done."""
+    try:
+        told = json.loads(record.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    row = told.get("row") if isinstance(told, dict) and told.get("key") == key else None
+    return row if isinstance(row, dict) else None
+
+
+def _row(case: Case, done: Done) -> Row:
+    """What was asked for, how it ended, and the figures."""
+    asked = {
+        name: "auto" if name == "particles" and value is None else value for name, value in asdict(case.options).items()
+    }
+    pins = None if case.options.pins is None else Path(case.options.pins).name
+    refused = bool(done.reason)
+    settled = not refused and done.figures["at_rest"] == done.figures["paths"]
+    status = _STATUS[3 if done.lost else 2 if refused else 0 if settled else 1]
+    reason = done.reason if refused else done.figures["why_not"]
+    figures = {name: value for name, value in done.figures.items() if name != "why_not"}
+    row: Row = plain(
+        {"case": case.key, "folder": case.folder, "mesh": case.mesh.name, "status": status, "reason": reason}
+        | {name: asked[name] for name in asked if name != "paths"}
+        | {"paths_a_family": case.options.paths, "pins": pins}
+        | figures
+    )
+    return row
+
+
+def _write_csv(path: Path, rows: Iterable[Mapping[str, Any]]) -> None:
+    table = list(rows)
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, list(table[0]) if table else [])
+        writer.writeheader()
+        writer.writerows(table)
+
+
+def _write_parquet(path: Path, rows: Iterable[Mapping[str, Any]]) -> None:
+    import pyarrow as arrow
+    from pyarrow import parquet
+
+    table = list(rows)
+    columns = {}
+    for name in table[0] if table else ():
+        values = [row[name] for row in table]
+        mixed = len({isinstance(value, str) for value in values if value is not None}) > 1
+        # a column has one type: what is a number here and "auto" there is text
+        columns[name] = [None if value is None else str(value) for value in values] if mixed else values
+    parquet.write_table(arrow.table(columns), path)
