@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections import deque
 from pathlib import Path
 from typing import Any
 
@@ -170,7 +171,7 @@ def test_a_job_that_kills_every_worker_is_given_up_and_the_others_done(tmp_path:
     from meshwind.sweep import local
 
     plan = read_study(study(tmp_path, f"{FEW}mesh = [{mesh('vase.stl')}]\nrevolutions = [0.3, 0.4]\n"))
-    state = local._State(batches(dict(enumerate(plan.cases))), tmp_path, local.deque())
+    state = local._State(batches(dict(enumerate(plan.cases))), tmp_path, deque())
     job = local._Job(0, 1)
     told: list[Any] = []
     for _ in range(local.ATTEMPTS):

@@ -23,9 +23,8 @@ def run_cluster(batches: list[Batch], address: str) -> Iterator[tuple[int, Done]
     except (OSError, ValueError) as error:
         raise BadInputError(f"no scheduler answers at {address}: {error}; start one with `dask scheduler`") from error
     with client:
-        pending = as_completed()
-        waiting = 0
         numbers: dict[Any, int] = {}
+        jobs = []
         for batch in batches:
             read = batch.read()
             if isinstance(read, str):
@@ -33,15 +32,14 @@ def run_cluster(batches: list[Batch], address: str) -> Iterator[tuple[int, Done]
                 continue
             part = client.submit(fitted, *read, pure=False)
             for number, case in batch.cases.items():
-                job = client.submit(wound, part, case, pure=False)
-                numbers[job.key] = number
-                pending.add(job)
-                waiting += 1
-        while waiting:
-            future: Any = next(pending)
-            waiting -= 1
+                jobs.append(client.submit(wound, part, case, pure=False))
+                numbers[jobs[-1].key] = number
+        # what has been taken is let go of, so that the cluster does not keep it
+        taken = as_completed(jobs, loop=client.loop)
+        jobs.clear()
+        for job in taken:
             try:
-                done = future.result()
+                done = job.result()
             except KilledWorker:
                 done = Done({}, {}, LOST, lost=True)
-            yield numbers[future.key], done
+            yield numbers[job.key], done
