@@ -112,9 +112,9 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="two small runs of each")
     given = parser.parse_args()
     results = Results(given.out, "scaling.py", given.quick)
-    few = slice(2 if given.quick else None)
+    few = 2 if given.quick else None
     with tempfile.TemporaryDirectory() as folder:
-        rows = sweep(Path(folder), FACES[few], PATHS[few], PARTICLES[few])
+        rows = sweep(Path(folder), FACES[:few], PATHS[:few], PARTICLES[:few])
     results.table("scaling", rows)
     results.write()
     for swept, (time, memory) in draw(rows, given.out).items():
