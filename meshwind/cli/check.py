@@ -37,6 +37,8 @@ def check(
     """
     from meshwind.mandrel import inspect
 
+    if component < 0:
+        raise BadInputError(f"component is {component}; give a whole number from 0 up")
     findings = inspect(mesh, ends, opening, component)
     tell(_lines(findings), asdict(findings), as_json, quiet)
     if findings.problem:

@@ -10,6 +10,7 @@ import typer
 
 from meshwind.cli import check, export, info, redesign, render, wind
 from meshwind.cli.help import Command, Group
+from meshwind.cli.usage import told
 from meshwind.errors import BadInputError
 
 UNPRINTED = 1
@@ -77,9 +78,8 @@ def main() -> None:
         if sys.stdout is not None:
             sys.stdout.flush()
     except typer.TyperException as error:
-        context = getattr(error, "ctx", None)
-        where = context.command_path if context else "meshwind"
-        _fail(f"{error.format_message().rstrip('.')}; see `{where} --help`")
+        commands = [command.callback.__name__ for command in app.registered_commands if command.callback]
+        _fail(told(error, sys.argv[1:], commands))
     except typer.Abort:
         sys.exit(INTERRUPTED)
     except BadInputError as error:
