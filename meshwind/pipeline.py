@@ -284,7 +284,7 @@ def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: Cloc
         if render:
             with clock.stage("render"):
                 missing = _draw(result, staging)
-            notes = (*notes, Note(missing)) if missing else notes
+            notes = (*notes, Note(missing, warning=True)) if missing else notes
         notes = tuple(note.shown((staging / note.picture).is_file()) for note in notes)
         result = replace(result, seconds=result.seconds | clock.seconds, notes=notes)
         write_config(staging / CONFIG, out, _told(result, out, render), version())

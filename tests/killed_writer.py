@@ -104,9 +104,9 @@ def moments(folder: Path, count: int) -> tuple[list[dict[str, str]], list[Sight]
     whole, took = [], 0.0
     for k, result in enumerate(results):
         start = time.perf_counter()
-        result.write(folder / f"whole-{k}", render=False)
+        result.write(folder / f"whole-{k}" / "out", render=False)  # as deep as the others: meshwind.toml tells the way
         took = time.perf_counter() - start
-        whole.append(visible(folder / f"whole-{k}"))
+        whole.append(visible(folder / f"whole-{k}" / "out"))
     seen, random_time = [], random.Random(1)
     out = folder / "killed" / "out"
     out.parent.mkdir()

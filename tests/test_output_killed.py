@@ -65,7 +65,7 @@ def test_killed_at_random_times_real_results_are_whole(tmp_path: Path) -> None:
     """Every file by its hash, but the report, which holds times."""
     whole, sights = seen("moments", tmp_path, str(MOMENTS))
     reports = [held.pop("report.json") for held in whole]
-    assert len(reports) == 2 and whole[0].keys() == whole[1].keys() and len(whole[0]) == 8
+    assert len(reports) == 2 and whole[0].keys() == whole[1].keys() and len(whole[0]) == 9
     assert len(sights) == MOMENTS
     for sight in sights:
         assert not sight["hidden"]

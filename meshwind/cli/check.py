@@ -1,17 +1,25 @@
 """`meshwind check`: what a mesh is and what `wind` would do with it; nothing is changed or written."""
 
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import typer
-
-from meshwind.cli.arguments import AsJson, Ends, MeshFile, Opening, Quiet
+from meshwind.cli.arguments import AsJson, Component, Ends, MeshFile, Opening, Quiet
 from meshwind.cli.outcome import tell
 from meshwind.errors import BadInputError
 
 if TYPE_CHECKING:
     from meshwind.mandrel.findings import Findings, Piece, Rim
 
+EXAMPLES = """
+    # can this be wound, and where would it be opened?
+    meshwind check part.stl
+
+    # with two of its rims as the ends
+    meshwind check part.stl --ends "loops 0 2"
+
+    # the numbers, for a script
+    meshwind check part.stl --json
+"""
 _MOST = 12  # pieces or rims that are listed one by one
 
 
@@ -19,18 +27,18 @@ def check(
     mesh: MeshFile,
     ends: Ends = "auto",
     opening: Opening = None,
-    component: Annotated[int, typer.Option(help="Which piece, by its rank of area; 0 is the largest.", min=0)] = 0,
+    component: Component = 0,
     as_json: AsJson = False,
     quiet: Quiet = False,
 ) -> int:
     """Tell what MESH is, its pieces, rims and faults, and what `wind` would do with it.  Writes nothing.
 
     Exit status: 0 it has two ends and can be wound; 2 it cannot, and one line says why.
-
-    Example: meshwind check part.stl --ends "loops 0 2"
     """
     from meshwind.mandrel import inspect
 
+    if component < 0:
+        raise BadInputError(f"component is {component}; give a whole number from 0 up")
     findings = inspect(mesh, ends, opening, component)
     tell(_lines(findings), asdict(findings), as_json, quiet)
     if findings.problem:

@@ -7,6 +7,7 @@ from typing import Annotated, Any, get_args, get_type_hints
 
 import typer
 
+from meshwind.cli.help import FILES
 from meshwind.errors import BadInputError
 
 _PATHS = "mesh", "out", "pins"
@@ -32,6 +33,7 @@ Config = Annotated[
         metavar="FILE",
         callback=take_config,
         is_eager=True,
+        rich_help_panel=FILES,
         help="TOML file with options by their long names, and mesh; what is typed here outranks it.",
     ),
 ]

@@ -9,21 +9,27 @@ from meshwind.cli.arguments import AsJson, Quiet
 from meshwind.cli.outcome import tell
 from meshwind.errors import BadInputError
 
+EXAMPLES = """
+    # a mesh: format, size, pieces, rims, fields
+    meshwind info part.stl
+
+    # the figures of a run
+    meshwind info part-wound
+
+    # versions, and whether this machine can draw
+    meshwind info
+"""
+
 
 def info(
     what: Annotated[
         Path | None,
-        typer.Argument(
-            metavar="[FILE_OR_DIR]", help="A mesh, or a folder of `meshwind wind`; without it this program."
-        ),
+        typer.Argument(metavar="FILE_OR_DIR", help="A mesh, or a folder of `meshwind wind`; without it this program."),
     ] = None,
     as_json: AsJson = False,
     quiet: Quiet = False,
 ) -> int:
-    """Tell what a mesh file holds, what the run that left a folder found, or what this installation can do.
-
-    Example: meshwind info part-wound
-    """
+    """Tell what a mesh file holds, what the run that left a folder found, or what this installation can do."""
     if what is None:
         lines, figures = _installation()
     elif what.is_dir():

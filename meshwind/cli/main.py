@@ -8,13 +8,9 @@ from typing import NoReturn
 
 import typer
 
-from meshwind.cli.check import check
-from meshwind.cli.export import export
-from meshwind.cli.info import info
-from meshwind.cli.redesign import redesign
-from meshwind.cli.render import render
-from meshwind.cli.sweep import sweep
-from meshwind.cli.wind import wind
+from meshwind.cli import check, export, info, redesign, render, sweep, wind
+from meshwind.cli.help import Command, Group
+from meshwind.cli.usage import told
 from meshwind.errors import BadInputError
 
 UNPRINTED = 1
@@ -23,20 +19,38 @@ INTERRUPTED = 130
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE, errno.EBADF}
 """What a stream says that takes no more; it names no file, and all files of a run are guarded elsewhere."""
 
+EXAMPLES = """
+    # what is this part, and can it be wound?
+    meshwind check part.stl
+
+    # wind it: results and pictures into part-wound/
+    meshwind wind part.stl --paths 24
+
+    # for a robot, a solver and a browser
+    meshwind export part-wound --to frames,inp,viewer
+
+    # all options of a command
+    meshwind wind --help
+"""
+
 app = typer.Typer(
     name="meshwind",
+    cls=Group,
+    epilog=EXAMPLES,
     help="Wind taut fibres on a freeform triangle mesh.",
     add_completion=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-app.command()(wind)
-app.command()(check)
-app.command()(redesign)
-app.command()(sweep)
-app.command()(export)
-app.command()(render)
-app.command()(info)
+app.command(cls=Command, short_help="Wind a mesh: mesh in, paths out.", epilog=wind.EXAMPLES)(wind.wind)
+app.command(cls=Command, short_help="Tell whether a mesh can be wound, and how.", epilog=check.EXAMPLES)(check.check)
+app.command(cls=Command, short_help="Change a mesh until no fibre bridges.", epilog=redesign.EXAMPLES)(
+    redesign.redesign
+)
+app.command(cls=Command, short_help="Wind many cases from one study.", epilog=sweep.EXAMPLES)(sweep.sweep)
+app.command(cls=Command, short_help="Draw the pictures of a run.", epilog=render.EXAMPLES)(render.render)
+app.command(cls=Command, short_help="Write results for solvers, robots and CAD.", epilog=export.EXAMPLES)(export.export)
+app.command(cls=Command, short_help="Tell of a mesh, a run or this installation.", epilog=info.EXAMPLES)(info.info)
 
 
 def _version(wanted: bool) -> None:
@@ -65,9 +79,8 @@ def main() -> None:
         if sys.stdout is not None:
             sys.stdout.flush()
     except typer.TyperException as error:
-        context = getattr(error, "ctx", None)
-        where = context.command_path if context else "meshwind"
-        _fail(f"{error.format_message().rstrip('.')}; see `{where} --help`")
+        commands = [command.callback.__name__ for command in app.registered_commands if command.callback]
+        _fail(told(error, sys.argv[1:], commands))
     except typer.Abort:
         sys.exit(INTERRUPTED)
     except BadInputError as error:

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from meshwind.cli.arguments import AsJson, Ends, MeshFile, Opening, Quiet
+from meshwind.cli.arguments import AsJson, Component, Drawn, Ends, MeshFile, Opening, Overwrite, Quiet, Tolerance, Units
 from meshwind.cli.config import Config
 from meshwind.cli.display import display
+from meshwind.cli.help import FIBRES, FILES, one_of
 from meshwind.cli.outcome import tell
 from meshwind.cli.wind import UNSETTLED
 from meshwind.spelled import turns
@@ -19,40 +20,65 @@ from meshwind.units import check_units
 if TYPE_CHECKING:
     from meshwind.editing import Redesign
 
+EXAMPLES = """
+    # the nearest part that can be wound, into part-redesigned/
+    meshwind redesign part.stl
+
+    # at most 5 mm away, and the rims stay as they are
+    meshwind redesign part.stl --revolutions 0.3 --bound 5 --freeze "v<0.05, v>0.95"
+
+    # keep a part of four arms the same on each
+    meshwind redesign part.stl --symmetry 4 --out four-arms
+"""
+_EDIT = "The edit"
+
 
 def redesign(
     mesh: MeshFile,
-    out: Annotated[
-        str | None, typer.Option(help="Folder for the results.  [default: MESH's name + -redesigned]")
-    ] = None,
-    revolutions: Annotated[
-        str, typer.Option(metavar="TURNS", help="Turns of a path from end to end, as in 0.5 or 5/12, or auto.")
-    ] = "auto",
-    paths: Annotated[int, typer.Option(help="Paths a family.")] = 12,
-    particles: Annotated[int, typer.Option(help="Particles a path.")] = 401,
-    rounds: Annotated[int, typer.Option(help="Edit and wind again at most so often.")] = 10,
+    component: Component = 0,
+    ends: Ends = "auto",
+    opening: Opening = None,
+    units: Units = "mm",
     bound: Annotated[
-        float | None, typer.Option(help="Largest displacement, in the mesh's units.  [default: none]")
+        float | None,
+        typer.Option(help="Largest displacement, in the mesh's units.  [default: none]", rich_help_panel=_EDIT),
     ] = None,
     freeze: Annotated[
         str | None,
-        typer.Option(metavar="WHERE", help='What must not move: "v<0.1, z>20", or field:NAME for a scalar of MESH.'),
+        typer.Option(
+            metavar="WHERE",
+            help='What must not move: "v<0.1, z>20", or field:NAME for a scalar of MESH.',
+            rich_help_panel=_EDIT,
+        ),
     ] = None,
-    symmetry: Annotated[int, typer.Option(help="Order of rotation about the part that is kept.")] = 1,
+    symmetry: Annotated[
+        int, typer.Option(help="Order of rotation about the part that is kept.", rich_help_panel=_EDIT)
+    ] = 1,
     threshold: Annotated[
-        float | None, typer.Option(help="A gap up to this is none, in the mesh's units.  [default: the fit's error]")
+        float | None,
+        typer.Option(
+            help="A gap up to this is none, in the mesh's units.  [default: the fit's error]", rich_help_panel=_EDIT
+        ),
     ] = None,
-    component: Annotated[int, typer.Option(help="Which piece of MESH, by its rank of area; 0 is the largest.")] = 0,
-    ends: Ends = "auto",
-    opening: Opening = None,
-    tolerance: Annotated[
-        float, typer.Option(help="Largest distance of a vertex from the surface, over the part's diagonal.")
-    ] = 1e-5,
-    units: Annotated[
-        str, typer.Option(metavar="UNIT", help="Unit of the mesh: mm, cm, m, um, in, ft; nothing is converted.")
-    ] = "mm",
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace results that DIR holds already.")] = False,
-    render: Annotated[bool, typer.Option("--render/--no-render", help="Draw the pictures.")] = True,
+    rounds: Annotated[int, typer.Option(help="Edit and wind again at most so often.", rich_help_panel=_EDIT)] = 10,
+    paths: Annotated[int, typer.Option(help="Paths a family.", rich_help_panel=FIBRES)] = 12,
+    revolutions: Annotated[
+        str,
+        typer.Option(
+            metavar="TURNS",
+            help="Turns of a path from end to end, as in 0.5 or 5/12, or auto.",
+            autocompletion=one_of("auto"),
+            rich_help_panel=FIBRES,
+        ),
+    ] = "auto",
+    particles: Annotated[int, typer.Option(help="Particles a path.", rich_help_panel=FIBRES)] = 401,
+    tolerance: Tolerance = 1e-5,
+    out: Annotated[
+        str | None,
+        typer.Option(help="Folder for the results.  [default: MESH's name + -redesigned]", rich_help_panel=FILES),
+    ] = None,
+    overwrite: Overwrite = False,
+    render: Drawn = True,
     config: Config = None,
     as_json: AsJson = False,
     quiet: Quiet = False,
@@ -64,8 +90,6 @@ def redesign(
 
     Exit status: 0 nothing bridges; 1 the summary could not be printed; 2 bad input or usage; 3 some fibres still
     bridge (the report says how much, and what would help).
-
-    Example: meshwind redesign part.stl --revolutions 0.3 --bound 5 --freeze "v<0.05, v>0.95" --units mm
     """
     # the numerical libraries are imported late: --help and usage errors must not wait for them
     from meshwind.edited import write_redesign

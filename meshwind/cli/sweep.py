@@ -11,6 +11,19 @@ from meshwind.cli.display import counter
 from meshwind.cli.outcome import tell
 from meshwind.cli.wind import UNSETTLED
 
+EXAMPLES = """
+    # study.toml: options of wind by their long names; lists are combined
+    mesh = ["vase.stl", "cast.ply"]
+    revolutions = [0.3, 0.5, "5/8", "auto"]
+    friction = [0, 0.2]
+
+    # all cases, a process a core, into study-swept/
+    meshwind sweep study.toml
+
+    # the same on a Dask cluster
+    meshwind sweep study.toml --scheduler tcp://host:8786
+"""
+
 
 def sweep(
     study: Annotated[
@@ -33,9 +46,6 @@ def sweep(
     Exit status: 0 done; 1 the summary could not be printed; 2 bad input or usage; 3 done, but some cases failed, or
     have paths that did not come to rest (the table says which and why).
 
-    Example of STUDY:  mesh = ["vase.stl", "cast.ply"]   revolutions = [0.3, 0.5, 0.8]   friction = [0, 0.2]
-
-    Example: meshwind sweep study.toml --processes 4
     """
     # the numerical libraries are imported late: --help and usage errors must not wait for them
     from meshwind.sweep import sweep as run

@@ -1,6 +1,7 @@
 """Read a triangle mesh from a file, whatever its format."""
 
 import contextlib
+import difflib
 import io
 import json
 import struct
@@ -99,7 +100,7 @@ def _reader(file: Path) -> _Read:
         if file.is_dir():
             raise BadInputError(f"{file.name}: is a folder; {advice}")
         if not file.exists():
-            raise BadInputError(f"{file.name}: file not found; {advice}")
+            raise BadInputError(f"{file.name}: file not found; {_near(file) or advice}")
         if file.stat().st_size == 0:
             raise BadInputError(f"{file.name}: is empty; {advice}")
     except (OSError, ValueError) as error:
@@ -110,6 +111,16 @@ def _reader(file: Path) -> _Read:
         known = ", ".join(suffix[1:].upper() for suffix in SUFFIXES)
         raise BadInputError(f"{file.name}: unknown format {file.suffix!r}; convert the mesh to one of {known}")
     return _READERS[file.suffix.lower()]
+
+
+def _near(file: Path) -> str:
+    """The mesh in the same folder that was meant, if one has such a name."""
+    if not file.parent.is_dir():
+        return f"there is no folder {file.parent}"
+    names = {there.name: there.name for there in file.parent.iterdir() if there.suffix.lower() in _READERS}
+    names |= {Path(name).stem: name for name in names}
+    near = difflib.get_close_matches(file.name, names, 1, 0.7)
+    return f"did you mean {names[near[0]]}?" if near else ""
 
 
 def _first_line(error: BaseException) -> str:

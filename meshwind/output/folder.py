@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from meshwind.errors import BadInputError
+from meshwind.output.exports import exports_in
 from meshwind.output.staging import staged
 
 RESULTS = frozenset(
@@ -38,10 +39,10 @@ def prepare(out: Path, overwrite: bool = False) -> None:
 def writing(out: Path, overwrite: bool = False) -> Iterator[Path]:
     """Give a folder to write a run's files into; on leaving they move to `out`, on an error they vanish.
 
-    With `overwrite` all results of an earlier run in `out` are removed, also those that this one does not have, as
-    they would belong to another report; all else is left alone.  On an error nothing is left, not even `out` itself
-    where it was missing, and killed on the way the next run into `out` finishes the move or clears away.  Raises
-    BadInputError where `out` cannot be written or, without `overwrite`, holds results.
+    With `overwrite` all results of an earlier run in `out` and exports of them are removed, also those that this one
+    does not have, as they would belong to another report; all else is left alone.  On an error nothing is left, not
+    even `out` itself where it was missing, and killed on the way the next run into `out` finishes the move or clears
+    away.  Raises BadInputError where `out` cannot be written or, without `overwrite`, holds results.
     """
     if out.exists() and not out.is_dir():
         raise BadInputError(f"{out} is a file; give a folder for the results")
@@ -53,7 +54,7 @@ def writing(out: Path, overwrite: bool = False) -> Iterator[Path]:
 
 def _held(out: Path, overwrite: bool) -> list[str]:
     """Names of the results in `out`; raises BadInputError where there are some that must not be replaced."""
-    held = sorted(name for name in RESULTS if (out / name).is_file())
+    held = sorted(name for name in RESULTS if (out / name).is_file()) + exports_in(out)
     if held and not overwrite:
         what = ", ".join(held[:2]) + ", ..." * (len(held) > 2)
         raise BadInputError(

@@ -159,6 +159,8 @@ def _finish(place: Path, out: Path) -> None:
     if place.name.startswith(COMPLETE):
         for name in json.loads((place / _REPLACED).read_text()):
             (out / name).unlink(missing_ok=True)
+            if Path(name).parent != Path():
+                remove_empty([(out / name).parent])
         place = place.rename(out / place.name.replace(COMPLETE, MOVING))
     for name in sorted(_files(place), key=lambda name: name == Path(REPORT)):
         (out / name).parent.mkdir(exist_ok=True)

@@ -1,0 +1,71 @@
+"""How the commands' help looks: options in groups, and examples at the end."""
+
+import inspect
+from collections.abc import Callable
+from typing import Any
+
+from typer.core import TyperCommand, TyperGroup
+
+PART, FIBRES, SURFACE, FILES, TOLD = "The part", "The fibres", "The surface", "Files", "What is told"
+"""Groups of options."""
+
+
+class Command(TyperCommand):
+    """A command whose options are listed by their groups, and whose epilog, its examples, keeps its lines."""
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Write arguments and options, a section a group; those without one are the last."""
+        groups: dict[str, list[tuple[str, str]]] = {"Arguments": []}
+        others: list[tuple[str, str]] = []
+        for parameter in self.get_params(ctx):
+            record = parameter.get_help_record(ctx)
+            if record is None:
+                continue
+            is_argument = parameter.param_type_name == "argument"
+            group = "Arguments" if is_argument else getattr(parameter, "rich_help_panel", None)
+            (others if group is None else groups.setdefault(group, [])).append(record)
+        for group, records in (*groups.items(), ("Options" if len(groups) == 1 else "Other options", others)):
+            if records:
+                with formatter.section(group):
+                    formatter.write_dl(records)
+
+    def format_epilog(self, ctx: Any, formatter: Any) -> None:
+        """Write the examples."""
+        del ctx
+        _write_examples(self.epilog or "", formatter)
+
+
+class Group(TyperGroup):
+    """The command of all commands, with examples like theirs."""
+
+    def format_epilog(self, ctx: Any, formatter: Any) -> None:
+        """Write the examples."""
+        del ctx
+        _write_examples(self.epilog or "", formatter)
+
+
+def _write_examples(lines: str, formatter: Any) -> None:
+    """Line by line, as they are."""
+    with formatter.section("Examples"):
+        for line in inspect.cleandoc(lines).splitlines():
+            formatter.write(f"  {line}".rstrip() + "\n")
+
+
+def one_of(*names: str) -> Callable[[str], list[str]]:
+    """Completion of an option that takes one of some names."""
+
+    def complete(incomplete: str) -> list[str]:
+        return [name for name in names if name.startswith(incomplete.lower())]
+
+    return complete
+
+
+def some_of(*names: str) -> Callable[[str], list[str]]:
+    """Completion of an option that takes some of the names, by commas: the last is completed."""
+
+    def complete(incomplete: str) -> list[str]:
+        before, comma, last = incomplete.rpartition(",")
+        rest = [name for name in names if name not in before.split(",") and name.startswith(last.strip().lower())]
+        return [f"{before}{comma}{name}" for name in rest]
+
+    return complete

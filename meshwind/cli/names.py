@@ -1,0 +1,10 @@
+"""Names that options take, for help and completion: the libraries that define them take long to import."""
+
+ENDS = "auto", "x", "y", "z", "loops"
+UNITS = "mm", "cm", "m", "um", "in", "inch", "ft"
+TARGETS = "inp", "fibers", "frames", "step", "viewer"
+FORMATS = "vtu", "vtk", "xdmf", "ply", "obj", "gmsh"
+SHELLS = "grid", "quads"
+PICTURES = "winding", "crossings", "coverage", "windability", "slip", "fit", "unrolled", "quads", "redesign", "sheet"
+VIEWS = "auto", "x", "-x", "y", "-y", "z", "-z", "iso"
+MOVIES = "gif", "mp4"

@@ -1,0 +1,88 @@
+"""What a machine lacks stops only what needs it, and one line says what to install."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from export_results import waisted_results
+
+DATA = Path(__file__).parents[1] / "data"
+WITHOUT = """
+import sys
+sys.modules.update({{name: None for name in {names!r}}})
+from meshwind.cli import main
+main()
+"""
+"""Python takes a module that is None for one that is not installed."""
+
+
+def blind(*arguments: str | Path, folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run where EGL finds no driver."""
+    command = [sys.executable, "-m", "meshwind", *map(str, arguments)]
+    environment = os.environ | {
+        "__EGL_VENDOR_LIBRARY_DIRS": str(folder / "none"), "VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow",
+    }  # fmt: skip
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, env=environment)
+
+
+def test_without_a_driver_everything_but_pictures_is_written(tmp_path: Path) -> None:
+    out = tmp_path / "run"
+    done = blind("wind", DATA / "tank.ply", "--paths", "2", "--out", out, folder=tmp_path)
+    assert done.returncode == 0
+    assert [line for line in done.stdout.splitlines() if "OpenGL" in line] == [
+        "warning   no picture: VTK found no OpenGL driver on this machine; install one "
+        "(Debian: apt-get install libegl1 libgl1-mesa-dri)"
+    ]
+    assert len(list(out.iterdir())) == 10
+    assert {file.name for file in out.glob("*.png")} == {"chart.png"}
+    again = blind("wind", "--config", out / "meshwind.toml", "--overwrite", "--quiet", folder=tmp_path)
+    assert (again.returncode, again.stdout) == (0, "")
+    assert again.stderr.startswith("meshwind: warning: no picture: ")
+    assert len(again.stderr.splitlines()) == 1
+
+
+def test_without_a_driver_render_says_what_to_install(tmp_path: Path) -> None:
+    waisted_results(tmp_path)
+    done = blind("render", tmp_path, "--quiet", folder=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr == (
+        "meshwind: error: no picture: VTK found no OpenGL driver on this machine; install one "
+        "(Debian: apt-get install libegl1 libgl1-mesa-dri)\n"
+    )
+    assert {file.name for file in tmp_path.glob("*.png")} == {"chart.png"}
+    told = blind("info", folder=tmp_path)
+    assert told.returncode == 0
+    assert "pictures  no picture: VTK found no OpenGL driver on this machine; install one" in told.stdout
+
+
+def lacking(names: tuple[str, ...], *arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    """Run where Python modules, and all other programs, are missing."""
+    command = [sys.executable, "-c", WITHOUT.format(names=names), *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, env=os.environ | {"PATH": ""})
+
+
+@pytest.mark.parametrize(("module", "arguments", "remedy"), [
+    ("plotly", ["export", "--to", "viewer,inp"], 'pip install "meshwind[viewer]"'),
+    ("OCP", ["export", "--to", "inp,step"], "pip install 'meshwind[cad]'"),
+    ("imageio_ffmpeg", ["render", "--animate", "mp4", "--quiet"], 'ffmpeg; or: pip install "meshwind[movie]"'),
+])  # fmt: skip
+def test_what_is_not_installed_is_told_with_its_remedy(
+    module: str, arguments: list[str], remedy: str, tmp_path: Path
+) -> None:
+    waisted_results(tmp_path)
+    before = sorted(tmp_path.rglob("*"))
+    done = lacking((module,), *arguments, tmp_path)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert len(done.stderr.splitlines()) == 1
+    assert remedy in done.stderr
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_info_tells_what_is_not_installed() -> None:
+    told = lacking(("plotly", "OCP", "imageio_ffmpeg"), "info")
+    assert told.returncode == 0
+    for remedy in ("meshwind[viewer]", "meshwind[cad]", "meshwind[movie]"):
+        assert f'pip install "{remedy}"' in told.stdout

@@ -1,0 +1,82 @@
+"""A folder that is wound anew loses all that was exported of the earlier run, and nothing else."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from export_results import waisted_results
+
+from meshwind.errors import BadInputError
+from meshwind.export.formats import FORMATS
+from meshwind.export.targets import TARGETS, Wishes, export
+from meshwind.output.exports import exports_in
+from meshwind.output.folder import RESULTS, writing
+
+DATA = Path(__file__).parents[1] / "data"
+FOREIGN = (
+    "notes.txt", "shell.inp.bak", "my_shell.inp", "fibers.csv", "photo.png", "surface.stl", "frames/mine.csv",
+    "frames/path_a.csv", "formats/surface.stl", "formats/other.vtu", "deeper/frames/path_000.csv", "deeper/shell.inp",
+)  # fmt: skip
+
+
+def everything(folder: Path) -> set[str]:
+    return {file.relative_to(folder).as_posix() for file in folder.rglob("*") if file.is_file()}
+
+
+def exported(folder: Path) -> None:
+    waisted_results(folder)
+    export(folder, tuple(TARGETS), wishes=Wishes(formats=tuple(FORMATS)))
+
+
+def test_all_that_an_export_writes_is_known(tmp_path: Path) -> None:
+    exported(tmp_path)
+    assert everything(tmp_path) - RESULTS == set(exports_in(tmp_path))
+    assert "viewer.html" in RESULTS
+    assert {"shell.inp", "fibers.vtu", "surface.step", "frames/all.csv", "formats/paths.raw"} <= set(
+        exports_in(tmp_path)
+    )
+
+
+def test_only_exports_go(tmp_path: Path) -> None:
+    exported(tmp_path)
+    for name in FOREIGN:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("mine")
+    with writing(tmp_path, overwrite=True) as staging:
+        (staging / "report.json").write_text("new")
+    assert everything(tmp_path) == {*FOREIGN, "report.json"}
+    assert all((tmp_path / name).read_text() == "mine" for name in FOREIGN)
+
+
+def test_folders_of_exports_go_where_they_are_empty(tmp_path: Path) -> None:
+    exported(tmp_path)
+    with writing(tmp_path, overwrite=True) as staging:
+        (staging / "report.json").write_text("new")
+    assert [path.name for path in tmp_path.iterdir()] == ["report.json"]
+
+
+def test_exports_are_not_replaced_without_being_asked(tmp_path: Path) -> None:
+    (tmp_path / "frames").mkdir()
+    (tmp_path / "frames" / "path_000.csv").write_text("of another run")
+    with pytest.raises(BadInputError, match="holds results already"), writing(tmp_path) as staging:
+        (staging / "report.json").write_text("new")
+    assert everything(tmp_path) == {"frames/path_000.csv"}
+
+
+def test_from_the_command_line(tmp_path: Path) -> None:
+    for arguments in (
+        ["wind", str(DATA / "tank.ply"), "--out", "run", "--paths", "2", "--no-render"],
+        ["export", "run", "--to", "fibers,frames,viewer"],
+    ):
+        subprocess.run([sys.executable, "-m", "meshwind", *arguments], cwd=tmp_path, check=True, capture_output=True)
+    assert {"fibers.vtu", "viewer.html", "frames/path_003.csv"} <= everything(tmp_path / "run")
+    (tmp_path / "run" / "frames" / "robot.txt").write_text("mine")
+    again = [sys.executable, "-m", "meshwind", "wind", "--config", "run/meshwind.toml", "--quiet"]
+    refused = subprocess.run(again, cwd=tmp_path, capture_output=True, text=True)
+    assert refused.returncode == 2
+    assert "--overwrite to replace them" in refused.stderr
+    subprocess.run([*again, "--overwrite"], cwd=tmp_path, check=True, capture_output=True)
+    assert not exports_in(tmp_path / "run")
+    assert everything(tmp_path / "run") >= {"report.json", "frames/robot.txt"}
+    assert "viewer.html" not in everything(tmp_path / "run")
