@@ -1,5 +1,6 @@
 """Draw a results folder: all that is needed is in it."""
 
+import json
 import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -103,9 +104,18 @@ def _subject(source: Path, page: Page) -> Subject | None:
 def _scenes(source: Path, of: Subject | None, page: Page) -> Scenes:
     scenes = {} if of is None else scenes_of(of)
     if (source / EDITED).is_file():
-        name, units = (source.name, "") if of is None else (of.name, of.units)
+        name, units = _called(source) if of is None else (of.name, of.units)
         scenes[REDESIGN] = redesign_in(source, name, units, page.view)
     return scenes
+
+
+def _called(source: Path) -> tuple[str, str]:
+    """Name and unit of the part that a redesign's report tells of, or the folder's name."""
+    try:
+        told = json.loads((source / "report.json").read_text(encoding="utf-8"))
+        return str(told["mesh"]["name"]), str(told["mesh"]["units"]).replace("unknown", "")
+    except (OSError, ValueError, KeyError, TypeError):
+        return source.name, ""
 
 
 def _paint(work: dict[Path, dict[str, Any]], tell: Tell | None) -> None:

@@ -1,0 +1,81 @@
+"""The pictures of the gallery page: every part in data/ wound, a redesign, a fibre that is dragged.
+
+    python examples/gallery.py --out examples/gallery
+
+--only vase,tank takes some of them.
+"""
+
+import argparse
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import meshwind as mw
+
+DATA = Path(__file__).parents[1] / "data"
+PAGE = mw.Page(1000, 750)
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A part of data/ with its winding, and the picture of it that is shown."""
+
+    mesh: str
+    picture: str
+    revolutions: float | str
+    friction: float = 0.0
+    paths: int = 16
+
+
+SHOWN = {
+    "vase": Shown("vase.stl", "winding", 0.35),
+    "bottle": Shown("bottle.obj", "crossings", 0.55),
+    "cast": Shown("cast.ply", "coverage", 1.5),
+    "tank": Shown("tank.ply", "slip", 0.8, friction=0.2),
+    "wing": Shown("wing.stl", "winding", 0.55, paths=24),
+    "elbow": Shown("elbow.obj", "windability", 1.0),
+    "mesh": Shown("elbow.obj", "quads", 1.0, paths=24),
+}
+
+
+def main() -> None:
+    """Wind, draw and write."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
+    parser.add_argument("--out", type=Path, default=Path("out/gallery"), help="folder for the pictures")
+    parser.add_argument("--only", default=",".join((*SHOWN, "redesign")), help="names by commas")
+    given = parser.parse_args()
+    given.out.mkdir(parents=True, exist_ok=True)
+    for name in given.only.split(","):
+        (redesigned if name == "redesign" else wound)(name, given.out)
+        print(f"wrote {given.out / name}.png", flush=True)
+
+
+def wound(name: str, out: Path) -> None:
+    """One part's picture."""
+    shown = SHOWN[name]
+    with TemporaryDirectory() as folder:
+        place = Path(folder) / name
+        mw.wind(
+            DATA / shown.mesh,
+            paths=shown.paths,
+            revolutions=shown.revolutions,
+            friction=shown.friction,
+            units="mm",
+            out=place,
+            render=False,
+        )
+        mw.render(place, only=[shown.picture], page=PAGE)
+        (out / f"{name}.png").write_bytes((place / f"{shown.picture}.png").read_bytes())
+
+
+def redesigned(name: str, out: Path) -> None:
+    """A vase, before and after its neck came out to the fibres."""
+    edited = mw.redesign(DATA / "vase.stl", revolutions=0.35, paths=8)
+    with TemporaryDirectory() as folder:
+        mw.write_redesign(edited, folder, units="mm")
+        mw.render(folder, only=["redesign"], page=PAGE)
+        (out / f"{name}.png").write_bytes((Path(folder) / "redesign.png").read_bytes())
+
+
+if __name__ == "__main__":
+    main()
