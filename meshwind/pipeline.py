@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
-from os import PathLike, fspath
+from os import PathLike, fsencode, fspath
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
@@ -237,6 +237,12 @@ def _field(mesh: str | PathLike[str] | Mesh, friction: float | str) -> Scalars |
 def _folder(out: str | PathLike[str]) -> Path:
     if not isinstance(out, str | PathLike) or not fspath(out).strip():
         raise BadInputError(f"out is {out!r}; give the path of a folder for the results")
+    try:
+        named = b"\0" not in fsencode(out)
+    except UnicodeEncodeError:
+        named = False
+    if not named:
+        raise BadInputError(f"out is {fspath(out)[:40]!r}, which no folder can be called; give another")
     return Path(out)
 
 

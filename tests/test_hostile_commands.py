@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from broken_meshes import save_obj
 from hostile_files import EDITS, changed
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from mandrel_shapes import cone
 
@@ -37,6 +37,8 @@ few = settings(deadline=None, database=None, derandomize=True,
 
 
 @given(MESHES, st.lists(OPTION, max_size=4))
+@example("part.obj", [("--out", "\0")])
+@example("part.obj", [("--pins", "\0")])
 @settings(few, max_examples=120)
 def test_whatever_is_typed(
     tmp_path: Path,
@@ -82,6 +84,7 @@ READ = "paths.vtp", "surface.npz", "report.json", "surface.vtu", "quads.vtu", "b
 
 
 @given(st.sampled_from(READ), st.lists(st.tuples(st.sampled_from(list(EDITS)), UNIT, UNIT), min_size=1, max_size=3))
+@example("surface.npz", [("cut", 0.0, 0.0)])
 @settings(few, max_examples=60)
 def test_whatever_a_results_folder_holds(
     tmp_path: Path, results: Path, name: str, edits: list[tuple[str, float, float]]

@@ -124,9 +124,9 @@ def _report(path: Path) -> dict[str, Any]:
 
 def _surface(path: Path, report: dict[str, Any]) -> Surface:
     try:
-        with np.load(path, allow_pickle=False) as held:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as held:
             control, periodic = held["control_points"], bool(held["periodic_u"])
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+    except (OSError, EOFError, ValueError, LookupError, TypeError, AttributeError, zipfile.BadZipFile) as error:
         raise _spoilt(path, error) from error
     points = floats(control, f"control_points of {path.name}", -1, -1, 3)
     if np.abs(points).max(initial=0.0) > _FARTHEST:

@@ -64,7 +64,7 @@ def _table(path: Path) -> tuple[list[str], Floats]:
             rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
     except FileNotFoundError as error:
         raise BadInputError(f"{path}: there is no such file; give a CSV file of pins") from error
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+    except (OSError, ValueError, csv.Error) as error:
         raise BadInputError(f"{path}: cannot be read as CSV; give a text file of comma-separated numbers") from error
     if len(rows) < 2:
         raise BadInputError(f"{path.name}: holds no pins; give a row of column names, then a row a path")
