@@ -96,9 +96,13 @@ def choose_revolutions(
     """
     if not surface.periodic:
         raise BadInputError("revolutions need a surface that closes in u; give end points to `solve` instead")
+    if not isinstance(paths, int | np.integer) or paths < 1:
+        raise BadInputError(f"paths is {paths}; give a whole number of paths a family, at least 1")
     if most is None:
         most = hoop_revolutions(surface)
         most = most if particles is None else min(most, (particles - 1) / STEPS_A_TURN)
+    elif not 0.0 < most < np.inf:
+        raise BadInputError(f"most is {most}; give a largest number of revolutions above 0")
     tried = min(paths, _TRIED)
     held = holding(surface, friction, most, tried, 2e-3)
     square = square_revolutions(surface)

@@ -85,6 +85,8 @@ def space_out(paths: Paths, revolutions: float, spacing: float, friction: float 
 
     spacing: largest distance between neighbours of a family, in the mesh's units; friction as in `solve`.
     """
+    if not np.isfinite(revolutions):
+        raise BadInputError(f"revolutions is {revolutions}; give the number that the paths were wound by")
     if not (np.isfinite(spacing) and spacing > 0.0):
         raise BadInputError(f"spacing is {spacing}; give a length above 0 in the mesh's units")
     counts = [int((paths.family == family).sum()) for family in (1, -1)]

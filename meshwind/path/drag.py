@@ -17,7 +17,7 @@ from meshwind.path.batch import Batch, Setting, fresh
 from meshwind.path.friction import Friction, friction_of
 from meshwind.path.ladder import failing
 from meshwind.path.paths import Paths
-from meshwind.path.solve import ITERATIONS, TOLERANCE, as_paths, straight
+from meshwind.path.solve import ITERATIONS, TOLERANCE, as_paths, check_count, check_curves, check_share, straight
 from meshwind.surface.surface import Surface
 
 LONGEST_STEP = 0.02
@@ -47,10 +47,12 @@ def drag(
     first, last = floats(start, "start", -1, 2), floats(end, "end", -1, 2)
     if len(first) != len(last) or not len(first):
         raise BadInputError(f"{len(first)} places of the start but {len(last)} of the end; give one of each a frame")
-    if particles < 3:
-        raise BadInputError(f"particles is {particles}; give a whole number, at least 3")
+    check_count(particles, "particles", 3)
+    check_count(iterations, "iterations", 1)
+    check_share(tolerance, "tolerance")
     setting = Setting(surface, friction_of(surface, friction), bridging, tolerance, iterations)
     curve = straight(first[:1], last[:1], 2) if initial is None else floats(initial, "initial", -1, 2)[None]
+    check_curves(curve)
     state = fresh(curve, particles)
     setting.run(state, resume=False)
     frames = [state]

@@ -20,6 +20,25 @@ ACCURACY = 1e-5
 """Error of a length, relative, for which particles are chosen where their number is left open."""
 
 
+def check_count(value: object, name: str, least: int) -> None:
+    """Raise BadInputError where a value is no whole number from `least` up."""
+    if not isinstance(value, int | np.integer) or value < least:
+        raise BadInputError(f"{name} is {value}; give a whole number, at least {least}")
+
+
+def check_share(value: float, name: str) -> None:
+    """Raise BadInputError where a value is no finite number above 0."""
+    if not 0.0 < value < np.inf:
+        raise BadInputError(f"{name} is {value:g}; give a relative error above 0")
+
+
+def check_curves(curves: Floats) -> None:
+    """Raise BadInputError where a curve of curves (p, k, 2) stays in one place."""
+    nowhere = np.flatnonzero((np.ptp(curves, axis=1) <= 1e-9).all(axis=1)) if curves.shape[1] else [0]
+    if len(nowhere):
+        raise BadInputError(f"path {nowhere[0]} ends where it starts; give it two ends, or a curve as initial")
+
+
 def straight(start: Floats, end: Floats, particles: int) -> Floats:
     """Straight lines in the parametric plane (6.2): curves (p, particles, 2) from start to end (p, 2)."""
     if particles == 2:
@@ -51,19 +70,19 @@ def solve(
     fibre can leave the surface.  tolerance: largest unbalanced tangential force over the tension.  iterations: most
     steps a path at any number of particles.  Returns `Paths`, each with its status and residual.
     """
-    if particles is not None and (not isinstance(particles, int | np.integer) or particles < 3):
-        raise BadInputError(f"particles is {particles}; give a whole number, at least 3, or None")
-    if not accuracy > 0.0:
-        raise BadInputError(f"accuracy is {accuracy:g}; give a relative error above 0")
+    if particles is not None:
+        check_count(particles, "particles", 3)
+    check_count(iterations, "iterations", 1)
+    check_share(tolerance, "tolerance")
+    check_share(accuracy, "accuracy")
     first, last = floats(start, "start", -1, 2), floats(end, "end", -1, 2)
     if len(first) != len(last):
         raise BadInputError(f"{len(first)} start points but {len(last)} end points; give as many of each")
     for name, point in (("start", first), ("end", last)):
         if point.size and (point[:, 1].min() < 0.0 or point[:, 1].max() > 1.0):
             raise BadInputError(f"a {name} point has v outside [0, 1]; v runs from rim to rim")
-    if initial is None and (nowhere := np.flatnonzero((np.abs(last - first) <= 1e-9).all(axis=1))).size:
-        raise BadInputError(f"path {nowhere[0]} ends where it starts; give it two ends, or a curve as initial")
     curves = straight(first, last, 2) if initial is None else floats(initial, "initial", len(first), -1, 2)
+    check_curves(curves)
     count = len(curves)
     sense = np.where(last[:, 0] >= first[:, 0], 1, -1) if family is None else ints(family, "family", count)
     setting = Setting(surface, friction_of(surface, friction), bridging, tolerance, iterations)
