@@ -1,0 +1,125 @@
+"""How a run grows: time and peak memory of `meshwind wind` against faces, paths and particles.
+
+    python examples/scaling.py --out out/scaling
+
+Each run is the command itself, from the mesh file to all files and pictures, in a process of its own, on an irregular
+mesh of a vase.  Where paths grow, revolutions fall, so that each crosses as many others: crossings are pairs of paths,
+and a run with as many revolutions has them by the square of its paths.  Writes scaling.csv and scaling.png.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from charts.record import Results
+from charts.style import BLUE, GREY, ORANGE, RED, log_axes, save
+from fit_cost import VASE, irregular, write
+
+FACES = (10_000, 30_000, 100_000, 300_000, 1_000_000)
+PATHS = (100, 300, 1_000, 3_000, 5_000)
+"""A family: twice as many in all."""
+PARTICLES = (101, 201, 501, 1_001, 2_001, 5_001)
+CROSSED = 50.0
+"""Revolutions times paths a family where those grow; half of the paths that each crosses."""
+SWEPT = {"faces": "faces of the mesh", "paths": "paths in all", "particles": "particles a path"}
+
+
+def run(folder: Path, faces: int, paths: int, particles: int, revolutions: float) -> dict[str, Any]:
+    """Wind once; seconds, peak memory in bytes, and seconds of each stage."""
+    mesh = folder / f"vase-{faces}.ply"
+    if not mesh.exists():
+        write(mesh, *irregular(VASE, faces))
+    out = folder / "out"
+    command = [sys.executable, "-m", "meshwind", "wind", str(mesh), "--out", str(out), "--overwrite",
+               "--paths", str(paths), "--particles", str(particles), "--revolutions", repr(revolutions)]  # fmt: skip
+    start = perf_counter()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    _, status, used = os.wait4(process.pid, 0)
+    seconds = perf_counter() - start
+    if os.waitstatus_to_exitcode(status) not in (0, 3):
+        raise RuntimeError(f"{' '.join(command)} failed")
+    report = json.loads((out / "report.json").read_text(encoding="utf-8"))
+    return {
+        "faces": report["mesh"]["faces"], "paths": 2 * paths, "particles": particles, "seconds": seconds,
+        "processor_seconds": used.ru_utime + used.ru_stime, "memory": used.ru_maxrss * 1024,
+        "at_rest": report["paths"]["converged"], "crossings": report["crossings"]["count"],
+    } | {f"{stage}_seconds": value for stage, value in report["seconds"].items()}  # fmt: skip
+
+
+def sweep(folder: Path, faces: Sequence[int], paths: Sequence[int], particles: Sequence[int]) -> list[dict[str, Any]]:
+    """A row a run: each of the three grows while the others stay."""
+    run(folder, 10_000, 2, 101, 0.5)  # compile
+    jobs = [("faces", (n, 100, 401, 0.5)) for n in faces]
+    jobs += [("paths", (10_000, n, 401, min(CROSSED / n, 0.5))) for n in paths]
+    jobs += [("particles", (10_000, 20, n, 0.5)) for n in particles]
+    rows = []
+    for swept, job in jobs:
+        rows.append({"swept": swept, **run(folder, *job)})
+        print(swept, *(f"{value:.4g}" for key, value in rows[-1].items() if key != "swept"), flush=True)
+    return rows
+
+
+def exponent(x: Sequence[float], y: Sequence[float]) -> float:
+    """Of the power law through the upper half of the points, where what a run always costs matters least."""
+    upper = slice(len(x) // 2, None)
+    return float(np.polyfit(np.log(x[upper]), np.log(y[upper]), 1)[0])
+
+
+def draw(rows: list[dict[str, Any]], folder: Path) -> dict[str, tuple[float, float]]:
+    """Time and memory against each of the three; returns both exponents of each."""
+    figure, grid = plt.subplots(2, 3, figsize=(13.5, 7.5))
+    found = {}
+    for (swept, words), (above, below) in zip(SWEPT.items(), grid.T, strict=True):
+        some = [row for row in rows if row["swept"] == swept]
+        x = [row[swept] for row in some]
+        stages = [key for key in some[0] if key.endswith("_seconds") and key != "processor_seconds"]
+        largest = sorted(stages, key=lambda key: -some[-1][key])[:3]
+        seconds, memory = ([row[key] for row in some] for key in ("seconds", "memory"))
+        found[swept] = exponent(x, seconds), exponent(x, memory)
+        above.plot(x, seconds, "o-", color=RED, label=f"whole run: exponent {found[swept][0]:.2f}")
+        for key, colour in zip(largest, (BLUE, ORANGE, GREY), strict=True):
+            y = [row[key] for row in some]
+            label = f"{key.removesuffix('_seconds')}: exponent {exponent(x, y):.2f}"
+            above.plot(x, y, "s--", color=colour, ms=4, lw=1, label=label)
+        below.plot(x, np.array(memory) / 1e9, "o-", color=RED, label=f"peak memory: exponent {found[swept][1]:.2f}")
+        log_axes(above, words, "time [s]")
+        log_axes(below, words, "peak memory [GB]")
+        for axes in (above, below):
+            axes.legend()
+    figure.suptitle(
+        "meshwind wind, from the file to all files and pictures; exponents of the upper half of the points\n"
+        f"faces: 200 paths of 401 particles; paths: 10,000 faces, {CROSSED:g} revolutions over the paths of a family; "
+        "particles: 10,000 faces, 40 paths"
+    )
+    figure.tight_layout()
+    save(figure, folder, "scaling")
+    return found
+
+
+def main() -> None:
+    """Measure, print, draw."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
+    parser.add_argument("--out", type=Path, required=True, help="folder for the table and the chart")
+    parser.add_argument("--quick", action="store_true", help="two small runs of each")
+    given = parser.parse_args()
+    results = Results(given.out, "scaling.py", given.quick)
+    few = 2 if given.quick else None
+    with tempfile.TemporaryDirectory() as folder:
+        rows = sweep(Path(folder), FACES[:few], PATHS[:few], PARTICLES[:few])
+    results.table("scaling", rows)
+    results.write()
+    for swept, (time, memory) in draw(rows, given.out).items():
+        print(f"{swept}: time grows with the power {time:.2f}, memory with {memory:.2f}")
+
+
+if __name__ == "__main__":
+    main()
