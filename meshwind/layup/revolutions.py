@@ -99,7 +99,7 @@ def choose_revolutions(
     if most is None:
         most = hoop_revolutions(surface)
         most = most if particles is None else min(most, (particles - 1) / STEPS_A_TURN)
-    if not 0.0 < most < np.inf:
+    elif not 0.0 < most < np.inf:
         raise BadInputError(f"most is {most}; give a largest number of revolutions above 0")
     tried = min(paths, _TRIED)
     held = holding(surface, friction, most, tried, 2e-3)

@@ -12,6 +12,7 @@ LOOSE = "#7a7a7a"
 NAMES = {1: "family +1", -1: "family −1"}
 TUBE = 3.0, 0.16
 """Radius of a tube: so many pixels, but no more than this part of the pitch."""
+_MANY = 60_000
 
 
 def add_part(window: Any, scene: dict[str, Any]) -> None:
@@ -55,16 +56,23 @@ def add_fibres(window: Any, scene: dict[str, Any], thick: float, colours: dict[i
     add_tubes(window, points[~scene["taut"]], size, 0.6 * thick, LOOSE)
 
 
+def sides(points: int) -> int:
+    """Of tubes through so many points: where there are many they are too thin to look angular."""
+    return 8 if points <= _MANY else 4
+
+
 def add_tubes(window: Any, points: Any, size: int, thick: float, colour: str) -> None:
     """Tubes around paths (p, size, 3)."""
     if len(points):
         lines = polylines(points.reshape(-1, 3), np.full(len(points), size))
-        add_smooth(window, lines.tube(radius=thick, n_sides=8), color=colour, ambient=0.4, diffuse=0.7)
+        add_smooth(
+            window, lines.tube(radius=thick, n_sides=sides(lines.n_points)), color=colour, ambient=0.4, diffuse=0.7
+        )
 
 
 def add_coloured_tubes(window: Any, lines: Any, thick: float, name: str, colours: Any, most: float) -> None:
     """Tubes around polylines, coloured by their point data from 0 to most."""
-    tubes = lines.tube(radius=thick, n_sides=10)
+    tubes = lines.tube(radius=thick, n_sides=sides(lines.n_points) + 2)
     add_smooth(
         window, tubes, scalars=name, cmap=colours, show_scalar_bar=False, clim=[0.0, most], ambient=0.4, diffuse=0.65
     )

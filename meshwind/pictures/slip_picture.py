@@ -45,7 +45,13 @@ def _add_known(window: Any, scene: dict[str, Any], thick: float) -> None:
     known = np.isfinite(shares[:, 1:]) & np.isfinite(shares[:, :-1])
     grey, lines = runs(points, shares, ~known), runs(points, shares, known)
     if grey is not None:
-        canvas.add_smooth(window, grey.tube(radius=0.7 * thick, n_sides=8), color=OFF, ambient=0.4, diffuse=0.7)
+        canvas.add_smooth(
+            window,
+            grey.tube(radius=0.7 * thick, n_sides=bodies.sides(grey.n_points)),
+            color=OFF,
+            ambient=0.4,
+            diffuse=0.7,
+        )
     if lines is not None:
         colours = colour_map(str(scene["colours"]))
         bodies.add_coloured_tubes(window, lines, thick, "share", colours, 1.0)

@@ -19,8 +19,8 @@ from meshwind.output.maps import grid
 from meshwind.output.view import View, best_view, named_view
 from meshwind.path.paths import Paths, Status
 
-_MOST_POINTS = 250
-"""Points of a path that are drawn; more do not show."""
+_MOST_POINTS, _FEWEST_POINTS, _ALL_POINTS = 250, 40, 60_000
+"""Points of a path that are drawn, as more do not show; of many paths fewer each, as tubes take 7 kB a point."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,8 @@ class Subject:
     @property
     def stride(self) -> int:
         """Every so many-th particle is drawn."""
-        return -(-self.paths.gap.shape[1] // _MOST_POINTS)
+        most = min(_MOST_POINTS, max(_FEWEST_POINTS, _ALL_POINTS // len(self.paths)))
+        return -(-self.paths.gap.shape[1] // most)
 
     @property
     def pitch(self) -> float:

@@ -1,0 +1,42 @@
+"""Fuzz a reader with coverage guidance, by hand: whatever the file, it gives a mesh or one line.
+
+    pip install atheris
+    python examples/fuzz_readers.py .obj corpus -max_total_time=600
+
+Takes the suffix of a format, then what libFuzzer takes: a folder of first files, which grows, and its options.
+Stops at the first file that ends otherwise, and keeps it.
+"""
+
+import sys
+import tempfile
+from pathlib import Path
+
+import atheris
+
+from meshwind.errors import BadInputError
+from meshwind.mandrel.read import read
+
+with atheris.instrument_imports(include=["trimesh.exchange"]):
+    import trimesh  # noqa: F401
+
+
+def main() -> None:
+    """Fuzz until a time limit or a finding."""
+    suffix, *options = sys.argv[1:]
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, f"part{suffix}")
+
+        def once(data: bytes) -> None:
+            path.write_bytes(data)
+            try:
+                read(path)
+            except BadInputError as error:
+                if "\n" in str(error):
+                    raise RuntimeError("more than one line") from error
+
+        atheris.Setup([sys.argv[0], *options], once)
+        atheris.Fuzz()
+
+
+if __name__ == "__main__":
+    main()
