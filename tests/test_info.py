@@ -49,6 +49,25 @@ def test_a_run(tmp_path: Path) -> None:
     assert json.loads(info(tmp_path, "--json").stdout) == json.loads((tmp_path / "report.json").read_text())
 
 
+def test_a_redesign(tmp_path: Path) -> None:
+    given = (
+        "redesign",
+        DATA / "tank.ply",
+        "--paths",
+        "2",
+        "--revolutions",
+        "0.2",
+        "--no-render",
+        "--out",
+        tmp_path / "r",
+    )
+    command = [sys.executable, "-m", "meshwind", *map(str, given)]
+    made = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
+    told = info(tmp_path / "r").stdout.splitlines()
+    assert told[0].startswith("run       meshwind redesign ")
+    assert told[1:] == made.stdout.splitlines()[:-1]
+
+
 def test_this_installation() -> None:
     done = info("--json")
     assert done.returncode == 0
