@@ -49,7 +49,7 @@ def test_a_run(tmp_path: Path) -> None:
     assert json.loads(info(tmp_path, "--json").stdout) == json.loads((tmp_path / "report.json").read_text())
 
 
-def test_a_redesign(tmp_path: Path) -> None:
+def test_a_redesign_which_its_own_options_repeat(tmp_path: Path) -> None:
     given = (
         "redesign",
         DATA / "tank.ply",
@@ -66,6 +66,10 @@ def test_a_redesign(tmp_path: Path) -> None:
     told = info(tmp_path / "r").stdout.splitlines()
     assert told[0].startswith("run       meshwind redesign ")
     assert told[1:] == made.stdout.splitlines()[:-1]
+    again = [*command[:3], "redesign", "--config", str(tmp_path / "r" / "meshwind.toml"), "--out", str(tmp_path / "s")]
+    subprocess.run(again, capture_output=True, check=True, timeout=120)
+    for name in ("edited.ply", "edited.vtu", "meshwind.toml"):
+        assert (tmp_path / "s" / name).read_bytes() == (tmp_path / "r" / name).read_bytes()
 
 
 def test_this_installation() -> None:

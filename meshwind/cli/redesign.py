@@ -95,25 +95,25 @@ def redesign(
 
     del config  # its values have become those of the others
     check_units(units)
+    edit: dict[str, Any] = {"bound": bound, "symmetry": symmetry, "threshold": threshold, "rounds": rounds}
+    winding: dict[str, Any] = {
+        "paths": paths,
+        "revolutions": turns(revolutions),
+        "particles": particles,
+        "tolerance": tolerance,
+    }
+    part: dict[str, Any] = {"component": component, "ends": ends, "opening": opening}
     target = Path(out if out is not None else f"{mesh.stem}-redesigned")
     folder.prepare(target, overwrite)
     begin = perf_counter()
     with display(quiet) as progress:
         edited = edit_mesh(
             mesh,
-            revolutions=turns(revolutions),
-            paths=paths,
-            particles=particles,
-            rounds=rounds,
             frozen=freeze,
-            bound=bound,
-            symmetry=symmetry,
-            threshold=threshold,
-            component=component,
-            ends=ends,
-            opening=opening,
-            tolerance=tolerance,
             progress=progress,
+            **edit,
+            **winding,
+            **part,
         )
         progress("write")
         report = write_redesign(
@@ -124,6 +124,10 @@ def redesign(
             render=render,
             command=shlex.join(["meshwind", *sys.argv[1:]]),
             seconds={"redesign": perf_counter() - begin},
+            options={"mesh": mesh, "out": target, "freeze": freeze, "units": units, "render": render}
+            | edit
+            | winding
+            | part,
         )
     tell([*described(report), f"files     {target}"], report | {"folder": str(target)}, as_json, quiet)
     return 0 if edited.windable else UNSETTLED
