@@ -1,5 +1,6 @@
 """Write a redesign into a folder: the edited mesh, its pictures and its report, whole or not at all."""
 
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
 from time import perf_counter
@@ -9,12 +10,15 @@ from meshwind.editing.redesign import Redesign
 from meshwind.export.edited_files import redesign_report, write_edited
 from meshwind.layup.layup import assess
 from meshwind.output import folder
+from meshwind.output.config_file import NAME as CONFIG
+from meshwind.output.config_file import write_config
 from meshwind.output.report import write_report
 from meshwind.pictures import driver
 from meshwind.pictures.page import Page
 from meshwind.pictures.redesign_scene import redesign_scene
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
+from meshwind.version import version
 
 
 def write_redesign(
@@ -26,11 +30,13 @@ def write_redesign(
     overwrite: bool = False,
     command: str = "",
     seconds: dict[str, float] | None = None,
+    options: Mapping[str, object] | None = None,
 ) -> dict[str, Any]:
     """Write edited.ply, edited.vtu, report.json and, with `render`, the pictures into the folder `out`.
 
     before.png and after.png show the windings of the mesh that was read and of the edited one, redesign.png what was
-    moved.  units: name of the mesh's; overwrite: replace the results that `out` holds; seconds: of the stages before.
+    moved.  units: name of the mesh's; overwrite: replace the results that `out` holds; seconds: of the stages before;
+    options: what was asked for by the names of the command line, which meshwind.toml then holds.
     Returns the report, with a note where there are no pictures for want of an OpenGL driver.  Raises BadInputError
     where `out` cannot be written or, without `overwrite`, holds results.
     """
@@ -45,6 +51,8 @@ def write_redesign(
             notes += [missing] if missing else []
             spent["render"] = perf_counter() - begin
         report = redesign_report(edited, command=command, units=units, seconds=spent) | {"notes": notes}
+        if options is not None:
+            write_config(staging / CONFIG, Path(out), options, version(), "redesign")
         write_report(staging / "report.json", report)
     return report
 

@@ -143,6 +143,8 @@ def test_summary_and_progress(tank: tuple[Path, subprocess.CompletedProcess[str]
         f"to the vertices {fit['to_surface']['max']:.2g} mm",
         f"to the facets {fit['to_mesh']['max']:.2g} mm",
         "tolerance 1e-5",
+        "poles on its longest axis",
+        "opened to radius",
         "24 of 24 at rest",
         f"length {float(format(report['paths']['length_total'], '.4g')):,.0f} mm, no bridges",
         "seconds",

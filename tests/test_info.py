@@ -49,16 +49,36 @@ def test_a_run(tmp_path: Path) -> None:
     assert json.loads(info(tmp_path, "--json").stdout) == json.loads((tmp_path / "report.json").read_text())
 
 
+def test_a_redesign_which_its_own_options_repeat(tmp_path: Path) -> None:
+    given = (
+        "redesign",
+        DATA / "tank.ply",
+        "--paths",
+        "2",
+        "--revolutions",
+        "0.2",
+        "--no-render",
+        "--out",
+        tmp_path / "r",
+    )
+    command = [sys.executable, "-m", "meshwind", *map(str, given)]
+    made = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
+    told = info(tmp_path / "r").stdout.splitlines()
+    assert told[0].startswith("run       meshwind redesign ")
+    assert told[1:] == made.stdout.splitlines()[:-1]
+    again = [*command[:3], "redesign", "--config", str(tmp_path / "r" / "meshwind.toml"), "--out", str(tmp_path / "s")]
+    subprocess.run(again, capture_output=True, check=True, timeout=120)
+    for name in ("edited.ply", "edited.vtu", "meshwind.toml"):
+        assert (tmp_path / "s" / name).read_bytes() == (tmp_path / "r" / name).read_bytes()
+
+
 def test_this_installation() -> None:
-    done = info()
+    done = info("--json")
     assert done.returncode == 0
-    lines = done.stdout.splitlines()
-    assert lines[0].startswith(f"meshwind  {mw.__version__}, Python 3.")
-    assert f"numpy {version('numpy')}" in lines[1]
-    assert "missing" not in lines[1]
-    told = json.loads(info("--json").stdout)
+    told = json.loads(done.stdout)
     assert told["meshwind"] == mw.__version__ == version("meshwind")
-    assert (told["pictures"] == "") == ("can be drawn" in done.stdout)
+    assert told["libraries"]["numpy"] == version("numpy")
+    assert None not in told["libraries"].values()
     assert told["extras"] == {"cad": True, "viewer": True}
 
 

@@ -48,15 +48,16 @@ def _installation() -> tuple[list[str], dict[str, Any]]:
 
 
 def _run(folder: Path) -> tuple[list[str], dict[str, Any]]:
-    from meshwind.cli.summary import described
+    from meshwind.cli import redesign, summary
     from meshwind.export.results import read_report
 
     report = read_report(folder)
+    described = redesign.described if "redesign" in report else summary.described
     try:
         run = f"run       {report['command'] or 'wound by the library'} (meshwind {report['meshwind']})"
         return [run, *described(report)], report
     except (LookupError, TypeError, ValueError, AttributeError) as error:
-        raise BadInputError(f"the report in {folder} lacks figures ({error}); run `meshwind wind` again") from error
+        raise BadInputError(f"the report in {folder} lacks figures ({error}); make it again") from error
 
 
 def _mesh(file: Path) -> tuple[list[str], dict[str, Any]]:

@@ -4,7 +4,7 @@ import shlex
 import sys
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -16,9 +16,6 @@ from meshwind.cli.outcome import tell
 from meshwind.cli.wind import UNSETTLED
 from meshwind.spelled import turns
 from meshwind.units import check_units
-
-if TYPE_CHECKING:
-    from meshwind.editing import Redesign
 
 EXAMPLES = """
     # the nearest part that can be wound, into part-redesigned/
@@ -98,25 +95,25 @@ def redesign(
 
     del config  # its values have become those of the others
     check_units(units)
+    edit: dict[str, Any] = {"bound": bound, "symmetry": symmetry, "threshold": threshold, "rounds": rounds}
+    winding: dict[str, Any] = {
+        "paths": paths,
+        "revolutions": turns(revolutions),
+        "particles": particles,
+        "tolerance": tolerance,
+    }
+    part: dict[str, Any] = {"component": component, "ends": ends, "opening": opening}
     target = Path(out if out is not None else f"{mesh.stem}-redesigned")
     folder.prepare(target, overwrite)
     begin = perf_counter()
     with display(quiet) as progress:
         edited = edit_mesh(
             mesh,
-            revolutions=turns(revolutions),
-            paths=paths,
-            particles=particles,
-            rounds=rounds,
             frozen=freeze,
-            bound=bound,
-            symmetry=symmetry,
-            threshold=threshold,
-            component=component,
-            ends=ends,
-            opening=opening,
-            tolerance=tolerance,
             progress=progress,
+            **edit,
+            **winding,
+            **part,
         )
         progress("write")
         report = write_redesign(
@@ -127,19 +124,24 @@ def redesign(
             render=render,
             command=shlex.join(["meshwind", *sys.argv[1:]]),
             seconds={"redesign": perf_counter() - begin},
+            options={"mesh": mesh, "out": target, "freeze": freeze, "units": units, "render": render}
+            | edit
+            | winding
+            | part,
         )
-    tell(summary(edited, report, target, units), report | {"folder": str(target)}, as_json, quiet)
+    tell([*described(report), f"files     {target}"], report | {"folder": str(target)}, as_json, quiet)
     return 0 if edited.windable else UNSETTLED
 
 
-def summary(edited: "Redesign", report: dict[str, Any], folder: Path, units: str) -> list[str]:
-    """Lines for the terminal."""
+def described(report: dict[str, Any]) -> list[str]:
+    """A redesign's report in a few lines; raises LookupError or TypeError where a figure is missing."""
     from meshwind.output.words import quantity
 
-    told, wound = report["redesign"], report["wound"]
+    part, told, wound = report["mesh"], report["redesign"], report["wound"]
+    units = "" if part["units"] == "unknown" else part["units"]
     moved, volume = told["displacement"], told["volume"]
     lines = [
-        f"part      {edited.part.name}: {len(edited.part.vertices)} vertices, {len(edited.part.faces)} faces",
+        f"part      {part['name']}: {part['vertices']} vertices, {part['faces']} faces",
         f"winding   {report['winding']['revolutions']:.4g} revolutions, {report['winding']['why']}; "
         f"{report['winding']['paths_per_family']} paths a family",
     ]
@@ -165,6 +167,5 @@ def summary(edited: "Redesign", report: dict[str, Any], folder: Path, units: str
             f"warning   {loose} paths do not hold on the edited part: {wound['after']['not_converged'][0]['why']}"
         )
     lines += [f"note      {note}" for note in report["notes"]]
-    lines.append(f"{'outcome' if edited.windable else 'warning'}   {told['advice']}")
-    lines.append(f"files     {folder}")
+    lines.append(f"{'outcome' if told['windable'] else 'warning'}   {told['advice']}")
     return lines

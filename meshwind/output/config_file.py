@@ -1,4 +1,4 @@
-"""meshwind.toml: the options of a run, which `meshwind wind --config` repeats."""
+"""meshwind.toml: the options of a run, which `--config` repeats."""
 
 import json
 import os
@@ -10,10 +10,10 @@ _ON = {"particles": "auto"}
 """What stands for an option that was left to the run; any other has no line of its own."""
 
 
-def write_config(path: Path, out: Path, options: Mapping[str, object], version: str) -> None:
+def write_config(path: Path, out: Path, options: Mapping[str, object], version: str, command: str = "wind") -> None:
     """Write options by their long names; paths (Path) are told from the folder `out`, where the file comes to lie."""
     lines = [
-        f"# meshwind {version}: repeat this run with `meshwind wind --config {NAME}`",
+        f"# meshwind {version}: repeat this run with `meshwind {command} --config {NAME}`",
         "# paths are relative to this file",
     ]
     for name, value in options.items():
