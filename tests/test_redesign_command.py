@@ -14,7 +14,7 @@ import meshwind as mw
 from meshwind.editing.region import parse
 
 DATA = Path(__file__).parents[1] / "data"
-FILES = {"edited.ply", "edited.vtu", "report.json"}
+FILES = {"edited.ply", "edited.vtu", "report.json", "meshwind.toml"}
 
 
 def meshwind(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
