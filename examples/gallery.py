@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from PIL import Image
+
 import meshwind as mw
 
 DATA = Path(__file__).parents[1] / "data"
@@ -65,7 +67,7 @@ def wound(name: str, out: Path) -> None:
             render=False,
         )
         mw.render(place, only=[shown.picture], page=PAGE)
-        (out / f"{name}.png").write_bytes((place / f"{shown.picture}.png").read_bytes())
+        small(place / f"{shown.picture}.png", out / f"{name}.png")
 
 
 def redesigned(name: str, out: Path) -> None:
@@ -74,7 +76,13 @@ def redesigned(name: str, out: Path) -> None:
     with TemporaryDirectory() as folder:
         mw.write_redesign(edited, folder, units="mm")
         mw.render(folder, only=["redesign"], page=PAGE)
-        (out / f"{name}.png").write_bytes((Path(folder) / "redesign.png").read_bytes())
+        small(Path(folder) / "redesign.png", out / f"{name}.png")
+
+
+def small(picture: Path, out: Path) -> None:
+    """A picture in 128 colours, a quarter as large."""
+    with Image.open(picture) as image:
+        image.convert("RGB").quantize(128, dither=Image.Dither.NONE).save(out, optimize=True)
 
 
 if __name__ == "__main__":
