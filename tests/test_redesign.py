@@ -165,6 +165,12 @@ def test_symmetry_is_kept_to_round_off(order: int) -> None:
     assert np.abs(net - surface.control_points).max() > 0.05
 
 
+@pytest.mark.parametrize("order", [8, 16])
+def test_a_symmetry_of_high_order_costs_no_rounds(order: int) -> None:
+    found = edit(hyperboloid(), revolutions=0.05, paths=6, particles=101, symmetry=order)
+    assert found.outcome is Outcome.WINDABLE and len(found.rounds) <= 3
+
+
 def test_a_part_that_presses_everywhere_is_left_alone() -> None:
     surface = shapes.ellipsoid(1.0, 1.0, 1.5, 0.8, 2.3, (24, 24))
     found = edit(surface, revolutions=0.2, paths=4, particles=61)
