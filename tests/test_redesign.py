@@ -73,6 +73,13 @@ def test_the_certificate_sees_a_wrong_answer() -> None:
     assert certified(P, A, low, high, np.array([2.0, 0.0]), np.array([-2.0]), 0).dual == pytest.approx(2.0)
 
 
+def test_without_an_active_row_nothing_moves_and_nothing_is_printed(capfd: pytest.CaptureFixture[str]) -> None:
+    P, A = sparse.csc_array(np.eye(2)), sparse.csc_array(np.array([[1.0, 0.0]]))
+    found = minimise(P, A, np.array([-1.0]), np.array([np.inf]))
+    assert found.solved and (found.x == 0.0).all() and (found.multipliers == 0.0).all()
+    assert capfd.readouterr() == ("", "")
+
+
 def test_one_row_has_the_answer_in_closed_form() -> None:
     # min |c|^2 / 2 + t^2 / 2 with w.c + sqrt(d) t >= b: c = w b / (w.w + d), along one direction, by the weights
     surface = hyperboloid()
