@@ -73,6 +73,13 @@ def test_the_certificate_sees_a_wrong_answer() -> None:
     assert certified(P, A, low, high, np.array([2.0, 0.0]), np.array([-2.0]), 0).dual == pytest.approx(2.0)
 
 
+def test_without_an_active_row_nothing_moves_and_nothing_is_printed(capfd: pytest.CaptureFixture[str]) -> None:
+    P, A = sparse.csc_array(np.eye(2)), sparse.csc_array(np.array([[1.0, 0.0]]))
+    found = minimise(P, A, np.array([-1.0]), np.array([np.inf]))
+    assert found.solved and (found.x == 0.0).all() and (found.multipliers == 0.0).all()
+    assert capfd.readouterr() == ("", "")
+
+
 def test_one_row_has_the_answer_in_closed_form() -> None:
     # min |c|^2 / 2 + t^2 / 2 with w.c + sqrt(d) t >= b: c = w b / (w.w + d), along one direction, by the weights
     surface = hyperboloid()
@@ -163,6 +170,12 @@ def test_symmetry_is_kept_to_round_off(order: int) -> None:
     turned = net @ np.array([[np.cos(turn), np.sin(turn), 0], [-np.sin(turn), np.cos(turn), 0], [0, 0, 1.0]])
     assert np.abs(np.roll(net, -(16 // order), axis=0) - turned).max() < 1e-12
     assert np.abs(net - surface.control_points).max() > 0.05
+
+
+@pytest.mark.parametrize("order", [8, 16])
+def test_a_symmetry_of_high_order_costs_no_rounds(order: int) -> None:
+    found = edit(hyperboloid(), revolutions=0.05, paths=6, particles=101, symmetry=order)
+    assert found.outcome is Outcome.WINDABLE and len(found.rounds) <= 3
 
 
 def test_a_part_that_presses_everywhere_is_left_alone() -> None:

@@ -161,6 +161,7 @@ def _worst(paths: Paths, threshold: float) -> tuple[float, float]:
 
 def _figures(before: Paths, after: Paths, found: Step, now: Surface, first: Surface, limit: float) -> Round:
     return Round(
+        threshold=limit,
         bridged_before=_bridged(before, limit),
         bridged_after=_bridged(after, limit),
         gap_before=float(before.gap.max()),

@@ -41,6 +41,8 @@ def minimise(P: sparse.csc_array, A: sparse.csc_array, low: Floats, high: Floats
 
     Solved as closely as it takes for the certificate to hold; where it never does, the best answer found.
     """
+    if (low <= 0.0).all() and (high >= 0.0).all():  # no row is active at the minimum; OSQP would print that it is so
+        return certified(P, A, low, high, np.zeros(P.shape[0]), np.zeros(A.shape[0]), 0)
     solver = osqp.OSQP()
     solver.setup(
         sparse.csc_matrix(sparse.triu(P)), np.zeros(P.shape[0]), sparse.csc_matrix(A), low, high, verbose=False,

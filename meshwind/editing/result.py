@@ -39,12 +39,13 @@ _ADVICE = {
 class Round:
     """One round: bridged share of the particles before and after, largest gap before and after, and the program.
 
-    Gaps are in the mesh's units; a particle bridges where its gap is above the threshold.  change is the largest
-    displacement of a control point so far; objective the energy of this round's change, in the mesh's units squared;
-    shortfall how far the edit, were the fibre to stay, leaves the surface below it; primal and dual are the KKT
-    residuals of the scaled program.
+    Gaps are in the mesh's units; a particle bridges where its gap is above this round's threshold.  change is the
+    largest displacement of a control point so far; objective the energy of this round's change, in the mesh's units
+    squared; shortfall how far the edit, were the fibre to stay, leaves the surface below it; primal and dual are the
+    KKT residuals of the scaled program.
     """
 
+    threshold: float
     bridged_before: float
     bridged_after: float
     gap_before: float

@@ -111,7 +111,8 @@ def assembled(
     rows = sparse.vstack([reach.matrix[kept], press.matrix[pressing]]).tocsr()
     least = np.concatenate([reach.least[kept] + margin, press.least[pressing]])
     free = sparse.csr_array(rows @ moves)
-    length, own = _lengths(rows), _lengths(free)
+    may_move = np.diff(moves.indptr) > 0  # symmetry shortens a row as well, but does not keep it from being met
+    length, own = _lengths(rows), _lengths(rows * may_move)
     first = int(kept.sum())
     sensible = own > np.where(np.arange(len(own)) < first, *OWN_SAY) * length
     free, least, length = free[sensible], least[sensible] / length[sensible], length[sensible]

@@ -101,6 +101,7 @@ def redesign_report(
 
 def _round(each: Round) -> dict[str, Any]:
     return {
+        "threshold": each.threshold,
         "bridged": {"before": each.bridged_before, "after": each.bridged_after},
         "max_gap": {"before": each.gap_before, "after": each.gap_after},
         "largest_move": each.change,
