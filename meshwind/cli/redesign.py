@@ -86,7 +86,7 @@ def redesign(
     nothing bridges then is it said to be windable.
 
     Exit status: 0 nothing bridges; 1 the summary could not be printed; 2 bad input or usage; 3 some fibres still
-    bridge (the report says how much, and what would help).
+    bridge, or slide off (the report says which, and what would help).
     """
     # the numerical libraries are imported late: --help and usage errors must not wait for them
     from meshwind.edited import write_redesign
@@ -130,7 +130,7 @@ def redesign(
             | part,
         )
     tell([*described(report), f"files     {target}"], report | {"folder": str(target)}, as_json, quiet)
-    return 0 if edited.windable else UNSETTLED
+    return 0 if edited.windable and edited.settled else UNSETTLED
 
 
 def described(report: dict[str, Any]) -> list[str]:
