@@ -1,6 +1,7 @@
 """The `meshwind` command: subcommands, and one line for whatever a user can mend."""
 
 import errno
+import json
 import os
 import sys
 from contextlib import suppress
@@ -96,8 +97,16 @@ def main() -> None:
 
 def _fail(line: str, code: int = BAD_INPUT) -> NoReturn:
     with suppress(OSError):
-        print(f"meshwind: error: {' '.join(line.split())}", file=sys.stderr, flush=True)  # noqa: T201
+        print(_error(" ".join(line.split()), code), file=sys.stderr, flush=True)  # noqa: T201
     sys.exit(code)
+
+
+def _error(line: str, code: int) -> str:
+    """An error for a person or, where the command line asks for JSON, for a script."""
+    options = sys.argv[1 : sys.argv.index("--")] if "--" in sys.argv else sys.argv[1:]
+    if "--json" in options:
+        return json.dumps({"error": line, "exit_status": code})
+    return f"meshwind: error: {line}"
 
 
 def _give_up_printing(error: OSError) -> NoReturn:

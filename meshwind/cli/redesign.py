@@ -101,7 +101,7 @@ def redesign(
     target = Path(out if out is not None else f"{mesh.stem}-redesigned")
     folder.prepare(target, overwrite)
     begin = perf_counter()
-    with display(quiet) as progress:
+    with display(quiet or as_json) as progress:
         edited = edit_mesh(
             mesh,
             revolutions=turns(revolutions),

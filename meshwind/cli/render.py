@@ -96,7 +96,7 @@ def render(
     kinds, names = _names(animate), _names(only)
     width, height = parse_size(size) if size else ((960, 720) if kinds and not names else (1600, 1200))
     page = Page(width, height, transparent, not parallel, scale_bar, view.strip().lower())
-    with counter("drawing", quiet) as tell:
+    with counter("drawing", quiet or as_json) as tell:
         done = draw(folder, names, page, kinds, seconds, out, tell)
     tell_files(done.files, (), as_json, quiet)
     return 0

@@ -113,7 +113,7 @@ def wind(
 
     del config  # its values have become those of the others
     folder = out if out is not None else f"{mesh.stem}-wound"
-    with display(quiet) as progress:
+    with display(quiet or as_json) as progress:
         result = pipeline.wind(
             mesh,
             paths=paths,

@@ -98,7 +98,7 @@ def _reader(file: Path) -> _Read:
     advice = "give the path of a triangle mesh (STL, OBJ, PLY, ...)"
     try:
         if file.is_dir():
-            raise BadInputError(f"{file.name}: is a folder; {advice}")
+            raise BadInputError(f"{file.name or file}: is a folder; {advice}")
         if not file.exists():
             raise BadInputError(f"{file.name}: file not found; {_near(file) or advice}")
         if file.stat().st_size == 0:
