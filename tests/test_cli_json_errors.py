@@ -1,0 +1,29 @@
+"""With --json an error is JSON as well, in the words that a person is told."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+
+def meshwind(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "meshwind", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, cwd=folder)
+
+
+@pytest.mark.parametrize("arguments", [
+    ["wind"], ["wind", "none.obj"], ["wind", "part.obj"], ["wind", "part.obj", "--paths", "2.5"], ["check", "."],
+    ["wind", "part.obj", "--out", "part.obj"], ["render", "."], ["export", "."], ["info", "none.obj"],
+    ["redesign", "none.obj"],
+])  # fmt: skip
+def test_an_error_is_told_to_scripts_in_the_same_words(arguments: list[str], tmp_path: Path) -> None:
+    (tmp_path / "part.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    plain, done = meshwind(tmp_path, *arguments), meshwind(tmp_path, *arguments, "--json")
+    assert plain.returncode == done.returncode == 2
+    assert done.stdout == ""
+    told = json.loads(done.stderr)
+    assert told["exit_status"] == 2
+    assert plain.stderr.splitlines()[-1] == f"meshwind: error: {told['error']}"
+    assert [file.name for file in tmp_path.iterdir()] == ["part.obj"]
