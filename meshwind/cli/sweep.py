@@ -8,6 +8,7 @@ import typer
 
 from meshwind.cli.arguments import AsJson, Quiet
 from meshwind.cli.display import counter
+from meshwind.cli.help import FILES
 from meshwind.cli.outcome import tell
 from meshwind.cli.wind import UNSETTLED
 
@@ -23,18 +24,31 @@ EXAMPLES = """
     # the same on a Dask cluster
     meshwind sweep study.toml --scheduler tcp://host:8786
 """
+_WHERE = "Where it runs"
 
 
 def sweep(
     study: Annotated[
         Path, typer.Argument(metavar="STUDY", help="TOML file: options of wind, with lists to sweep over.")
     ],
-    out: Annotated[Path | None, typer.Option(help="Folder for the results.  [default: STUDY's name + -swept]")] = None,
-    processes: Annotated[int | None, typer.Option(help="Processes on this machine.  [default: one a core]")] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Dask scheduler that takes the cases, as in tcp://host:8786.")
+    processes: Annotated[
+        int | None, typer.Option(help="Processes on this machine.  [default: one a core]", rich_help_panel=_WHERE)
     ] = None,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Do anew what DIR holds already.")] = False,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Dask scheduler that takes the cases, as in tcp://host:8786.",
+            rich_help_panel=_WHERE,
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for the results.  [default: STUDY's name + -swept]", rich_help_panel=FILES),
+    ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Do anew what DIR holds already.", rich_help_panel=FILES)
+    ] = False,
     as_json: AsJson = False,
     quiet: Quiet = False,
 ) -> int:
@@ -45,7 +59,6 @@ def sweep(
 
     Exit status: 0 done; 1 the summary could not be printed; 2 bad input or usage; 3 done, but some cases failed, or
     have paths that did not come to rest (the table says which and why).
-
     """
     # the numerical libraries are imported late: --help and usage errors must not wait for them
     from meshwind.sweep import sweep as run
