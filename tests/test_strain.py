@@ -153,7 +153,7 @@ def test_what_is_no_number_is_refused_in_one_line(name: str, bad: float) -> None
 def test_a_surface_that_is_a_point_or_a_line_gives_no_nan() -> None:
     ring: Floats = np.array(shapes.cylinder(1.0, 2.0, (16, 8)).control_points)
     with pytest.raises(mw.BadInputError, match="in one place"):
-        Surface(0.0 * ring)
+        mw.solve(Surface(0.0 * ring), *ONE, particles=9)
     for factors in ([0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]):
         paths = mw.solve(Surface(ring * factors), *ONE, particles=9)
         assert_finite(paths, "paths")

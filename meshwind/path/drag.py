@@ -17,7 +17,16 @@ from meshwind.path.batch import Batch, Setting, fresh
 from meshwind.path.friction import Friction, friction_of
 from meshwind.path.ladder import failing
 from meshwind.path.paths import Paths
-from meshwind.path.solve import ITERATIONS, TOLERANCE, as_paths, check_count, check_curves, check_share, straight
+from meshwind.path.solve import (
+    ITERATIONS,
+    TOLERANCE,
+    as_paths,
+    check_count,
+    check_curves,
+    check_extent,
+    check_share,
+    straight,
+)
 from meshwind.surface.surface import Surface
 
 LONGEST_STEP = 0.02
@@ -48,6 +57,7 @@ def drag(
     if len(first) != len(last) or not len(first):
         raise BadInputError(f"{len(first)} places of the start but {len(last)} of the end; give one of each a frame")
     check_count(particles, "particles", 3)
+    check_extent(surface)
     check_count(iterations, "iterations", 1)
     check_share(tolerance, "tolerance")
     setting = Setting(surface, friction_of(surface, friction), bridging, tolerance, iterations)

@@ -20,6 +20,12 @@ ACCURACY = 1e-5
 """Error of a length, relative, for which particles are chosen where their number is left open."""
 
 
+def check_extent(surface: Surface) -> None:
+    """Raise BadInputError where all of a surface is one point."""
+    if not surface.size > 0.0:
+        raise BadInputError("all control points lie in one place; a surface needs some extent")
+
+
 def check_count(value: object, name: str, least: int) -> None:
     """Raise BadInputError where a value is no whole number from `least` up."""
     if not isinstance(value, int | np.integer) or value < least:
@@ -72,6 +78,7 @@ def solve(
     """
     if particles is not None:
         check_count(particles, "particles", 3)
+    check_extent(surface)
     check_count(iterations, "iterations", 1)
     check_share(tolerance, "tolerance")
     check_share(accuracy, "accuracy")

@@ -60,8 +60,6 @@ class Surface(Kept):
         points = floats(self.control_points, "control_points", -1, -1, 3)
         if min(points.shape[:2]) < DEGREE + 1:
             raise BadInputError(f"a bicubic surface needs at least 4 x 4 control points, got {points.shape[:2]}")
-        if not np.ptp(points.reshape(-1, 3), axis=0).any():
-            raise BadInputError("all control points lie in one place; a surface needs some extent")
         object.__setattr__(self, "control_points", frozen(points))
 
     @property
