@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from meshwind.editing.redesign import Redesign as Redesign
     from meshwind.editing.redesign import redesign as redesign
     from meshwind.errors import BadInputError as BadInputError
+    from meshwind.export.cad_surface import read_cad as read_cad
     from meshwind.layup import Families as Families
     from meshwind.layup import Layup as Layup
     from meshwind.layup import assess as assess
@@ -67,6 +68,7 @@ _HOME = {
     "Friction": "path.friction", "friction_from": "path.friction",
     "Families": "layup", "Layup": "layup", "families": "layup", "assess": "layup",
     "choose_revolutions": "layup", "read_pins": "layup", "space_out": "layup", "windability": "layup",
+    "read_cad": "export.cad_surface",
     "Redesign": "editing.redesign", "redesign": "editing.redesign", "write_redesign": "edited",
     "Result": "pipeline", "wind": "pipeline",
     "render": "pictures.render", "Page": "pictures.page", "draw_redesign": "pictures.redesign_scene",

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from export_results import plain_results, waisted_results
 
+from meshwind import read_cad
 from meshwind.cast import Floats
 from meshwind.errors import BadInputError
 from meshwind.export import opencascade
-from meshwind.export.cad_surface import read_cad
 from meshwind.export.opencascade import occ
 from meshwind.export.results import Results
 from meshwind.export.splines import clamped_surface
