@@ -15,6 +15,7 @@ ORDER = [
     "units",
     "version",
     "spelled",
+    "toml",
     "mandrel",
     "chart",
     "surface",

@@ -74,7 +74,7 @@ def test_killed_at_random_times_real_results_are_whole(tmp_path: Path) -> None:
             assert told in whole if "report.json" in files else any(within(told, held) for held in whole)
         assert not sight["then"] or "report.json" in sight["then"]
     assert sum(sight["killed"] for sight in sights) > MOMENTS // 2
-    assert len({json.dumps(sight["then"]) for sight in sights}) > 2
+    assert len({json.dumps(sight["then"]) for sight in sights}) > 1
 
 
 def test_a_run_that_still_writes_is_left_alone(tmp_path: Path) -> None:

@@ -1,7 +1,5 @@
 """`--config`: options from a TOML file, by their long names; the command line outranks them."""
 
-import difflib
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any, get_args, get_type_hints
 
@@ -9,6 +7,7 @@ import typer
 
 from meshwind.cli.help import FILES
 from meshwind.errors import BadInputError
+from meshwind.toml import nearest, read_toml
 
 _PATHS = "mesh", "out", "pins"
 """Options that hold a path: relative to the file that they stand in."""
@@ -65,9 +64,9 @@ def read_config(file: Path, options: Options) -> dict[str, Any]:
     Raises BadInputError where the file cannot be read, and for a key or a value that no option has.
     """
     values: dict[str, Any] = {}
-    for key, value in _held(file).items():
+    for key, value in read_toml(file, "config").items():
         if key not in options:
-            raise BadInputError(f"{file}: {key!r} is no option; {_nearest(key, list(options))}")
+            raise BadInputError(f"{file}: {key!r} is no option; {nearest(key, options)}")
         name, allowed = options[key]
         if type(value) not in allowed:
             wanted = " or ".join(_WORDS[kind] for kind in allowed if kind is not int or allowed == (int,))
@@ -76,23 +75,6 @@ def read_config(file: Path, options: Options) -> dict[str, Any]:
             value = str(file.parent / value)
         values[name] = value if isinstance(value, bool) else str(value)
     return values
-
-
-def _held(file: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(file.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise BadInputError(f"cannot read the config {file}: {error.strerror or error}; give a TOML file") from error
-    except UnicodeDecodeError as error:
-        raise BadInputError(f"the config {file} is no text in UTF-8; give a TOML file") from error
-    except tomllib.TOMLDecodeError as error:
-        raise BadInputError(f"the config {file} is not valid TOML: {error}; write option = value") from error
-
-
-def _nearest(key: str, known: list[str]) -> str:
-    """The name that was meant, or all there are."""
-    near = difflib.get_close_matches(key.lower().replace("_", "-").removeprefix("no-"), known, 1)
-    return f"did you mean {near[0]!r}?" if near else f"give {', '.join(known)}"
 
 
 def _told(value: object) -> str:

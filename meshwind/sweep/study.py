@@ -1,11 +1,9 @@
 """A study in TOML: options of `wind` with lists in the place of values, and the cases that they make."""
 
-import difflib
 import hashlib
 import itertools
 import json
 import re
-import tomllib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
@@ -14,6 +12,7 @@ from typing import Any
 from meshwind.errors import BadInputError
 from meshwind.options import Options
 from meshwind.spelled import count, turns
+from meshwind.toml import nearest, read_toml
 from meshwind.version import version
 
 MOST = 100_000
@@ -69,7 +68,7 @@ def read_study(file: str | Path) -> Study:
     Raises BadInputError, in one line, for whatever is wrong with any case.
     """
     path = Path(file)
-    told = _read(path)
+    told = read_toml(path, "study")
     tables = told.pop("case", None)
     if tables is not None and not (isinstance(tables, list) and all(isinstance(table, dict) for table in tables)):
         raise BadInputError(f"{path}: case is no table; write each list of values under a line [[case]]")
@@ -84,26 +83,13 @@ def read_study(file: str | Path) -> Study:
     return Study(tuple(cases.values()), _swept(list(cases.values())))
 
 
-def _read(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise BadInputError(f"cannot read the study {path}: {error.strerror or error}; give a TOML file") from error
-    except UnicodeDecodeError as error:
-        raise BadInputError(f"the study {path} is no text in UTF-8; give a TOML file") from error
-    except tomllib.TOMLDecodeError as error:
-        raise BadInputError(f"the study {path} is not valid TOML: {error}; write option = value or a list") from error
-
-
 def _combined(path: Path, told: Mapping[str, Any]) -> list[dict[str, Any]]:
     """All combinations of the lists."""
     if "mesh" not in told:
         raise BadInputError(f"{path}: mesh is missing; give a file or a list of files")
     for key in told:
         if key not in (*_NAMES, "mesh", "render"):
-            near = difflib.get_close_matches(key.lower().replace("_", "-"), (*_NAMES, "mesh", "render", "case"), 1)
-            known = f"did you mean {near[0]!r}?" if near else f"give mesh, render, {', '.join(_NAMES)}"
-            raise BadInputError(f"{path}: {key!r} is no option; {known}")
+            raise BadInputError(f"{path}: {key!r} is no option; {nearest(key, ('mesh', 'render', 'case', *_NAMES))}")
     lists = [value if isinstance(value, list) else [value] for value in told.values()]
     many = 1
     for values in lists:
