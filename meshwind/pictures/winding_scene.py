@@ -13,7 +13,8 @@ from meshwind.pictures.subject import Subject
 
 def winding_scene(of: Subject) -> dict[str, Any]:
     """The part, the fibres, the bridges, the view and the words."""
-    title = f"{of.name}: {_families(of.paths)} fibres, {_turns(of):.4g} revolutions"
+    turns = f"{_turns(of):.4g}"
+    title = f"{of.name}: {_families(of.paths)} fibres, {turns} revolution{'s' * (turns != '1')}"
     seen = of.framed("winding", title, _subtitle(of))
     return seen | {"max_gap": of.figures.max_gap} | fibres(of) | _bridges(of)
 
