@@ -94,6 +94,7 @@ def draw(rows: list[dict[str, Any]], folder: Path) -> dict[str, tuple[float, flo
         log_axes(above, words, "time [s]")
         log_axes(below, words, "peak memory [GB]")
         for axes in (above, below):
+            axes.set_ylim(top=4.0 * axes.get_ylim()[1])  # room for the legend
             axes.legend()
     figure.suptitle(
         "meshwind wind, from the file to all files and pictures; exponents of the upper half of the points\n"
