@@ -64,7 +64,7 @@ def sweep(
     from meshwind.sweep import sweep as run
 
     folder = out if out is not None else Path(f"{study.stem}-swept")
-    with counter("cases", quiet) as progress:
+    with counter("cases", quiet or as_json) as progress:
         swept = run(study, folder, processes=processes, scheduler=scheduler, overwrite=overwrite, tell=progress)
     how = Counter(row["status"] for row in swept.rows)
     reasons = Counter(row["reason"] for row in swept.rows if row["reason"])
