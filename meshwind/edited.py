@@ -3,12 +3,12 @@
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
-from time import perf_counter
 from typing import Any
 
 from meshwind.editing.redesign import Redesign
 from meshwind.export.edited_files import redesign_report, write_edited
 from meshwind.layup.layup import assess
+from meshwind.notes import Note
 from meshwind.output import folder
 from meshwind.output.config_file import NAME as CONFIG
 from meshwind.output.config_file import write_config
@@ -18,6 +18,7 @@ from meshwind.pictures.page import Page
 from meshwind.pictures.redesign_scene import redesign_scene
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
+from meshwind.pipeline import Clock
 from meshwind.version import version
 
 
@@ -40,16 +41,15 @@ def write_redesign(
     Returns the report, with a note where there are no pictures for want of an OpenGL driver.  Raises BadInputError
     where `out` cannot be written or, without `overwrite`, holds results.
     """
-    spent, notes = dict(seconds or {}), list[str]()
+    clock, notes = Clock(None), list[str]()
     with folder.writing(Path(out), overwrite) as staging:
-        begin = perf_counter()
-        write_edited(staging, edited, units)
-        spent["write"] = perf_counter() - begin
+        with clock.stage("write"):
+            write_edited(staging, edited, units)
         if render:
-            begin = perf_counter()
-            missing = driver.paint(_pictures(staging, edited, units), Page())
-            notes += [missing] if missing else []
-            spent["render"] = perf_counter() - begin
+            with clock.stage("render"):
+                missing = driver.paint(_pictures(staging, edited, units), Page())
+            notes += [str(Note(missing, warning=True))] if missing else []
+        spent = dict(seconds or {}) | clock.seconds
         report = redesign_report(edited, command=command, units=units, seconds=spent) | {"notes": notes}
         if options is not None:
             write_config(staging / CONFIG, Path(out), options, version(), "redesign")

@@ -7,7 +7,7 @@ from numbers import Integral, Real
 from meshwind.errors import BadInputError
 from meshwind.layup.revolutions import STEPS_A_TURN
 from meshwind.mandrel.ends import parse
-from meshwind.spelled import AUTO
+from meshwind.spelled import AUTO, shortened
 from meshwind.units import check_units
 
 FIELD = "field:"
@@ -116,7 +116,7 @@ def _number(value: object, name: str, low: float, high: float | None = None, abo
 def _told(value: object) -> str:
     """The value as a few characters of text."""
     text = f"{float(value):g}" if isinstance(value, Real) and not isinstance(value, bool) else repr(value)
-    return text if len(text) <= 40 else text[:37] + "..."
+    return shortened(text)
 
 
 def _check_memory(paths: int, particles: int, revolutions: float) -> None:

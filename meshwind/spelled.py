@@ -1,10 +1,15 @@
-"""Numbers as people spell them: a fraction of whole numbers, or auto for one that is to be chosen."""
+"""What people spell: fractions of whole numbers, auto for one that is to be chosen, and texts that are too long."""
 
 from fractions import Fraction
 
 from meshwind.errors import BadInputError
 
 AUTO = "auto"
+
+
+def shortened(text: str) -> str:
+    """At most 40 characters of a text."""
+    return text if len(text) <= 40 else text[:37] + "..."
 
 
 def turns(text: str) -> float | str:

@@ -1,6 +1,10 @@
 """Units of length: their names, their size, and what a file says of them."""
 
 from meshwind.errors import BadInputError
+from meshwind.spelled import shortened
+
+UNKNOWN = "unknown"
+"""What a report says where the unit is not known."""
 
 MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "in": 25.4, "inch": 25.4, "ft": 304.8}
 """Length of a unit in mm."""
@@ -9,8 +13,9 @@ MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "in": 25.4, "inch
 def check_units(units: object) -> None:
     """Raise BadInputError for what is neither the name of a known unit nor "", which stands for one not known."""
     if not isinstance(units, str) or (units and units.lower() not in MILLIMETRES):
-        told = repr(units) if len(repr(units)) <= 40 else repr(units)[:37] + "..."
-        raise BadInputError(f'units is {told}; give {", ".join(MILLIMETRES)}, or "" where the unit is not known')
+        raise BadInputError(
+            f'units is {shortened(repr(units))}; give {", ".join(MILLIMETRES)}, or "" where the unit is not known'
+        )
 
 
 def millimetres(units: str) -> float:
@@ -22,6 +27,11 @@ def millimetres(units: str) -> float:
             f"the run's unit {units!r} has no known length; wind with --units {' or '.join(sorted(MILLIMETRES))}"
         )
     return MILLIMETRES[units.lower()]
+
+
+def unit_told(told: str) -> str:
+    """The unit that a report tells, "" where it is not known."""
+    return "" if told == UNKNOWN else told
 
 
 def lengths_in(units: str) -> str:

@@ -11,7 +11,7 @@ from test_notes import horned
 
 import meshwind as mw
 from meshwind.cast import Floats, frozen
-from meshwind.cli.summary import summary
+from meshwind.cli.summary import described
 from meshwind.layup.layup import assess
 from meshwind.mandrel import mesh_from
 from meshwind.mandrel.ends import place
@@ -189,7 +189,7 @@ def test_a_run_that_warns_of_the_fit_draws_it_and_says_so(tmp_path: Path) -> Non
     drawn = (tmp_path / FIT_ERROR).is_file()
     assert drawn == (tmp_path / "winding.png").is_file()
     assert drawn != any(note.text == driver.NO_DRIVER for note in result.notes)
-    (line,) = [line for line in summary(result, tmp_path).splitlines() if "does not resolve" in line]
+    (line,) = [line for line in described(result.report()) if "does not resolve" in line]
     assert line.endswith("; see fit_error.png") == drawn
     assert ("see fit_error.png" in (tmp_path / "report.json").read_text()) == drawn
     worst = apart(result.surface, result.chart.annulus).places[0]

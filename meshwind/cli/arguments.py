@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from meshwind.cli.help import FILES, PART, SURFACE, TOLD, one_of
+from meshwind.cli.help import FIBRES, FILES, PART, SURFACE, TOLD, one_of
 from meshwind.cli.names import ENDS, UNITS
 
 MeshFile = Annotated[
@@ -37,6 +37,16 @@ Units = Annotated[
         help="Unit of the mesh: mm, cm, m, um, in, ft; nothing is converted.",
         autocompletion=one_of(*UNITS),
         rich_help_panel=PART,
+    ),
+]
+Paths = Annotated[int, typer.Option(help="Paths a family.", rich_help_panel=FIBRES)]
+Turns = Annotated[
+    str,
+    typer.Option(
+        metavar="TURNS",
+        help="Turns of a path from end to end, as in 0.5 or 5/12, or auto: those that hold and bridge least.",
+        autocompletion=one_of("auto"),
+        rich_help_panel=FIBRES,
     ),
 ]
 Tolerance = Annotated[

@@ -7,6 +7,7 @@ import typer
 
 from meshwind.cli.help import FILES
 from meshwind.errors import BadInputError
+from meshwind.spelled import shortened
 from meshwind.toml import nearest, read_toml
 
 _PATHS = "mesh", "out", "pins"
@@ -70,13 +71,8 @@ def read_config(file: Path, options: Options) -> dict[str, Any]:
         name, allowed = options[key]
         if type(value) not in allowed:
             wanted = " or ".join(_WORDS[kind] for kind in allowed if kind is not int or allowed == (int,))
-            raise BadInputError(f"{file}: {key} is {_told(value)}; give {wanted}")
+            raise BadInputError(f"{file}: {key} is {shortened(repr(value))}; give {wanted}")
         if key in _PATHS and value.strip():
             value = str(file.parent / value)
         values[name] = value if isinstance(value, bool) else str(value)
     return values
-
-
-def _told(value: object) -> str:
-    text = repr(value)
-    return text if len(text) <= 40 else text[:37] + "..."

@@ -8,14 +8,28 @@ from typing import Annotated, Any
 
 import typer
 
-from meshwind.cli.arguments import AsJson, Component, Drawn, Ends, MeshFile, Opening, Overwrite, Quiet, Tolerance, Units
+from meshwind.cli.arguments import (
+    AsJson,
+    Component,
+    Drawn,
+    Ends,
+    MeshFile,
+    Opening,
+    Overwrite,
+    Paths,
+    Quiet,
+    Tolerance,
+    Turns,
+    Units,
+)
 from meshwind.cli.config import Config
 from meshwind.cli.display import display
-from meshwind.cli.help import FIBRES, FILES, one_of
+from meshwind.cli.help import FIBRES, FILES
 from meshwind.cli.outcome import tell
+from meshwind.cli.summary import note_line
 from meshwind.cli.wind import UNSETTLED
 from meshwind.spelled import turns
-from meshwind.units import check_units
+from meshwind.units import check_units, unit_told
 
 EXAMPLES = """
     # the nearest part that can be wound, into part-redesigned/
@@ -58,16 +72,8 @@ def redesign(
         ),
     ] = None,
     rounds: Annotated[int, typer.Option(help="Edit and wind again at most so often.", rich_help_panel=_EDIT)] = 10,
-    paths: Annotated[int, typer.Option(help="Paths a family.", rich_help_panel=FIBRES)] = 12,
-    revolutions: Annotated[
-        str,
-        typer.Option(
-            metavar="TURNS",
-            help="Turns of a path from end to end, as in 0.5 or 5/12, or auto.",
-            autocompletion=one_of("auto"),
-            rich_help_panel=FIBRES,
-        ),
-    ] = "auto",
+    paths: Paths = 12,
+    revolutions: Turns = "auto",
     particles: Annotated[int, typer.Option(help="Particles a path.", rich_help_panel=FIBRES)] = 401,
     tolerance: Tolerance = 1e-5,
     out: Annotated[
@@ -138,7 +144,7 @@ def described(report: dict[str, Any]) -> list[str]:
     from meshwind.output.words import quantity
 
     part, told, wound = report["mesh"], report["redesign"], report["wound"]
-    units = "" if part["units"] == "unknown" else part["units"]
+    units = unit_told(part["units"])
     moved, volume = told["displacement"], told["volume"]
     lines = [
         f"part      {part['name']}: {part['vertices']} vertices, {part['faces']} faces",
@@ -161,11 +167,9 @@ def described(report: dict[str, Any]) -> list[str]:
     ]
     if told["faces_turned_over"]:
         lines.append(f"warning   the edit turned {told['faces_turned_over']} faces over; give a --bound")
-    loose = len(wound["after"]["not_converged"])
+    loose = wound["after"]["not_converged"]
     if loose:
-        lines.append(
-            f"warning   {loose} paths do not hold on the edited part: {wound['after']['not_converged'][0]['why']}"
-        )
-    lines += [f"note      {note}" for note in report["notes"]]
+        lines.append(f"warning   {len(loose)} paths do not hold on the edited part: {loose[0]['why']}")
+    lines += [note_line(note) for note in report["notes"]]
     lines.append(f"{'outcome' if told['windable'] else 'warning'}   {told['advice']}")
     return lines

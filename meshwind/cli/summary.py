@@ -1,21 +1,14 @@
 """The closing summary: what a person wants to know of a run, in a few lines."""
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from meshwind.pipeline import Result
-
-
-def summary(result: "Result", folder: Path) -> str:
-    """Lines for the terminal; lengths with the unit that the run was told."""
-    return "\n".join([*described(result.report()), f"files     {folder}"])
+from meshwind.units import unit_told
 
 
 def described(report: dict[str, Any]) -> list[str]:
     """A run's report in a few lines; raises LookupError or TypeError where a figure is missing."""
     part = report["mesh"]
-    units = "" if part["units"] == "unknown" else part["units"]
+    units = unit_told(part["units"])
     return [
         f"part      {part['name']}: {part['vertices']} vertices, {part['faces']} faces; {part['ends']}",
         *_surface(report["surface"], part["diagonal"], units),
@@ -23,12 +16,13 @@ def described(report: dict[str, Any]) -> list[str]:
         *_layup(report, units),
         *_unsettled(report["paths"]["not_converged"]),
         *(f"repair    {act}" for act in part["repairs"]),
-        *(_note(note) for note in report["notes"]),
+        *(note_line(note) for note in report["notes"]),
         "seconds   " + ", ".join(f"{stage} {value:.2f}" for stage, value in report["seconds"].items()),
     ]
 
 
-def _note(told: str) -> str:
+def note_line(told: str) -> str:
+    """A note of a report as a line, which warns where it does."""
     text = told.removeprefix("warning: ")
     return f"{'note' if text == told else 'warning':<10}{text}"
 

@@ -7,12 +7,25 @@ from typing import Annotated
 
 import typer
 
-from meshwind.cli.arguments import AsJson, Component, Drawn, Ends, MeshFile, Opening, Overwrite, Quiet, Tolerance, Units
+from meshwind.cli.arguments import (
+    AsJson,
+    Component,
+    Drawn,
+    Ends,
+    MeshFile,
+    Opening,
+    Overwrite,
+    Paths,
+    Quiet,
+    Tolerance,
+    Turns,
+    Units,
+)
 from meshwind.cli.config import Config
 from meshwind.cli.display import display
 from meshwind.cli.help import FIBRES, FILES, SURFACE, one_of
 from meshwind.cli.outcome import tell
-from meshwind.cli.summary import summary
+from meshwind.cli.summary import described
 from meshwind.spelled import count, turns
 
 UNSETTLED = 3
@@ -40,16 +53,8 @@ def wind(
     ends: Ends = "auto",
     opening: Opening = None,
     units: Units = "mm",
-    paths: Annotated[int, typer.Option(help="Paths a family.", rich_help_panel=FIBRES)] = 12,
-    revolutions: Annotated[
-        str,
-        typer.Option(
-            metavar="TURNS",
-            help="Turns of a path from end to end, as in 0.5 or 5/12, or auto: those that hold and bridge least.",
-            autocompletion=one_of("auto"),
-            rich_help_panel=FIBRES,
-        ),
-    ] = "0.5",
+    paths: Paths = 12,
+    revolutions: Turns = "0.5",
     friction: Annotated[
         str,
         typer.Option(
@@ -136,6 +141,6 @@ def wind(
             command=shlex.join(["meshwind", *sys.argv[1:]]),
             progress=progress,
         )
-    figures = result.report() | {"folder": str(folder)}
-    tell(summary(result, Path(folder)).splitlines(), figures, as_json, quiet)
+    report = result.report()
+    tell([*described(report), f"files     {folder}"], report | {"folder": str(folder)}, as_json, quiet)
     return 0 if result.settled else UNSETTLED

@@ -7,6 +7,7 @@ import numpy as np
 
 from meshwind.cast import Floats
 from meshwind.editing.demands import press, reach
+from meshwind.editing.edited_mesh import within
 from meshwind.editing.freedom import Frozen, free_moves, frozen_mask
 from meshwind.editing.program import ACCURACY
 from meshwind.editing.result import Outcome, Round
@@ -139,10 +140,8 @@ def threshold_of(surface: Surface, given: float | None = None) -> float:
 
 def _moved(surface: Surface, moved: Floats, bound: float | None) -> Surface:
     """The surface with its control points moved by `moved` (m, 3), pulled back to the bound's ball by round-off."""
-    if bound is not None:
-        size = np.linalg.norm(moved, axis=1, keepdims=True)
-        moved = moved * np.minimum(1.0, bound / np.maximum(size, 1e-300))
-    return replace(surface, control_points=surface.control_points + moved.reshape(surface.control_points.shape))
+    moves = within(moved, bound).reshape(surface.control_points.shape)
+    return replace(surface, control_points=surface.control_points + moves)
 
 
 def _rewound(surface: Surface, laid: Paths, particles: int) -> Paths:

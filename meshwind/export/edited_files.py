@@ -46,7 +46,6 @@ def redesign_report(
     is the proof, and the last of the rounds but foretells it.
     """
     moved = np.linalg.norm(edited.displacement, axis=1)
-    gaps = edited.before, edited.after
     figures = {
         "meshwind": version(),
         "command": command,
@@ -91,7 +90,7 @@ def redesign_report(
                 "max_gap": wound.gap,
                 "threshold": wound.threshold,
             }
-            for name, wound in zip(("before", "after"), gaps, strict=True)
+            for name, wound in (("before", edited.before), ("after", edited.after))
         },
         "seconds": dict(seconds or {}),
     }

@@ -19,6 +19,7 @@ from meshwind.layup.layup import Layup, assess
 from meshwind.output.staging import REPORT, settle
 from meshwind.path.paths import Counters, Paths, Status
 from meshwind.surface.surface import FitError, Surface
+from meshwind.units import unit_told
 
 _NEEDED = "paths.vtp", "surface.npz", REPORT
 _FIELDS = {"uv": (2,), "on_surface": (), "gap": (), "normal": (3,), "slip": ()}
@@ -53,8 +54,7 @@ class Results:
     @property
     def units(self) -> str:
         """Name of the unit of length, "" where the run was told none."""
-        units = _under(self.report, "mesh", "units")
-        return "" if units in (None, "unknown") else str(units)
+        return unit_told(str(_under(self.report, "mesh", "units") or ""))
 
     @property
     def diagonal(self) -> float:

@@ -10,6 +10,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from threading import Lock, Timer
 from typing import Any
@@ -75,11 +76,10 @@ def isolated(work: Callable[[Path], Arrays], path: Path) -> Arrays:
             stop()
         if not _running:
             _running.append(_Reader())
-        try:
+        with ExitStack() as failed:  # a process that was left half way knows no next file
+            failed.callback(stop)
             head, packed = _running[0].read(work, path)
-        except BaseException:
-            stop()
-            raise
+            failed.pop_all()
     if "refused" in head:
         raise BadInputError(head["refused"])
     if "failed" in head:

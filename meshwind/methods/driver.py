@@ -11,6 +11,7 @@ from meshwind.methods import march, march_space
 from meshwind.methods.chain import Physics
 from meshwind.methods.run import Ending, History, Method, Run
 from meshwind.path.paths import Counters
+from meshwind.path.solve import check_count
 from meshwind.surface.evaluate import S
 from meshwind.surface.surface import Surface
 
@@ -76,7 +77,8 @@ def run(
         raise BadInputError("(4.13) drops the velocity term: set inertial=False or choose an explicit scheme")
     if stabilisation > 1.0:
         raise BadInputError(f"stabilisation is {stabilisation}; give a number from 0 to 1")
-    _whole(steps=steps, reuse=reuse)
+    check_count(steps, "steps", 1)
+    check_count(reuse, "reuse", 1)
     _positive(step_size=step_size, stiffness=stiffness, mass=mass, width=width, push=push)
     _not_negative(damping=damping, friction=friction, tolerance=tolerance, stabilisation=stabilisation)
     curve = _curve(start, end, particles, initial)
@@ -100,12 +102,6 @@ def _method(name: str) -> Method:
         raise BadInputError(f"no method {name!r}; choose one of {', '.join(Method)}") from None
 
 
-def _whole(**values: int) -> None:
-    for name, value in values.items():
-        if not isinstance(value, int | np.integer) or value < 1:
-            raise BadInputError(f"{name} is {value}; give a whole number, at least 1")
-
-
 def _positive(**values: float | None) -> None:
     for name, value in values.items():
         if value is not None and not (value > 0.0 and math.isfinite(value)):
@@ -120,8 +116,7 @@ def _not_negative(**values: float) -> None:
 
 def _curve(start: ArrayLike, end: ArrayLike, particles: int, initial: ArrayLike | None) -> Floats:
     """The starting curve (particles, 2), checked: a straight line (6.2) unless one is given."""
-    if not isinstance(particles, int | np.integer) or particles < 3:
-        raise BadInputError(f"particles is {particles}; give a whole number, at least 3")
+    check_count(particles, "particles", 3)
     ends = np.array([floats(start, "start", 2), floats(end, "end", 2)])
     if initial is None:
         t = np.linspace(0.0, 1.0, particles)[:, None]

@@ -25,6 +25,7 @@ from meshwind.output.layup_figures import (
 )
 from meshwind.path.paths import Paths, Status
 from meshwind.surface.surface import Surface
+from meshwind.units import UNKNOWN
 from meshwind.version import version
 
 
@@ -106,7 +107,7 @@ def mesh_figures(mesh: Mesh, units: str) -> dict[str, Any]:
         "faces": len(mesh.faces),
         "read_vertices": mesh.read_vertices or len(mesh.vertices),
         "read_faces": mesh.read_faces or len(mesh.faces),
-        "units": units or "unknown",
+        "units": units or UNKNOWN,
         "diagonal": mesh.diagonal,
         "repairs": list(mesh.repairs),
     }

@@ -1,6 +1,5 @@
 """Draw a results folder: all that is needed is in it."""
 
-import json
 import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -10,7 +9,7 @@ from typing import Any
 
 from meshwind.errors import BadInputError
 from meshwind.export.place import beside
-from meshwind.export.results import read_results
+from meshwind.export.results import read_report, read_results
 from meshwind.output.view import NAMED
 from meshwind.pictures import driver
 from meshwind.pictures.animation_scene import animation_scene
@@ -20,6 +19,7 @@ from meshwind.pictures.page import Page
 from meshwind.pictures.redesign_scene import EDITED, redesign_in
 from meshwind.pictures.sheet import cell, write_sheet
 from meshwind.pictures.subject import Subject, subject_of
+from meshwind.units import unit_told
 
 Scenes = dict[str, dict[str, Any]]
 Tell = Callable[[str, int, int], None]
@@ -112,9 +112,9 @@ def _scenes(source: Path, of: Subject | None, page: Page) -> Scenes:
 def _called(source: Path) -> tuple[str, str]:
     """Name and unit of the part that a redesign's report tells of, or the folder's name."""
     try:
-        told = json.loads((source / "report.json").read_text(encoding="utf-8"))
-        return str(told["mesh"]["name"]), str(told["mesh"]["units"]).replace("unknown", "")
-    except (OSError, ValueError, KeyError, TypeError):
+        part = read_report(source)["mesh"]
+        return str(part["name"]), unit_told(str(part["units"]))
+    except (BadInputError, LookupError, TypeError):
         return source.name, ""
 
 

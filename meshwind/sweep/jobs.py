@@ -1,6 +1,5 @@
 """The jobs of a study: parts to fit, each before its cases; where they run is a runner's business."""
 
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from meshwind.errors import BadInputError
@@ -8,7 +7,6 @@ from meshwind.mandrel import Mesh, read
 from meshwind.mandrel.scalars import Scalars, read_scalars
 from meshwind.options import FIELD, Options
 from meshwind.sweep.study import Case
-from meshwind.sweep.work import Done
 
 
 @dataclass(frozen=True)
@@ -32,10 +30,6 @@ class Batch:
         except BadInputError as error:
             return str(error)
         return mesh, field, case.options
-
-
-Runner = Callable[[list[Batch]], Iterator[tuple[int, Done]]]
-"""Runs batches and gives each case once, by its number, as it is done."""
 
 
 def batches(cases: dict[int, Case]) -> list[Batch]:

@@ -18,7 +18,7 @@ from meshwind.options import Options
 from meshwind.pipeline import Part
 from meshwind.sweep.jobs import Batch
 from meshwind.sweep.study import Case
-from meshwind.sweep.work import Done, alone, fitted, wound
+from meshwind.sweep.work import Done, fitted, wound
 
 ATTEMPTS = 3
 """A job that has lost so many workers is given up."""
@@ -73,7 +73,7 @@ def _pool(state: _State, processes: int) -> Generator[tuple[int, Done], None, bo
     Which of the jobs at work killed it is not known: they are tried again one at a time, before all others.
     """
     running: dict[Future[Any], _Job] = {}
-    with ProcessPoolExecutor(processes, mp_context=get_context("spawn"), initializer=alone) as pool:
+    with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
         try:
             while True:
                 suspects = bool(state.again) or any(state.killed[job] for job in running.values())

@@ -2,7 +2,7 @@
 
 import os
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic
@@ -13,6 +13,7 @@ from meshwind.sweep.charts import draw_tradeoffs
 from meshwind.sweep.jobs import batches
 from meshwind.sweep.store import CASES, PICTURE, Store
 from meshwind.sweep.study import Study, read_study
+from meshwind.sweep.work import Done
 
 Tell = Callable[[str, int, int], None]
 """Called with a case that is done, how many are, and how many there are."""
@@ -71,7 +72,7 @@ def sweep(
     return Swept(plan, tuple(store.table), len(store.rows) - before, folder)
 
 
-def _run(store: Store, processes: int | None, scheduler: str | None) -> Any:
+def _run(store: Store, processes: int | None, scheduler: str | None) -> Iterator[tuple[int, Done]]:
     """The runner at work on what is not done yet."""
     todo = batches(store.open)
     if scheduler is not None:
