@@ -22,8 +22,8 @@ from scipy.optimize import brentq
 from scipy.spatial import cKDTree
 
 import meshwind as mw
-from meshwind.cast import Floats, Ints
-from meshwind.mandrel import mesh_from
+from meshwind.core.cast import Floats, Ints
+from meshwind.mesh import mesh_from
 
 BARREL = PARTS["barrel"]
 PARTICLES = (51, 101, 201, 401)

@@ -25,8 +25,8 @@ from scipy.sparse.linalg import splu
 from scipy.spatial import Delaunay
 
 import meshwind as mw
-from meshwind.cast import Floats, Ints
-from meshwind.mandrel import mesh_from
+from meshwind.core.cast import Floats, Ints
+from meshwind.mesh import mesh_from
 
 SIZES = (10_000, 100_000, 1_000_000)
 STAGES = ("read", "open", "flatten", "fit")

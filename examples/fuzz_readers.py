@@ -13,8 +13,8 @@ from pathlib import Path
 
 import atheris
 
-from meshwind.errors import BadInputError
-from meshwind.mandrel.read import read
+from meshwind.core.errors import BadInputError
+from meshwind.mesh.io.read import read
 
 with atheris.instrument_imports(include=["trimesh.exchange"]):
     import trimesh  # noqa: F401

@@ -15,32 +15,24 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from meshwind.chart import Chart as Chart
     from meshwind.chart import flatten as flatten
+    from meshwind.core.errors import BadInputError as BadInputError
     from meshwind.edited import write_redesign as write_redesign
-    from meshwind.editing.redesign import Redesign as Redesign
-    from meshwind.editing.redesign import redesign as redesign
-    from meshwind.errors import BadInputError as BadInputError
     from meshwind.export.cad_surface import read_cad as read_cad
-    from meshwind.layup import Families as Families
     from meshwind.layup import Layup as Layup
     from meshwind.layup import assess as assess
-    from meshwind.layup import choose_revolutions as choose_revolutions
-    from meshwind.layup import families as families
-    from meshwind.layup import read_pins as read_pins
-    from meshwind.layup import space_out as space_out
     from meshwind.layup import windability as windability
-    from meshwind.mandrel import Annulus as Annulus
-    from meshwind.mandrel import Mesh as Mesh
-    from meshwind.mandrel import annulus as annulus
-    from meshwind.mandrel import read as read
-    from meshwind.output.image_files import read_image as read_image
+    from meshwind.march import Stop as Stop
+    from meshwind.march import Trace as Trace
+    from meshwind.march import trace as trace
+    from meshwind.march import traces as traces
+    from meshwind.mesh import Annulus as Annulus
+    from meshwind.mesh import Mesh as Mesh
+    from meshwind.mesh import annulus as annulus
+    from meshwind.mesh import read as read
     from meshwind.path import Paths as Paths
     from meshwind.path import Status as Status
-    from meshwind.path import Stop as Stop
-    from meshwind.path import Trace as Trace
     from meshwind.path import drag as drag
     from meshwind.path import solve as solve
-    from meshwind.path import trace as trace
-    from meshwind.path import traces as traces
     from meshwind.path.friction import Friction as Friction
     from meshwind.path.friction import friction_from as friction_from
     from meshwind.pictures.page import Page as Page
@@ -48,6 +40,14 @@ if TYPE_CHECKING:
     from meshwind.pictures.render import render as render
     from meshwind.pipeline import Result as Result
     from meshwind.pipeline import wind as wind
+    from meshwind.planning import Families as Families
+    from meshwind.planning import choose_revolutions as choose_revolutions
+    from meshwind.planning import families as families
+    from meshwind.planning import read_pins as read_pins
+    from meshwind.planning import space_out as space_out
+    from meshwind.redesign.redesign import Redesign as Redesign
+    from meshwind.redesign.redesign import redesign as redesign
+    from meshwind.results.image_files import read_image as read_image
     from meshwind.surface import FitError as FitError
     from meshwind.surface import Surface as Surface
     from meshwind.surface import fit as fit
@@ -58,18 +58,19 @@ if TYPE_CHECKING:
     __version__: str
 
 _HOME = {
-    "BadInputError": "errors",
-    "Mesh": "mandrel", "Annulus": "mandrel", "read": "mandrel", "annulus": "mandrel",
+    "BadInputError": "core.errors",
+    "Mesh": "mesh", "Annulus": "mesh", "read": "mesh", "annulus": "mesh",
     "Chart": "chart", "flatten": "chart",
     "Surface": "surface", "FitError": "surface", "fit": "surface", "shapes": "surface",
-    "surface_image": "surface", "from_image": "surface", "read_image": "output.image_files",
+    "surface_image": "surface", "from_image": "surface", "read_image": "results.image_files",
+    "trace": "march", "traces": "march", "Trace": "march", "Stop": "march",
     "Paths": "path", "Status": "path", "solve": "path", "drag": "path",
-    "trace": "path", "traces": "path", "Trace": "path", "Stop": "path",
     "Friction": "path.friction", "friction_from": "path.friction",
-    "Families": "layup", "Layup": "layup", "families": "layup", "assess": "layup",
-    "choose_revolutions": "layup", "read_pins": "layup", "space_out": "layup", "windability": "layup",
+    "Families": "planning", "families": "planning", "choose_revolutions": "planning", "read_pins": "planning",
+    "space_out": "planning",
+    "Layup": "layup", "assess": "layup", "windability": "layup",
     "read_cad": "export.cad_surface",
-    "Redesign": "editing.redesign", "redesign": "editing.redesign", "write_redesign": "edited",
+    "Redesign": "redesign.redesign", "redesign": "redesign.redesign", "write_redesign": "edited",
     "Result": "pipeline", "wind": "pipeline",
     "render": "pictures.render", "Page": "pictures.page", "draw_redesign": "pictures.redesign_scene",
 }  # fmt: skip
@@ -79,7 +80,7 @@ __all__ = sorted(_HOME)
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
-        return import_module("meshwind.version").version()
+        return import_module("meshwind.core.version").version()
     if name not in _HOME:
         raise AttributeError(f"module 'meshwind' has no attribute {name!r}")
     value = getattr(import_module(f"meshwind.{_HOME[name]}"), name)

@@ -5,21 +5,21 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from meshwind.editing.redesign import Redesign
+from meshwind.core.version import version
 from meshwind.export.edited_files import redesign_report, write_edited
 from meshwind.layup.layup import assess
 from meshwind.notes import Note
-from meshwind.output import folder
-from meshwind.output.config_file import NAME as CONFIG
-from meshwind.output.config_file import write_config
-from meshwind.output.report import write_report
 from meshwind.pictures import driver
 from meshwind.pictures.page import Page
 from meshwind.pictures.redesign_scene import redesign_scene
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.pipeline import Clock
-from meshwind.version import version
+from meshwind.redesign.redesign import Redesign
+from meshwind.results import folder
+from meshwind.results.config_file import NAME as CONFIG
+from meshwind.results.config_file import write_config
+from meshwind.results.report import write_report
 
 
 def write_redesign(
@@ -37,7 +37,7 @@ def write_redesign(
 
     before.png and after.png show the windings of the mesh that was read and of the edited one, redesign.png what was
     moved.  units: name of the mesh's; overwrite: replace the results that `out` holds; seconds: of the stages before;
-    options: what was asked for by the names of the command line, which meshwind.toml then holds.
+    options: what was asked for by the names of the command line, which meshwind.core.toml then holds.
     Returns the report, with a note where there are no pictures for want of an OpenGL driver.  Raises BadInputError
     where `out` cannot be written or, without `overwrite`, holds results.
     """

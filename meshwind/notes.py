@@ -4,15 +4,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from meshwind.appearance.words import power, quantity, ratio
 from meshwind.chart import Chart
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
 from meshwind.layup.layup import Layup
-from meshwind.layup.revolutions import FRICTION, WIDER, Revolutions
-from meshwind.layup.spacing import Spaced
-from meshwind.mandrel.ends import place
-from meshwind.output.apart import apart
-from meshwind.output.words import power, quantity, ratio
+from meshwind.mesh.opening.ends import place
 from meshwind.path.paths import EDGE, Paths, Status
+from meshwind.planning.revolutions import FRICTION, WIDER, Revolutions
+from meshwind.planning.spacing import Spaced
+from meshwind.results.apart import apart
 from meshwind.surface import FitError, Surface
 
 MISSED = 10.0

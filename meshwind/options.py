@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from math import isfinite
 from numbers import Integral, Real
 
-from meshwind.errors import BadInputError
-from meshwind.layup.revolutions import STEPS_A_TURN
-from meshwind.mandrel.ends import parse
-from meshwind.spelled import AUTO, shortened
-from meshwind.units import check_units
+from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import AUTO, shortened
+from meshwind.core.units import check_units
+from meshwind.mesh.opening.ends import parse
+from meshwind.planning.revolutions import STEPS_A_TURN
 
 FIELD = "field:"
 """Before the name of a scalar field in a mesh file."""

@@ -10,21 +10,14 @@ from time import perf_counter
 from typing import Any
 
 from meshwind.chart import Chart, flatten
-from meshwind.errors import BadInputError
-from meshwind.layup.families import Families, families
+from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import AUTO
+from meshwind.core.version import version
 from meshwind.layup.layup import Layup, assess
-from meshwind.layup.pins import read_pins
-from meshwind.layup.revolutions import Revolutions, choose_revolutions
-from meshwind.layup.spacing import Spaced, space_out
-from meshwind.mandrel import Mesh, annulus, read
-from meshwind.mandrel.scalars import Scalars, read_scalars
+from meshwind.mesh import Mesh, annulus, read
+from meshwind.mesh.io.scalars import Scalars, read_scalars
 from meshwind.notes import FIT_ERROR, Note, about_choice, about_fit, about_layup, about_paths, about_spacing
 from meshwind.options import FIELD, Options
-from meshwind.output import folder
-from meshwind.output.config_file import NAME as CONFIG
-from meshwind.output.config_file import write_config
-from meshwind.output.report import report, write_report
-from meshwind.output.write import write_files
 from meshwind.path import Paths, Status, solve
 from meshwind.path.friction import Friction, friction_from
 from meshwind.pictures import driver
@@ -35,9 +28,16 @@ from meshwind.pictures.render import placed
 from meshwind.pictures.revolutions_picture import draw_revolutions
 from meshwind.pictures.sheet import write_sheet
 from meshwind.pictures.subject import subject_in
-from meshwind.spelled import AUTO
+from meshwind.planning.families import Families, families
+from meshwind.planning.pins import read_pins
+from meshwind.planning.revolutions import Revolutions, choose_revolutions
+from meshwind.planning.spacing import Spaced, space_out
+from meshwind.results import folder
+from meshwind.results.config_file import NAME as CONFIG
+from meshwind.results.config_file import write_config
+from meshwind.results.report import report, write_report
+from meshwind.results.write import write_files
 from meshwind.surface import Surface, fit
-from meshwind.version import version
 
 Tell = Callable[[str], None]
 """Called with a stage's name as it starts."""

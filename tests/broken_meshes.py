@@ -12,7 +12,7 @@ import numpy as np
 import trimesh
 from mandrel_shapes import Part, ball, box, cone, cup, joined, moved, pear, rotation, tube
 
-from meshwind.cast import Floats, Ints
+from meshwind.core.cast import Floats, Ints
 
 Fault = Callable[[Part], Part]
 

@@ -5,13 +5,13 @@ from pathlib import Path
 import numpy as np
 from layup_shapes import bridged, cylinder, helices
 
-from meshwind.export.results import Results, read_results
 from meshwind.layup.layup import assess
-from meshwind.mandrel.mesh import Mesh
-from meshwind.output.maps import grid
-from meshwind.output.report import report, write_report
-from meshwind.output.write import write_files
+from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.path.paths import Paths
+from meshwind.results.maps import grid
+from meshwind.results.reading import Results, read_results
+from meshwind.results.report import report, write_report
+from meshwind.results.write import write_files
 
 
 def leave(folder: Path, paths: Paths, units: str = "mm") -> Results:

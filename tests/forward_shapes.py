@@ -4,8 +4,8 @@ from functools import cache
 
 import numpy as np
 
-from meshwind.cast import Floats
-from meshwind.path import Trace
+from meshwind.core.cast import Floats
+from meshwind.march import Trace
 from meshwind.surface import Surface, shapes
 
 

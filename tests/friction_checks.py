@@ -4,9 +4,9 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
+from comparison import problems
 
-from meshwind.cast import Floats
-from meshwind.methods import problems
+from meshwind.core.cast import Floats
 from meshwind.path import Paths
 from meshwind.surface import Surface, shapes
 

@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.spatial import Delaunay, cKDTree
 
-from meshwind.cast import Floats, Ints, frozen
-from meshwind.mandrel import Annulus, Mesh
+from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.mesh import Annulus, Mesh
 from meshwind.surface.interpolate import Formula
 
 

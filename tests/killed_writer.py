@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 import meshwind as mw
-from meshwind.output.folder import prepare, writing
+from meshwind.results.folder import prepare, writing
 
 FOREIGN = "notes.txt"
 _CALLS = ("open", "os.mkdir", "os.rename", "os.remove", "os.rmdir", "os.listdir", "os.scandir", "shutil.rmtree")
@@ -104,7 +104,9 @@ def moments(folder: Path, count: int) -> tuple[list[dict[str, str]], list[Sight]
     whole, took = [], 0.0
     for k, result in enumerate(results):
         start = time.perf_counter()
-        result.write(folder / f"whole-{k}" / "out", render=False)  # as deep as the others: meshwind.toml tells the way
+        result.write(
+            folder / f"whole-{k}" / "out", render=False
+        )  # as deep as the others: meshwind.core.toml tells the way
         took = time.perf_counter() - start
         whole.append(visible(folder / f"whole-{k}" / "out"))
     seen, random_time = [], random.Random(1)

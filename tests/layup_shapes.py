@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import BSpline
 
-from meshwind.cast import Floats, frozen
+from meshwind.core.cast import Floats, frozen
 from meshwind.path.paths import Counters, Paths
 from meshwind.surface.surface import Surface
 

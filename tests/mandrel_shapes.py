@@ -5,9 +5,9 @@ from collections.abc import Callable
 import numpy as np
 import trimesh
 
-from meshwind.cast import Floats, Ints
-from meshwind.mandrel import Annulus
-from meshwind.mandrel.topology import edges, euler, loops, patches
+from meshwind.core.cast import Floats, Ints
+from meshwind.mesh import Annulus
+from meshwind.mesh.geometry.topology import edges, euler, loops, patches
 
 Part = tuple[Floats, Ints]
 

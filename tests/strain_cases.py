@@ -13,9 +13,9 @@ from mandrel_shapes import tube
 
 import meshwind as mw
 from meshwind.layup.layup import assess
-from meshwind.mandrel import mesh_from
-from meshwind.output.maps import distance_to_mesh, grid, maps
+from meshwind.mesh import mesh_from
 from meshwind.path import Paths
+from meshwind.results.maps import distance_to_mesh, grid, maps
 from meshwind.surface import Surface, shapes
 
 Figures = list[float]

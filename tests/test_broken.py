@@ -9,9 +9,9 @@ from broken_meshes import FAULTS, MESHES, save_obj
 from mandrel_shapes import Part, assert_annulus, cone, pear
 
 from meshwind.chart import flatten
-from meshwind.errors import BadInputError
-from meshwind.mandrel import annulus, mesh_from, read
-from meshwind.mandrel.measure import areas, volume
+from meshwind.core.errors import BadInputError
+from meshwind.mesh import annulus, mesh_from, read
+from meshwind.mesh.geometry.measure import areas, volume
 from meshwind.surface import fit
 
 REFUSED = {

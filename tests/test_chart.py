@@ -4,13 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from comparison.problems import barrel_radius
 from irregular import annulus, tube
 
 import meshwind as mw
-from meshwind.cast import Floats
 from meshwind.chart import Chart, flatten
-from meshwind.mandrel import Annulus
-from meshwind.methods.problems import barrel_radius
+from meshwind.core.cast import Floats
+from meshwind.mesh import Annulus
 
 DATA = sorted((Path(__file__).parents[1] / "data").iterdir())
 

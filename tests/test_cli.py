@@ -21,7 +21,7 @@ FILES = {
     "surface.npz",
     "chart.png",
     "report.json",
-    "meshwind.toml",
+    "meshwind.core.toml",
 }
 
 

@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 import typer
 
+from meshwind.appearance.view import NAMED
 from meshwind.cli import names
 from meshwind.cli.main import app
+from meshwind.core.units import MILLIMETRES
 from meshwind.export.formats import FORMATS
 from meshwind.export.targets import GRID, QUADS, TARGETS
-from meshwind.mandrel.ends import parse
-from meshwind.output.view import NAMED
+from meshwind.mesh.opening.ends import parse
 from meshwind.pictures.kinds import MOVIES, PICTURES, REDESIGN, SHEET
-from meshwind.units import MILLIMETRES
 
 COMMANDS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
 EXAMPLES = {line.strip() for command in (typer.main.get_command(app), *COMMANDS.values())
@@ -51,7 +51,7 @@ def test_options_stand_in_groups() -> None:
 def test_examples_can_be_typed(example: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Names, types and files of configuration are right; nothing is run."""
     (tmp_path / "part-wound").mkdir()
-    (tmp_path / "part-wound" / "meshwind.toml").write_text('mesh = "../part.stl"\npaths = 12\n')
+    (tmp_path / "part-wound" / "meshwind.core.toml").write_text('mesh = "../part.stl"\npaths = 12\n')
     monkeypatch.chdir(tmp_path)
     _, name, *arguments = shlex.split(example)
     if "--help" not in arguments:

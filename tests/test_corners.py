@@ -4,12 +4,12 @@ from functools import partial
 
 import numpy as np
 import pytest
+from comparison.attempt import Outcome, attempt
+from comparison.problem import Problem
+from comparison.problems import TABLE, barrel_length, barrel_radius
+from comparison.rubbing import TURN, Sliding
 
-from meshwind.cast import Floats
-from meshwind.methods.attempt import Outcome, attempt
-from meshwind.methods.problem import Problem
-from meshwind.methods.problems import TABLE, barrel_length, barrel_radius
-from meshwind.methods.rubbing import TURN, Sliding
+from meshwind.core.cast import Floats
 from meshwind.path import Status, solve
 from meshwind.surface import Surface, shapes
 

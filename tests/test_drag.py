@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from meshwind.cast import Floats
-from meshwind.errors import BadInputError
+from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
 from meshwind.path import Status, drag, solve
 from meshwind.surface import Surface, shapes
 from meshwind.surface.interpolate import interpolate

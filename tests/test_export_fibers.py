@@ -9,13 +9,13 @@ import pyvista as pv
 from export_results import leave, plain_results, waisted_results
 from layup_shapes import cylinder, drawn, straight_uv
 
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
 from meshwind.export.elements import on_crossings, regular
 from meshwind.export.fibers import FILES, write_fibers
 from meshwind.export.plies import plies
 from meshwind.layup.coverage import coverage
-from meshwind.output.maps import grid
-from meshwind.output.winding_angle import winding_angle
+from meshwind.results.maps import grid
+from meshwind.results.winding_angle import winding_angle
 
 
 @pytest.mark.parametrize("name", FILES)

@@ -11,11 +11,11 @@ import pytest
 from export_results import leave, waisted_results
 from layup_shapes import bridged
 
-from meshwind.errors import BadInputError
-from meshwind.export.place import beside
-from meshwind.export.results import read_results
+from meshwind.core.errors import BadInputError
 from meshwind.export.targets import TARGETS, Wishes, export
 from meshwind.path.paths import Status
+from meshwind.results.place import beside
+from meshwind.results.reading import read_results
 
 KEPT = "points", "uv", "on_surface", "gap", "normal", "slip", "family", "status"
 

@@ -9,7 +9,7 @@ import pyvista as pv
 from export_results import plain_results, waisted_results
 
 from meshwind.export.formats import FORMATS, write_formats
-from meshwind.export.vtk_reading import read_faces, read_lines
+from meshwind.results.vtk_reading import read_faces, read_lines
 
 ENDING = {name: name for name in FORMATS} | {"gmsh": "msh"}
 READABLE = [name for name in FORMATS if name != "xdmf"]  # meshio reads no XDMF without h5py: VTK does, below

@@ -7,10 +7,10 @@ import pytest
 from export_results import leave, plain_results, waisted_results
 from layup_shapes import cylinder, helices
 
-from meshwind.cast import Floats
-from meshwind.errors import BadInputError
+from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
 from meshwind.export.frames import HEADER, frames, write_frames
-from meshwind.export.results import Results
+from meshwind.results.reading import Results
 
 Table = dict[str, Floats]
 

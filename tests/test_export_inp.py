@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from export_results import plain_results, waisted_results
 
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
 from meshwind.export.elements import Elements, on_crossings, regular
 from meshwind.export.material import Material
 from meshwind.export.plies import plies
-from meshwind.export.results import Results
 from meshwind.export.shell_deck import FORCE, LINEAR, QUADRATIC, Deck, thicknesses, write_decks
+from meshwind.results.reading import Results
 
 
 def deck_of(results: Results, elements: Elements, **given: float) -> Deck:

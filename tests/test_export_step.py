@@ -9,13 +9,13 @@ import pytest
 from export_results import plain_results, waisted_results
 
 from meshwind import read_cad
-from meshwind.cast import Floats
-from meshwind.errors import BadInputError
+from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
 from meshwind.export import opencascade
 from meshwind.export.opencascade import occ
-from meshwind.export.results import Results
 from meshwind.export.splines import clamped_surface
 from meshwind.export.step import FILE, write_step
+from meshwind.results.reading import Results
 from meshwind.surface import shapes
 
 pytest.importorskip("OCP", reason="OpenCASCADE is missing: pip install 'meshwind[cad]'")

@@ -5,15 +5,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista as pv
+from comparison.problem import Problem
+from comparison.problems import vase_radius
+from comparison.rubbing import TURN
 from irregular import annulus
 from scipy.spatial import cKDTree
 
 import meshwind as mw
-from meshwind.cast import Floats
 from meshwind.chart import flatten
-from meshwind.methods.problem import Problem
-from meshwind.methods.problems import vase_radius
-from meshwind.methods.rubbing import TURN
+from meshwind.core.cast import Floats
 from meshwind.surface import Surface, fit, shapes
 
 DATA = Path(__file__).parents[1] / "data"
@@ -109,7 +109,7 @@ def test_normals_point_outward() -> None:
 @pytest.mark.parametrize("seed", [0, 1])
 def test_lengths_from_a_mesh_are_exact(name: str, seed: int) -> None:
     """4,000 irregular vertices to taut paths: the exact length to 2e-5, where the facets are wrong by 1e-4."""
-    from meshwind.methods.problems import PROBLEMS
+    from comparison.problems import PROBLEMS
 
     for problem in (p for p in PROBLEMS if p.name.startswith(name)):
         assert _worst(problem, seed) < 2e-5

@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
+from comparison.problem import Problem
+from comparison.problems import PROBLEMS, barrel_clairaut, barrel_length, hyperboloid
+from comparison.rubbing import TURN
 from forward_shapes import fine_barrel, gutter, parabola, tube
 from scipy.optimize import brentq
 
-from meshwind.cast import Floats
-from meshwind.methods.problem import Problem
-from meshwind.methods.problems import PROBLEMS, barrel_clairaut, barrel_length, hyperboloid
-from meshwind.methods.rubbing import TURN
-from meshwind.path import Stop, trace
+from meshwind.core.cast import Floats
+from meshwind.march import Stop, trace
 from meshwind.surface import shapes
 
 SHOT = [p for p in PROBLEMS if p.name.startswith(("cone", "barrel", "sphere", "ellipsoid"))]

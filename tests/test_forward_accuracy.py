@@ -3,15 +3,15 @@
 import numba
 import numpy as np
 import pytest
+from comparison.problems import ellipsoid
 from forward_shapes import apart, coarse_barrel, dome, fine_barrel, tube
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import DOP853, solve_ivp
 
-from meshwind.cast import Floats
-from meshwind.errors import BadInputError
-from meshwind.methods.problems import ellipsoid
-from meshwind.path import Stop, trace, traces
+from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
+from meshwind.march import Stop, trace, traces
 from meshwind.surface import Surface, shapes
 
 # accuracy and order

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from comparison.problems import SLIDING, TABLE, barrel
+from comparison.rubbing import TURN, Sliding, tube
 from friction_checks import BRIDGED, SHAPES, bent, forces, lateral
 from scipy.optimize import brentq
 
-from meshwind.cast import Floats
-from meshwind.errors import BadInputError
-from meshwind.methods.problems import SLIDING, TABLE, barrel
-from meshwind.methods.rubbing import TURN, Sliding, tube
+from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
 from meshwind.path import Paths, Status, solve
 from meshwind.path.friction import Friction, friction_from, friction_of
 

@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-
-from meshwind.methods.golden import PARTICLES, figures
+from comparison.golden import PARTICLES, figures
 
 GOLDEN = json.loads((Path(__file__).parent / "golden_methods.json").read_text(encoding="utf-8"))
 ERROR = 0.05

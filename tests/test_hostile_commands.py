@@ -13,7 +13,7 @@ from mandrel_shapes import cone
 
 import meshwind as mw
 from meshwind.cli import main
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
 from meshwind.export.formats import FORMATS
 from meshwind.export.targets import Wishes, export
 

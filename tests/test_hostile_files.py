@@ -12,9 +12,9 @@ from hostile_files import EDITS, FORMATS, MALICIOUS, OUTSIDE, changed, corpus, s
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from meshwind.errors import BadInputError
-from meshwind.mandrel import Mesh, read
-from meshwind.mandrel.scalars import read_scalars
+from meshwind.core.errors import BadInputError
+from meshwind.mesh import Mesh, read
+from meshwind.mesh.io.scalars import read_scalars
 
 FILES = {name: (suffix, content) for name, suffix, content in corpus()}
 PATIENCE = 60.0

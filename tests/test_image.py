@@ -7,8 +7,8 @@ import pytest
 from PIL import Image
 
 import meshwind as mw
-from meshwind.cast import Floats
-from meshwind.output.image_files import read_image, write_chart_image, write_image
+from meshwind.core.cast import Floats
+from meshwind.results.image_files import read_image, write_chart_image, write_image
 
 UV = np.random.default_rng(4).random((5000, 2))
 

@@ -66,9 +66,16 @@ def test_a_redesign_which_its_own_options_repeat(tmp_path: Path) -> None:
     told = info(tmp_path / "r").stdout.splitlines()
     assert told[0].startswith("run       meshwind redesign ")
     assert told[1:] == made.stdout.splitlines()[:-1]
-    again = [*command[:3], "redesign", "--config", str(tmp_path / "r" / "meshwind.toml"), "--out", str(tmp_path / "s")]
+    again = [
+        *command[:3],
+        "redesign",
+        "--config",
+        str(tmp_path / "r" / "meshwind.core.toml"),
+        "--out",
+        str(tmp_path / "s"),
+    ]
     subprocess.run(again, capture_output=True, check=True, timeout=120)
-    for name in ("edited.ply", "edited.vtu", "meshwind.toml"):
+    for name in ("edited.ply", "edited.vtu", "meshwind.core.toml"):
         assert (tmp_path / "s" / name).read_bytes() == (tmp_path / "r" / name).read_bytes()
 
 

@@ -10,8 +10,8 @@ import pytest
 from scipy.spatial import cKDTree
 
 import meshwind as mw
-from meshwind.cast import Floats, Ints
-from meshwind.mandrel import mesh_from
+from meshwind.core.cast import Floats, Ints
+from meshwind.mesh import mesh_from
 from meshwind.surface.foot import feet
 
 DATA = Path(__file__).parents[1] / "data"

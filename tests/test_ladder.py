@@ -9,11 +9,11 @@ from hashlib import sha256
 
 import numpy as np
 import pytest
+from comparison.problem import Problem
+from comparison.problems import FREEFORM, PROBLEMS, TABLE, barrel, vase
 from friction_checks import bent, wavy
 
-from meshwind.cast import Floats
-from meshwind.methods.problem import Problem
-from meshwind.methods.problems import FREEFORM, PROBLEMS, TABLE, barrel, vase
+from meshwind.core.cast import Floats
 from meshwind.path import Counters, Paths, Status, solve
 
 
@@ -120,9 +120,9 @@ def test_threads_do_not_change_a_bit() -> None:
 
 
 FRUGAL = """
-from meshwind.methods.problems import barrel, sphere
+from comparison.problems import barrel, sphere
 from meshwind.path import solve
-from meshwind.path.hold import hold_all
+from meshwind.path.kernels.hold import hold_all
 from meshwind.surface import tree
 
 for surface in (barrel(), sphere()):

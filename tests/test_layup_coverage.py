@@ -5,7 +5,7 @@ import pytest
 from layup_shapes import HEIGHT, bridged, cylinder, drawn, helices, straight_uv, waisted
 from scipy.integrate import quad
 
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
 from meshwind.layup.coverage import cell_areas, coverage
 
 CYLINDER = cylinder()

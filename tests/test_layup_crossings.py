@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from layup_shapes import HEIGHT, bridged, cylinder, drawn, helices, straight_uv
 
-from meshwind.cast import Floats
+from meshwind.core.cast import Floats
 from meshwind.layup.crossings import counts, crossings, own_crossings
 from meshwind.path.paths import Paths
 from meshwind.surface import shapes

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from meshwind.errors import BadInputError
-from meshwind.layup.pins import read_pins
+from meshwind.core.errors import BadInputError
 from meshwind.path import solve
+from meshwind.planning.pins import read_pins
 from meshwind.surface import shapes
 
 ELBOW = shapes.elbow(3.0, 1.0, spans=(48, 32))

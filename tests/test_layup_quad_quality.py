@@ -7,12 +7,12 @@ import pytest
 from layup_shapes import HEIGHT, cylinder, helices
 
 import meshwind as mw
-from meshwind.cast import frozen
-from meshwind.layup.families import families
+from meshwind.core.cast import frozen
 from meshwind.layup.layup import assess
 from meshwind.layup.quad_quality import quad_quality
 from meshwind.layup.quads import QuadMesh
 from meshwind.path import solve
+from meshwind.planning.families import families
 
 DATA = Path(__file__).parents[1] / "data"
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from layup_shapes import bridged, cylinder, drawn, helices, straight_uv
 
-from meshwind.cast import Ints, frozen
+from meshwind.core.cast import Ints, frozen
 from meshwind.layup.crossings import crossings
 from meshwind.layup.layup import assess
 from meshwind.layup.quads import QuadMesh, edge_counts, quads

@@ -5,16 +5,16 @@ import pytest
 from layup_shapes import revolved
 from scipy.integrate import quad
 
-from meshwind.cast import Floats
-from meshwind.errors import BadInputError
-from meshwind.layup.clairaut import profile
-from meshwind.layup.families import families
-from meshwind.layup.holding import holding as holding_of
-from meshwind.layup.holding import hoop_revolutions, opened, square_revolutions
-from meshwind.layup.pressing import intervals, pressing
-from meshwind.layup.revolutions import choose_revolutions
-from meshwind.layup.trials import trial
+from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
 from meshwind.path import solve
+from meshwind.planning.clairaut import profile
+from meshwind.planning.families import families
+from meshwind.planning.holding import holding as holding_of
+from meshwind.planning.holding import hoop_revolutions, opened, square_revolutions
+from meshwind.planning.pressing import intervals, pressing
+from meshwind.planning.revolutions import choose_revolutions
+from meshwind.planning.trials import trial
 from meshwind.surface import Surface, shapes
 
 WAIST = 3.0 / (2.0 * np.pi)

@@ -7,15 +7,16 @@ import pytest
 from layup_shapes import HEIGHT, cylinder, drawn, helices, straight_uv
 
 import meshwind as mw
-from meshwind.cast import Floats
-from meshwind.errors import BadInputError
+from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
 from meshwind.layup.bands import bands
+from meshwind.layup.cell_sides import cell_sides
 from meshwind.layup.crossings import crossings
-from meshwind.layup.families import families
-from meshwind.layup.joining import chosen, joined
-from meshwind.layup.neighbours import cell_sides, neighbours
-from meshwind.layup.spacing import Spaced, largest_gap, space_out
 from meshwind.path import Paths, solve
+from meshwind.path.neighbours import neighbours
+from meshwind.planning.families import families
+from meshwind.planning.joining import chosen, joined
+from meshwind.planning.spacing import Spaced, largest_gap, space_out
 from meshwind.surface import Surface, shapes
 
 DATA = Path(__file__).parents[1] / "data"

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import meshwind as mw
-from meshwind.errors import BadInputError
-from meshwind.layup.revolutions import choose_revolutions
+from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import turns
 from meshwind.pictures.revolutions_picture import draw_revolutions
-from meshwind.spelled import turns
+from meshwind.planning.revolutions import choose_revolutions
 from meshwind.surface import shapes
 
 DATA = Path(__file__).parents[1] / "data"

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from comparison.problem import Problem
+from comparison.problems import FREEFORM, LONG, PROBLEMS, TABLE
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from meshwind.cast import Floats
-from meshwind.methods.problem import Problem
-from meshwind.methods.problems import FREEFORM, LONG, PROBLEMS, TABLE
+from meshwind.core.cast import Floats
 from meshwind.path import Paths, Status, solve
 from meshwind.surface import Surface
 

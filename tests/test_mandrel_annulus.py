@@ -8,11 +8,11 @@ import pytest
 import trimesh
 from mandrel_shapes import Part, assert_annulus, ball, box, cone, cup, joined, moved, pear, rotation, shuffled, tube
 
-from meshwind.cast import Floats
-from meshwind.errors import BadInputError
-from meshwind.mandrel import Annulus, annulus, mesh_from, read
-from meshwind.mandrel.measure import areas, perimeter, volume
-from meshwind.mandrel.topology import loops
+from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
+from meshwind.mesh import Annulus, annulus, mesh_from, read
+from meshwind.mesh.geometry.measure import areas, perimeter, volume
+from meshwind.mesh.geometry.topology import loops
 
 DATA = Path(__file__).parents[1] / "data"
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from mandrel_shapes import Part, moved, rotation, shuffled, tube
 
-from meshwind.cast import Floats
-from meshwind.mandrel import annulus, mesh_from, read
-from meshwind.mandrel.axis import forward
+from meshwind.core.cast import Floats
+from meshwind.mesh import annulus, mesh_from, read
+from meshwind.mesh.geometry.axis import forward
 
 SCALES = [1.0, 1e-3, 1.0 / 3.0, 1.0 / 25.4, 0.1, 0.7, 12.0, 25.4, 1e3, 1e6]
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from mandrel_shapes import ball, box, cone, joined
 
-from meshwind.cast import Floats, Ints
-from meshwind.mandrel.facet_tree import FacetTree
-from meshwind.mandrel.overlaps import overlaps
+from meshwind.core.cast import Floats, Ints
+from meshwind.mesh.geometry.facet_tree import FacetTree
+from meshwind.mesh.repair.overlaps import overlaps
 
 
 def brute_distance(vertices: Floats, faces: Ints, point: Floats) -> float:

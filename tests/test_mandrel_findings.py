@@ -11,9 +11,9 @@ import pytest
 from broken_meshes import MESHES, branch, double_skin, fin, flipped, klein, save_obj, torus
 from mandrel_shapes import Part, cone, joined, pear
 
-from meshwind.errors import BadInputError
-from meshwind.mandrel import Findings, annulus, inspect, mesh_from, read
-from meshwind.mandrel.measure import areas, perimeter
+from meshwind.core.errors import BadInputError
+from meshwind.mesh import Findings, annulus, inspect, mesh_from, read
+from meshwind.mesh.geometry.measure import areas, perimeter
 
 DATA = Path(__file__).parents[1] / "data"
 

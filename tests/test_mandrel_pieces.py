@@ -8,11 +8,11 @@ import pytest
 from broken_meshes import MESHES, branch, double_skin, save_obj
 from mandrel_shapes import Part, assert_annulus, ball, cone, joined, moved, pear, rotation, shuffled, tube
 
-from meshwind.errors import BadInputError
-from meshwind.mandrel import Mesh, annulus, mesh_from, read
-from meshwind.mandrel.ends import place
-from meshwind.mandrel.measure import perimeter, volume
-from meshwind.mandrel.topology import loops
+from meshwind.core.errors import BadInputError
+from meshwind.mesh import Mesh, annulus, mesh_from, read
+from meshwind.mesh.geometry.measure import perimeter, volume
+from meshwind.mesh.geometry.topology import loops
+from meshwind.mesh.opening.ends import place
 
 
 def three() -> Part:

@@ -11,10 +11,10 @@ import trimesh
 from mandrel_shapes import Part, pear
 from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
 
-from meshwind.errors import BadInputError
-from meshwind.mandrel import SUFFIXES, Mesh, read
-from meshwind.mandrel.measure import areas, volume
-from meshwind.mandrel.topology import euler
+from meshwind.core.errors import BadInputError
+from meshwind.mesh import SUFFIXES, Mesh, read
+from meshwind.mesh.geometry.measure import areas, volume
+from meshwind.mesh.geometry.topology import euler
 
 MODEL = """<?xml version="1.0"?>
 <model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">

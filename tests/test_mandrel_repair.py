@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from mandrel_shapes import Part, ball, box, cone, joined, moved, pear, rotation, shuffled
 
-from meshwind.cast import Ints
-from meshwind.errors import BadInputError
-from meshwind.mandrel import Mesh, mesh_from
-from meshwind.mandrel.measure import areas, volume
-from meshwind.mandrel.topology import edges, euler, loops, patches
+from meshwind.core.cast import Ints
+from meshwind.core.errors import BadInputError
+from meshwind.mesh import Mesh, mesh_from
+from meshwind.mesh.geometry.measure import areas, volume
+from meshwind.mesh.geometry.topology import edges, euler, loops, patches
 
 
 def assert_sound(mesh: Mesh) -> None:

@@ -8,9 +8,9 @@ import pytest
 import pyvista
 
 import meshwind as mw
-from meshwind.cast import Floats, Ints
-from meshwind.errors import BadInputError
-from meshwind.mandrel.scalars import read_scalars
+from meshwind.core.cast import Floats, Ints
+from meshwind.core.errors import BadInputError
+from meshwind.mesh.io.scalars import read_scalars
 
 ROUND, ALONG = 24, 9
 FORMATS = ("ply", "vtk", "vtu", "vtp", "msh")

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from mandrel_shapes import cone
 
-from meshwind.cast import Ints
-from meshwind.mandrel.measure import area_vectors, edge_lengths, volume
-from meshwind.mandrel.topology import boundary, components, edges, loops, patches
+from meshwind.core.cast import Ints
+from meshwind.mesh.geometry.measure import area_vectors, edge_lengths, volume
+from meshwind.mesh.geometry.topology import boundary, components, edges, loops, patches
 
 
 def soup(seed: int, vertices: int, faces: int) -> Ints:

@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from comparison.problem import Problem
+from comparison.problems import PROBLEMS, barrel, sphere
 from numpy.typing import NDArray
 
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
 from meshwind.methods import Ending, Method, Run, largest_frequency, run, stable_step
-from meshwind.methods.problem import Problem
-from meshwind.methods.problems import PROBLEMS, barrel, sphere
 from meshwind.path import solve
 from meshwind.surface import Surface, shapes
 

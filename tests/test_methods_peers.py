@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-
-from meshwind.methods.attempt import OURS, Outcome, attempt
-from meshwind.methods.peers_mesh import PEERS, Facets, facets
-from meshwind.methods.peers_smooth import collocate, shoot, shoot_traced
-from meshwind.methods.problems import TABLE
+from comparison.attempt import OURS, Outcome, attempt
+from comparison.peers_mesh import PEERS, Facets, facets
+from comparison.peers_smooth import collocate, shoot, shoot_traced
+from comparison.problems import TABLE
 
 ON_SURFACE = ["cone-1", "barrel-1.5", "sphere", "ellipsoid", "bottle"]
 

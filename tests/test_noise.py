@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
+from comparison.problems import vase_radius
+from comparison.rubbing import TURN
 from irregular import annulus
 
-from meshwind.cast import Floats
 from meshwind.chart import flatten
-from meshwind.mandrel import annulus as opened
-from meshwind.mandrel import mesh_from
-from meshwind.methods.problems import vase_radius
-from meshwind.methods.rubbing import TURN
+from meshwind.core.cast import Floats
+from meshwind.mesh import annulus as opened
+from meshwind.mesh import mesh_from
 from meshwind.surface import fit
 from meshwind.surface.interpolate import Formula
 from meshwind.surface.noise import roughness

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import meshwind as mw
-from meshwind.cast import Floats, frozen
+from meshwind.appearance.words import power, quantity, ratio
 from meshwind.cli.summary import described
+from meshwind.core.cast import Floats, frozen
 from meshwind.notes import about_fit
-from meshwind.output.words import power, quantity, ratio
 
 DIAGONAL = 10.0
 TIP = np.array([-4.5, 0.0, 0.0])

@@ -12,11 +12,11 @@ from layup_shapes import bridged, cylinder, helices
 from scipy.interpolate import BSpline
 
 from meshwind.layup.layup import Layup, assess
-from meshwind.layup.lengths import bridges, lengths
-from meshwind.mandrel.mesh import Mesh
-from meshwind.output.maps import grid
-from meshwind.output.report import plain, report, write_report
-from meshwind.output.write import write_files
+from meshwind.mesh.geometry.mesh import Mesh
+from meshwind.path.lengths import bridges, lengths
+from meshwind.results.maps import grid
+from meshwind.results.report import plain, report, write_report
+from meshwind.results.write import write_files
 
 LAID = {
     "bridged": assess(bridged()),

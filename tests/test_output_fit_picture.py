@@ -10,18 +10,18 @@ from PIL import Image
 from test_notes import horned
 
 import meshwind as mw
-from meshwind.cast import Floats, frozen
+from meshwind.appearance.view import around, place_view
 from meshwind.cli.summary import described
+from meshwind.core.cast import Floats, frozen
 from meshwind.layup.layup import assess
-from meshwind.mandrel import mesh_from
-from meshwind.mandrel.ends import place
+from meshwind.mesh import mesh_from
+from meshwind.mesh.opening.ends import place
 from meshwind.notes import FIT_ERROR, Note
-from meshwind.output.apart import Apart, apart
-from meshwind.output.view import around, place_view
 from meshwind.pictures import driver
 from meshwind.pictures.fit_scene import fit_scene
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
+from meshwind.results.apart import Apart, apart
 from meshwind.surface import shapes
 
 AROUND, ALONG, HEIGHT = 48, 40, 4.0

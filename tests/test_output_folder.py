@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from meshwind.errors import BadInputError
-from meshwind.output.folder import prepare, writing
+from meshwind.core.errors import BadInputError
+from meshwind.results.folder import prepare, writing
 
 
 def everything(folder: Path) -> list[str]:

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 from killed_writer import FOREIGN
 
-from meshwind.errors import BadInputError
-from meshwind.output.folder import prepare, writing
+from meshwind.core.errors import BadInputError
+from meshwind.results.folder import prepare, writing
 
 Sights = list[dict[str, Any]]
 OLD = dict.fromkeys(("paths.vtp", "report.json", "winding.png"), "old") | {FOREIGN: "mine"}

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from layup_shapes import HEIGHT, cylinder, helices, revolved, waisted
 
-from meshwind.cast import Floats
+from meshwind.core.cast import Floats
 from meshwind.layup.layup import assess
 from meshwind.layup.windability import of_frames
-from meshwind.output.maps import grid, maps
-from meshwind.output.winding_angle import winding_angle
+from meshwind.results.maps import grid, maps
+from meshwind.results.winding_angle import winding_angle
 from meshwind.surface.surface import Surface
 
 

@@ -12,10 +12,10 @@ from layup_shapes import bridged
 
 import meshwind as mw
 from meshwind.layup.layup import assess
-from meshwind.mandrel.mesh import Mesh
-from meshwind.output.folder import RESULTS
-from meshwind.output.maps import grid
-from meshwind.output.write import write_files
+from meshwind.mesh.geometry.mesh import Mesh
+from meshwind.results.folder import RESULTS
+from meshwind.results.maps import grid
+from meshwind.results.write import write_files
 from meshwind.surface import shapes
 
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")

@@ -10,16 +10,16 @@ import pytest
 from layup_shapes import bridged, cylinder, helices, waisted
 from PIL import Image
 
+from meshwind.appearance.view import best_view
+from meshwind.appearance.words import quantity
 from meshwind.layup.layup import assess
-from meshwind.layup.lengths import bridges
-from meshwind.mandrel.mesh import Mesh
-from meshwind.output.maps import grid
-from meshwind.output.report import report
-from meshwind.output.view import best_view
-from meshwind.output.words import quantity
+from meshwind.mesh.geometry.mesh import Mesh
+from meshwind.path.lengths import bridges
 from meshwind.pictures import driver
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import lifts, winding_scene
+from meshwind.results.maps import grid
+from meshwind.results.report import report
 from meshwind.surface import shapes
 
 
@@ -77,7 +77,7 @@ def test_writing_alone_does_not_load_vtk() -> None:
         [
             sys.executable,
             "-c",
-            "import sys, meshwind.output, meshwind.pictures.driver, meshwind.output.folder\n"
+            "import sys, meshwind.results, meshwind.pictures.driver, meshwind.results.folder\n"
             "print(sorted({name.split('.')[0] for name in sys.modules} & {'vtkmodules', 'vtk', 'pyvista', 'meshio'}))",
         ],
         capture_output=True,

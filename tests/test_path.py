@@ -2,15 +2,15 @@
 
 import numpy as np
 import pytest
+from comparison.problem import Problem
+from comparison.problems import PROBLEMS, RULING, TABLE, barrel, barrel_clairaut, bottle, hyperboloid, vase_radius
+from comparison.rubbing import TURN
 from scipy.optimize import brentq
 
-from meshwind.errors import BadInputError
-from meshwind.layup.lengths import bridges
-from meshwind.methods.problem import Problem
-from meshwind.methods.problems import PROBLEMS, RULING, TABLE, barrel, barrel_clairaut, bottle, hyperboloid, vase_radius
-from meshwind.methods.rubbing import TURN
+from meshwind.core.errors import BadInputError
 from meshwind.path import Paths, Status, solve
-from meshwind.path.touchdown import touchdowns
+from meshwind.path.kernels.touchdown import touchdowns
+from meshwind.path.lengths import bridges
 from meshwind.surface import shapes
 
 

@@ -8,7 +8,7 @@ from friction_checks import SHAPES, bent_shape
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from meshwind.cast import Floats
+from meshwind.core.cast import Floats
 from meshwind.path import Paths, Status, solve
 from meshwind.surface import Surface, shapes
 

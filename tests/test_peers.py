@@ -14,15 +14,15 @@ import numpy as np
 import potpourri3d
 import pygeodesic.geodesic
 import pytest
+from comparison.problems import barrel_radius, vase_radius
+from comparison.rubbing import TURN
 from irregular import annulus
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.spatial import cKDTree
 
 import meshwind as mw
-from meshwind.cast import Floats, Ints
-from meshwind.methods.problems import barrel_radius, vase_radius
-from meshwind.methods.rubbing import TURN
+from meshwind.core.cast import Floats, Ints
 from meshwind.surface.foot import feet
 
 

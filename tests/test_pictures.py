@@ -11,12 +11,9 @@ from export_results import leave
 from layup_shapes import bridged, cylinder, helices
 from PIL import Image
 
-from meshwind.cast import Floats, frozen
-from meshwind.errors import BadInputError
-from meshwind.export.results import read_results
-from meshwind.mandrel.mesh import Mesh
-from meshwind.output.maps import grid
-from meshwind.output.write import write_files
+from meshwind.core.cast import Floats, frozen
+from meshwind.core.errors import BadInputError
+from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.path.paths import Paths
 from meshwind.pictures import driver
 from meshwind.pictures.animation_scene import laid_before, turning
@@ -31,6 +28,9 @@ from meshwind.pictures.slip_picture import runs
 from meshwind.pictures.slip_scene import slip_scene
 from meshwind.pictures.subject import subject_of
 from meshwind.pictures.winding_scene import winding_scene
+from meshwind.results.maps import grid
+from meshwind.results.reading import read_results
+from meshwind.results.write import write_files
 
 SMALL = Page(480, 360)
 

@@ -4,12 +4,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
-from scipy.optimize import brentq
-
-from meshwind.methods.attempt import OURS, Outcome, attempt
-from meshwind.methods.problem import Kind, Problem
-from meshwind.methods.problems import (
+from comparison.attempt import OURS, Outcome, attempt
+from comparison.problem import Kind, Problem
+from comparison.problems import (
     BARREL_LIMIT,
     CONE_LIMIT,
     DRAGGED,
@@ -20,8 +17,12 @@ from meshwind.methods.problems import (
     barrel_length,
     vase_radius,
 )
-from meshwind.methods.rubbing import TURN, Dragged, Sliding
-from meshwind.path import solve, trace
+from comparison.rubbing import TURN, Dragged, Sliding
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from meshwind.march import trace
+from meshwind.path import solve
 
 EACH = pytest.mark.parametrize("problem", TABLE.values(), ids=TABLE.keys())
 

@@ -17,11 +17,11 @@ from mandrel_shapes import pear
 from strain_cases import CASES, barrel, laid, waist
 
 import meshwind as mw
-from meshwind.cast import Floats
+from meshwind.core.cast import Floats
 from meshwind.layup.layup import assess
-from meshwind.layup.lengths import bridges, lengths
-from meshwind.mandrel import mesh_from
-from meshwind.output.maps import grid, maps
+from meshwind.mesh import mesh_from
+from meshwind.path.lengths import bridges, lengths
+from meshwind.results.maps import grid, maps
 from meshwind.surface import Surface, shapes
 
 NAN_BY_CONTRACT = {"slip"}

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 from pyarrow import parquet
 
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
 from meshwind.sweep import read_study, sweep
 from meshwind.sweep.jobs import batches
 from meshwind.sweep.local import run_local

@@ -14,9 +14,9 @@ from export_results import waisted_results
 from PIL import Image
 
 from meshwind.cli.wind import wind
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
+from meshwind.core.units import MILLIMETRES, check_units, lengths_in, millimetres
 from meshwind.export.targets import Wishes, export
-from meshwind.units import MILLIMETRES, check_units, lengths_in, millimetres
 
 DATA = Path(__file__).parents[1] / "data"
 LENGTHS = {

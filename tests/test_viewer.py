@@ -16,10 +16,10 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import Select, WebDriverWait
 
-from meshwind.cast import Floats
+from meshwind.appearance.looks import MAPS
+from meshwind.core.cast import Floats
 from meshwind.export.targets import export
 from meshwind.export.viewer import scene
-from meshwind.output.looks import MAPS
 from meshwind.path.paths import Status
 
 FLAGS = (

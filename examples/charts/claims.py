@@ -3,11 +3,11 @@
 from typing import Any
 
 import numpy as np
+from comparison.problems import TABLE
 
 from charts.record import Results
 from charts.source_on_surface import half_sphere
 from meshwind.methods import Ending, run
-from meshwind.methods.problems import TABLE
 
 
 def explosions() -> dict[str, int]:

@@ -6,11 +6,11 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+from comparison.problems import TABLE
 
 from charts.record import Results
 from charts.style import LOOKS, save
 from charts.work_precision import Point, cannot, front
-from meshwind.methods.problems import TABLE
 
 OURS = "meshwind"
 NOISE = 1.1

@@ -10,7 +10,7 @@ import meshwind as mw
 from charts.record import Results
 from charts.style import BLUE, GREEN, GREY, RED, log_axes, save
 from charts.timing import timed
-from meshwind.mandrel import mesh_from
+from meshwind.mesh import mesh_from
 
 VERTICES = (1000, 4000, 16_000, 64_000)
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-12)

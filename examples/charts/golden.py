@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from meshwind.methods.golden import figures
+from comparison.golden import figures
 
 
 def rewrite(path: Path) -> None:

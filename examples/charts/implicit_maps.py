@@ -4,13 +4,13 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+from comparison.attempt import attempt, polyline
+from comparison.problem import Problem
+from comparison.problems import TABLE
 
 from charts.maps import classify, key, paint
 from charts.record import Results
 from charts.style import save
-from meshwind.methods.attempt import attempt, polyline
-from meshwind.methods.problem import Problem
-from meshwind.methods.problems import TABLE
 
 N = 51
 ALLOWED = 1e-3

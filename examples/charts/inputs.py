@@ -5,19 +5,19 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+from comparison.attempt import attempt
+from comparison.problem import Problem
+from comparison.problems import BARREL_LIMIT, TABLE, barrel_length, barrel_radius
+from comparison.rubbing import TURN
 from fit_cost import PARTS, irregular
 
 import meshwind as mw
 from charts.maps import classify, key, paint
 from charts.record import Results
 from charts.style import BLUE, GREEN, ORANGE, RED, log_axes, save
-from meshwind.cast import Floats
-from meshwind.errors import BadInputError
-from meshwind.mandrel import mesh_from
-from meshwind.methods.attempt import attempt
-from meshwind.methods.problem import Problem
-from meshwind.methods.problems import BARREL_LIMIT, TABLE, barrel_length, barrel_radius
-from meshwind.methods.rubbing import TURN
+from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
+from meshwind.mesh import mesh_from
 from meshwind.surface import Surface, shapes
 
 NOISE = (0.0, 1e-5, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2)

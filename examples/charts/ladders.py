@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from comparison.problem import Problem
 
 from meshwind.methods import stable_step
-from meshwind.methods.problem import Problem
 
 SIZES = (26, 51, 101, 201, 401, 801, 1601, 3201, 6401)
 QUICK_SIZES = (26, 101, 401)

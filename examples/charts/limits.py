@@ -4,12 +4,12 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+from comparison.problems import TABLE
 
 from charts.maps import key, paint
 from charts.record import Results
 from charts.style import save
 from meshwind.methods import Ending, largest_frequency, run, stable_step
-from meshwind.methods.problems import TABLE
 
 PROBLEM = TABLE["barrel-1.5"]
 SCHEMES = (

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from comparison.attempt import Attempt, Outcome
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
 from charts.style import CLASSES, SIGNS
-from meshwind.methods.attempt import Attempt, Outcome
 
 KEYS = list(CLASSES)
 SHADES = ListedColormap(["#BFE3D5" if key == "ok" else colour for key, (_, colour) in CLASSES.items()])

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 import matplotlib.pyplot as plt
 import numpy as np
+from comparison.problem import Kind
+from comparison.problems import TABLE
 
 from charts.record import Results
 from charts.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, log_axes, save
 from charts.work_precision import Point
-from meshwind.methods.problem import Kind
-from meshwind.methods.problems import TABLE
 
 CYCLE = (RED, BLUE, GREEN, ORANGE, PURPLE, SKY, BLACK, GREY)
 LEAST = 26

@@ -4,13 +4,13 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+from comparison.attempt import attempt
+from comparison.problems import TABLE
 
 from charts.record import Results
 from charts.style import GREEN, LOOKS, ORANGE, PURPLE, save
 from charts.timing import least
 from meshwind.methods import Run, run
-from meshwind.methods.attempt import attempt
-from meshwind.methods.problems import TABLE
 
 PROBLEM = TABLE["bottle-neck"]
 PARTICLES = 201

@@ -11,7 +11,7 @@ import numpy as np
 
 from charts.record import Results
 from charts.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY, save
-from meshwind.cast import Floats
+from meshwind.core.cast import Floats
 from meshwind.methods import run
 from meshwind.path import solve
 from meshwind.surface import Surface, shapes

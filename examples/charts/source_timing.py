@@ -7,18 +7,18 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+from comparison.attempt import attempt
+from comparison.problem import Problem
+from comparison.problems import TABLE
 
 from charts.ladders import SIZES
 from charts.record import Results
 from charts.style import BLUE, GREY, ORANGE, SKY, save
 from charts.timing import least
 from meshwind.methods import backward_euler, run
-from meshwind.methods.attempt import attempt
 from meshwind.methods.chain import Physics, carry, gather, link, place
 from meshwind.methods.lifting import PULL, contact
 from meshwind.methods.march import forces_for
-from meshwind.methods.problem import Problem
-from meshwind.methods.problems import TABLE
 
 SOURCE = {"build": 233.22, "solve": 204.35, "lift and land": 149.65, "other": 15.86}
 """Milliseconds, C++ on 6 threads of a Core i7 7700K; its surface and number of particles are not given."""

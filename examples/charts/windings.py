@@ -6,15 +6,15 @@ from functools import cache, partial
 
 import matplotlib.pyplot as plt
 import numpy as np
+from comparison.attempt import Attempt, attempt
+from comparison.problem import Problem
+from comparison.rubbing import TURN, Sliding
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from charts.maps import classify, key, paint
 from charts.record import Results
 from charts.style import save
-from meshwind.methods.attempt import Attempt, attempt
-from meshwind.methods.problem import Problem
-from meshwind.methods.rubbing import TURN, Sliding
 from meshwind.surface import Surface, shapes
 
 N = 201

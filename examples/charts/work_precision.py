@@ -7,16 +7,16 @@ from importlib.util import find_spec
 from typing import Any
 
 import matplotlib.pyplot as plt
+from comparison.attempt import Attempt, Outcome, attempt
+from comparison.peers_smooth import collocate, shoot, shoot_traced
+from comparison.problem import Kind, Problem
+from comparison.problems import TABLE
 from matplotlib.axes import Axes
 
 from charts.ladders import KEPT, QUICK_SIZES, RULED, SIZES, trials
 from charts.record import Results
 from charts.style import LOOKS, log_axes, save
 from charts.timing import least, timed
-from meshwind.methods.attempt import Attempt, Outcome, attempt
-from meshwind.methods.peers_smooth import collocate, shoot, shoot_traced
-from meshwind.methods.problem import Kind, Problem
-from meshwind.methods.problems import TABLE
 
 CHAINS = (
     "meshwind",
@@ -166,7 +166,7 @@ def peers(problem: Problem, quick: bool) -> list[Point]:
     if find_spec("potpourri3d") is None or find_spec("pygeodesic") is None:
         print("the mesh peers are left out: pip install 'meshwind[peers]'")
         return points
-    from meshwind.methods.peers_mesh import PEERS, facets
+    from comparison.peers_mesh import PEERS, facets
 
     for method, solver_on_mesh in PEERS.items():
         if cannot(problem, method) is not None:

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from meshwind.cast import Floats, Kept
-from meshwind.mandrel.annulus import Annulus
+from meshwind.core.cast import Floats, Kept
+from meshwind.mesh.geometry.annulus import Annulus
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import dijkstra
 
-from meshwind.cast import Bools, Ints
-from meshwind.mandrel.annulus import Annulus
-from meshwind.mandrel.topology import edges
+from meshwind.core.cast import Bools, Ints
+from meshwind.mesh.geometry.annulus import Annulus
+from meshwind.mesh.geometry.topology import edges
 
 
 def seam(annulus: Annulus) -> Ints:

@@ -7,15 +7,15 @@ import igl
 import numpy as np
 from scipy import sparse
 
-from meshwind.cast import Floats, Ints, frozen
 from meshwind.chart.chart import Chart
 from meshwind.chart.cut import far_side, seam
 from meshwind.chart.measure import signed_areas
 from meshwind.chart.phase import canonical
 from meshwind.chart.spacing import even_speed
-from meshwind.errors import BadInputError
-from meshwind.mandrel.annulus import Annulus
-from meshwind.mandrel.topology import edges
+from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.errors import BadInputError
+from meshwind.mesh.geometry.annulus import Annulus
+from meshwind.mesh.geometry.topology import edges
 
 EVEN = 1.15
 """Mean stretch (1 at best) up to which a chart is left as it is: mandrel-like parts need no second solve."""

@@ -3,8 +3,8 @@
 import numpy as np
 from numba import njit
 
-from meshwind.cast import Floats, Ints, frozen
-from meshwind.mandrel.annulus import Annulus
+from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.mesh.geometry.annulus import Annulus
 
 
 def signed_areas(corner_uv: Floats) -> Floats:

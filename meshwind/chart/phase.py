@@ -3,8 +3,8 @@
 import igl
 import numpy as np
 
-from meshwind.cast import Floats
-from meshwind.mandrel.annulus import Annulus
+from meshwind.core.cast import Floats
+from meshwind.mesh.geometry.annulus import Annulus
 
 CLEAR = 1e-9
 """A Fourier coefficient below this share of the whole is round-off: the part is symmetric in that order."""

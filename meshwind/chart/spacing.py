@@ -3,9 +3,9 @@
 import numpy as np
 from scipy.interpolate import PchipInterpolator, make_lsq_spline
 
-from meshwind.cast import Floats
 from meshwind.chart.measure import signed_areas, speeds
-from meshwind.mandrel.annulus import Annulus
+from meshwind.core.cast import Floats
+from meshwind.mesh.geometry.annulus import Annulus
 
 BINS = 96
 PIECES = 12

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 
 from meshwind.cli.arguments import AsJson, Component, Ends, MeshFile, Opening, Quiet
 from meshwind.cli.outcome import tell
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
 
 if TYPE_CHECKING:
-    from meshwind.mandrel.findings import Findings, Piece, Rim
+    from meshwind.mesh.opening.findings import Findings, Piece, Rim
 
 EXAMPLES = """
     # can this be wound, and where would it be opened?
@@ -35,7 +35,7 @@ def check(
 
     Exit status: 0 it has two ends and can be wound; 2 it cannot, and one line says why.
     """
-    from meshwind.mandrel import inspect
+    from meshwind.mesh import inspect
 
     if component < 0:
         raise BadInputError(f"component is {component}; give a whole number from 0 up")
@@ -94,7 +94,7 @@ def _piece(piece: "Piece", chosen: int) -> str:
 
 
 def _rim(rim: "Rim", diagonal: float) -> str:
-    from meshwind.mandrel.ends import place
+    from meshwind.mesh.opening.ends import place
 
     use = f", {rim.use}" if rim.use else ""
     return f"{rim.number}: at {place(rim.place, diagonal)}, {rim.length:.4g} long, {rim.vertices} vertices{use}"

@@ -6,9 +6,9 @@ from typing import Annotated, Any, get_args, get_type_hints
 import typer
 
 from meshwind.cli.help import FILES
-from meshwind.errors import BadInputError
-from meshwind.spelled import shortened
-from meshwind.toml import nearest, read_toml
+from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import shortened
+from meshwind.core.toml import nearest, read_toml
 
 _PATHS = "mesh", "out", "pins"
 """Options that hold a path: relative to the file that they stand in."""

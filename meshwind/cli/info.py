@@ -7,7 +7,7 @@ import typer
 
 from meshwind.cli.arguments import AsJson, Quiet
 from meshwind.cli.outcome import tell
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
 
 EXAMPLES = """
     # a mesh: format, size, pieces, rims, fields
@@ -49,7 +49,7 @@ def _installation() -> tuple[list[str], dict[str, Any]]:
 
 def _run(folder: Path) -> tuple[list[str], dict[str, Any]]:
     from meshwind.cli import redesign, summary
-    from meshwind.export.results import read_report
+    from meshwind.results.reading import read_report
 
     report = read_report(folder)
     described = redesign.described if "redesign" in report else summary.described
@@ -64,8 +64,8 @@ def _mesh(file: Path) -> tuple[list[str], dict[str, Any]]:
     from dataclasses import asdict
 
     from meshwind.cli.check import described
-    from meshwind.mandrel import inspect
-    from meshwind.mandrel.scalars import scalar_names
+    from meshwind.mesh import inspect
+    from meshwind.mesh.io.scalars import scalar_names
 
     found = inspect(file)
     fields = scalar_names(file)

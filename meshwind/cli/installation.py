@@ -5,8 +5,8 @@ from importlib import metadata
 from importlib.util import find_spec
 from typing import Any
 
-from meshwind.errors import BadInputError
-from meshwind.version import version
+from meshwind.core.errors import BadInputError
+from meshwind.core.version import version
 
 _LIBRARIES = "numpy", "scipy", "numba", "libigl", "trimesh", "meshio", "pyvista", "vtk", "matplotlib", "pillow", "osqp"
 _EXTRAS = {"cad": ("OCP", "STEP"), "viewer": ("plotly", "viewer.html")}

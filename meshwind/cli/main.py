@@ -12,7 +12,7 @@ import typer
 from meshwind.cli import check, export, info, redesign, render, sweep, wind
 from meshwind.cli.help import Command, Group
 from meshwind.cli.usage import told
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
 
 UNPRINTED = 1
 BAD_INPUT = 2
@@ -56,7 +56,7 @@ app.command(cls=Command, short_help="Tell of a mesh, a run or this installation.
 
 def _version(wanted: bool) -> None:
     if wanted:
-        from meshwind.version import version
+        from meshwind.core.version import version
 
         typer.echo(f"meshwind {version()}")
         raise typer.Exit

@@ -13,7 +13,7 @@ import typer
 def tell(lines: Sequence[str], figures: Mapping[str, Any], as_json: bool, quiet: bool) -> None:
     """Print figures as JSON, or the lines, or with `quiet` none but warnings, these to standard error."""
     if as_json:
-        from meshwind.output.report import plain
+        from meshwind.results.report import plain
 
         typer.echo(json.dumps(plain(figures), indent=2, allow_nan=False))
     elif not quiet:

@@ -28,8 +28,8 @@ from meshwind.cli.help import FIBRES, FILES
 from meshwind.cli.outcome import tell
 from meshwind.cli.summary import note_line
 from meshwind.cli.wind import UNSETTLED
-from meshwind.spelled import turns
-from meshwind.units import check_units, unit_told
+from meshwind.core.parsing import turns
+from meshwind.core.units import check_units, unit_told
 
 EXAMPLES = """
     # the nearest part that can be wound, into part-redesigned/
@@ -96,8 +96,8 @@ def redesign(
     """
     # the numerical libraries are imported late: --help and usage errors must not wait for them
     from meshwind.edited import write_redesign
-    from meshwind.editing import redesign as edit_mesh
-    from meshwind.output import folder
+    from meshwind.redesign import redesign as edit_mesh
+    from meshwind.results import folder
 
     del config  # its values have become those of the others
     check_units(units)
@@ -141,7 +141,7 @@ def redesign(
 
 def described(report: dict[str, Any]) -> list[str]:
     """A redesign's report in a few lines; raises LookupError or TypeError where a figure is missing."""
-    from meshwind.output.words import quantity
+    from meshwind.appearance.words import quantity
 
     part, told, wound = report["mesh"], report["redesign"], report["wound"]
     units = unit_told(part["units"])

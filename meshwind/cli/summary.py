@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from meshwind.units import unit_told
+from meshwind.core.units import unit_told
 
 
 def described(report: dict[str, Any]) -> list[str]:
@@ -29,7 +29,7 @@ def note_line(told: str) -> str:
 
 def _surface(surface: dict[str, Any], size: float, units: str) -> list[str]:
     """The fit's errors both ways, each also over the part's diagonal."""
-    from meshwind.output.words import quantity, ratio
+    from meshwind.appearance.words import quantity, ratio
 
     around, along = surface["control_points"]
     vertices, facets = surface["fit_error"]["to_surface"]["max"], surface["fit_error"]["to_mesh"]["max"]
@@ -41,7 +41,7 @@ def _surface(surface: dict[str, Any], size: float, units: str) -> list[str]:
 
 
 def _paths(paths: dict[str, Any], units: str) -> list[str]:
-    from meshwind.output.words import quantity
+    from meshwind.appearance.words import quantity
 
     failed = len(paths["not_converged"])
     whose = f"; {'these' if paths['converged'] else 'all'}" if failed else ""
@@ -60,7 +60,7 @@ def _paths(paths: dict[str, Any], units: str) -> list[str]:
 
 def _layup(report: dict[str, Any], units: str) -> list[str]:
     """Coverage and spacing; the fibre's mass where it is known."""
-    from meshwind.output.words import quantity
+    from meshwind.appearance.words import quantity
 
     cover, near, fibre = report["coverage"], report["spacing"]["neighbours"], report["fibre"]
     shares = ", ".join(f"{name} {100.0 * cover[name]:.0f} %" for name in ("bare", "once", "twice", "more"))

@@ -26,7 +26,7 @@ from meshwind.cli.display import display
 from meshwind.cli.help import FIBRES, FILES, SURFACE, one_of
 from meshwind.cli.outcome import tell
 from meshwind.cli.summary import described
-from meshwind.spelled import count, turns
+from meshwind.core.parsing import count, turns
 
 UNSETTLED = 3
 EXAMPLES = """
@@ -43,7 +43,7 @@ EXAMPLES = """
     meshwind wind part.stl --ends z --opening 15
 
     # the same again, but denser, elsewhere
-    meshwind wind --config part-wound/meshwind.toml --paths 48 --out denser
+    meshwind wind --config part-wound/meshwind.core.toml --paths 48 --out denser
 """
 
 

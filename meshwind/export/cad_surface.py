@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from meshwind.cast import Floats, frozen
-from meshwind.errors import BadInputError
+from meshwind.core.cast import Floats, frozen
+from meshwind.core.errors import BadInputError
 from meshwind.export.opencascade import need, occ, quiet
 from meshwind.surface.interpolate import sites, through
 from meshwind.surface.surface import FitError, Surface

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from meshwind.cast import Bools, Floats, Ints, frozen
+from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.path.paths import Paths, Status
 from meshwind.surface.surface import Surface
 

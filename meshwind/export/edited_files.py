@@ -6,13 +6,13 @@ from typing import Any
 import meshio
 import numpy as np
 
-from meshwind.editing.redesign import Redesign
-from meshwind.editing.result import Round
+from meshwind.core.version import version
 from meshwind.export.signature import sign
-from meshwind.output.report import mesh_figures, plain, unsettled
-from meshwind.output.vtk_files import write_faces
 from meshwind.path.paths import Status
-from meshwind.version import version
+from meshwind.redesign.redesign import Redesign
+from meshwind.redesign.result import Round
+from meshwind.results.report import mesh_figures, plain, unsettled
+from meshwind.results.vtk_files import write_faces
 
 
 def write_edited(out: Path, edited: Redesign, units: str = "") -> None:

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from meshwind.cast import Floats, Ints, frozen
-from meshwind.errors import BadInputError
-from meshwind.export.results import Results
-from meshwind.export.vtk_reading import read_faces
+from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.errors import BadInputError
 from meshwind.layup.quads import edge_counts
+from meshwind.results.reading import Results
+from meshwind.results.vtk_reading import read_faces
 from meshwind.surface.surface import Surface
 
 _FEWEST = 12, 4

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from meshwind.cast import Floats
+from meshwind.core.cast import Floats
 from meshwind.export.elements import Elements
 from meshwind.export.plies import Plies
 from meshwind.export.signature import sign

@@ -8,13 +8,13 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from meshwind.cast import Floats, Ints
-from meshwind.export.results import Results
+from meshwind.core.cast import Floats, Ints
+from meshwind.core.units import lengths_in
 from meshwind.export.signature import sign
 from meshwind.export.skin import read_skin
-from meshwind.export.vtk_reading import Faces, Lines, read_faces, read_lines, read_vertices
 from meshwind.export.xdmf import write_xdmf
-from meshwind.units import lengths_in
+from meshwind.results.reading import Results
+from meshwind.results.vtk_reading import Faces, Lines, read_faces, read_lines, read_vertices
 
 FOLDER = "formats"
 

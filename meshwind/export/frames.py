@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from meshwind.cast import Floats, frozen
-from meshwind.errors import BadInputError
-from meshwind.export.results import Results
-from meshwind.units import millimetres
+from meshwind.core.cast import Floats, frozen
+from meshwind.core.errors import BadInputError
+from meshwind.core.units import millimetres
+from meshwind.results.reading import Results
 
 HEADER = (
     "index,arc_length,parameter_s,x,y,z,tx,ty,tz,nx,ny,nz,sx,sy,sz,width,left_x,left_y,left_z,right_x,right_y,right_z"

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from meshwind.units import millimetres
+from meshwind.core.units import millimetres
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
 
 MISSING = "STEP and IGES need OpenCASCADE; install it with: pip install 'meshwind[cad]'"
 

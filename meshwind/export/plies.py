@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshwind.cast import Floats, frozen
-from meshwind.errors import BadInputError
+from meshwind.core.cast import Floats, frozen
+from meshwind.core.errors import BadInputError
 from meshwind.export.direction import axes, directions, laid
 from meshwind.export.elements import Elements
-from meshwind.export.results import Results
 from meshwind.layup.coverage import coverage
+from meshwind.results.reading import Results
 
 LAYER = 1e-3
 """Thickness of one layer of band over the part's diagonal, where none is given."""

@@ -11,7 +11,7 @@ from typing import TextIO
 
 import numpy as np
 
-from meshwind.cast import Floats, Ints
+from meshwind.core.cast import Floats, Ints
 from meshwind.export.elements import Elements
 from meshwind.export.material import Material
 from meshwind.export.plies import Plies

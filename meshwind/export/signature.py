@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from meshwind.units import lengths_in
+from meshwind.core.units import lengths_in
 
 _SIGNED = re.compile(rb"(written|This file was created) by meshio v[\w.]+|Created by meshio [^\n]+")
 

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from meshwind.errors import BadInputError
-from meshwind.export.vtk_reading import Faces, read_faces
-from meshwind.output.maps import grid
+from meshwind.core.errors import BadInputError
+from meshwind.results.maps import grid
+from meshwind.results.vtk_reading import Faces, read_faces
 from meshwind.surface.surface import Surface
 
 FILE = "surface.vtu"

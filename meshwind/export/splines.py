@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshwind.cast import Floats, frozen
+from meshwind.core.cast import Floats, frozen
 from meshwind.surface.surface import DEGREE, Surface
 
 

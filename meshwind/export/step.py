@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from meshwind.cast import Floats
-from meshwind.errors import BadInputError
+from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
+from meshwind.core.units import millimetres
 from meshwind.export.opencascade import knots_array, need, occ, points_array, quiet
-from meshwind.export.results import Results
 from meshwind.export.splines import clamped_surface, curve_through
+from meshwind.results.reading import Results
 from meshwind.surface.surface import DEGREE, Surface
-from meshwind.units import millimetres
 
 FILE = "surface.step"
 TIME = "1970-01-01T00:00:00"

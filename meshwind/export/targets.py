@@ -6,18 +6,18 @@ from os import PathLike
 from pathlib import Path
 from typing import TypeAlias
 
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
 from meshwind.export.elements import Elements, on_crossings, regular
 from meshwind.export.fibers import write_fibers
 from meshwind.export.formats import FORMATS, write_formats
 from meshwind.export.frames import write_frames
 from meshwind.export.material import Material
-from meshwind.export.place import beside
 from meshwind.export.plies import plies
-from meshwind.export.results import Results, read_results
 from meshwind.export.shell_deck import Deck, write_decks
 from meshwind.export.step import write_step
 from meshwind.export.viewer import write_viewer
+from meshwind.results.place import beside
+from meshwind.results.reading import Results, read_results
 
 GRID, QUADS = "grid", "quads"
 

@@ -12,16 +12,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from meshwind.cast import Bools, Ints
-from meshwind.errors import BadInputError
-from meshwind.export.results import Results
+from meshwind.appearance.colours import colour_map
+from meshwind.appearance.looks import MAPS
+from meshwind.appearance.view import best_view
+from meshwind.appearance.words import quantity
+from meshwind.core.cast import Bools, Ints
+from meshwind.core.errors import BadInputError
 from meshwind.export.skin import read_skin
-from meshwind.export.vtk_reading import Faces
-from meshwind.layup.lengths import lengths
-from meshwind.output.colours import colour_map
-from meshwind.output.looks import MAPS
-from meshwind.output.view import best_view
-from meshwind.output.words import quantity
+from meshwind.path.lengths import lengths
+from meshwind.results.reading import Results
+from meshwind.results.vtk_reading import Faces
 
 _MOST = 12_000
 """Points of the surface that a browser turns smoothly without a graphics card."""

@@ -12,7 +12,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from meshwind.cast import Floats, Ints
+from meshwind.core.cast import Floats, Ints
 
 _NAMES = {"vertex": "Polyvertex", "line": "Polyline", "triangle": "Triangle", "quad": "Quadrilateral"}
 _NUMBERS = {"triangle": 4, "quad": 5}

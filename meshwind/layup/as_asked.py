@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshwind.cast import frozen
+from meshwind.core.cast import frozen
 from meshwind.path.paths import Paths
 from meshwind.path.solve import straight
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from meshwind.cast import Floats, Ints, frozen
+from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.path.paths import Paths
 from meshwind.surface.surface import Surface
 

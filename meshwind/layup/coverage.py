@@ -6,8 +6,8 @@ from math import floor
 import numpy as np
 from numba import njit
 
-from meshwind.cast import Floats, frozen
-from meshwind.errors import BadInputError
+from meshwind.core.cast import Floats, frozen
+from meshwind.core.errors import BadInputError
 from meshwind.path.paths import Paths
 from meshwind.surface.surface import Surface
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshwind.cast import Bools, Floats, Ints, frozen
+from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.layup.segments import meetings
 from meshwind.layup.sharpen import sharpened
 from meshwind.path.paths import Paths

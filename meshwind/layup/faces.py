@@ -4,7 +4,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from meshwind.cast import Bools, Floats, Ints
+from meshwind.core.cast import Bools, Floats, Ints
 
 
 def trace(tail: Ints, angle: Floats, outer: Bools) -> list[Ints] | None:

@@ -3,16 +3,17 @@
 from dataclasses import dataclass
 from functools import cached_property
 
-from meshwind.cast import Bools, Ints
-from meshwind.errors import BadInputError
+from meshwind.core.cast import Bools, Ints
+from meshwind.core.errors import BadInputError
 from meshwind.layup.as_asked import as_asked
 from meshwind.layup.bands import Bands, bands
+from meshwind.layup.cell_sides import CellSides, cell_sides
 from meshwind.layup.coverage import Coverage, coverage
 from meshwind.layup.crossings import Crossings, crossings, own_crossings
-from meshwind.layup.neighbours import CellSides, Neighbours, cell_sides, neighbours
 from meshwind.layup.quad_quality import QuadQuality, quad_quality
 from meshwind.layup.quads import QuadMesh, quads
 from meshwind.layup.windability import Windability, windability
+from meshwind.path.neighbours import Neighbours, neighbours
 from meshwind.path.paths import Paths, Status
 
 _FEWEST = 3

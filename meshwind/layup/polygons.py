@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from meshwind.cast import Floats, Ints
+from meshwind.core.cast import Floats, Ints
 
 
 def split(polygons: list[Ints], points: Floats) -> tuple[Ints, Ints]:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshwind.cast import Bools, Floats, frozen
+from meshwind.core.cast import Bools, Floats, frozen
 from meshwind.layup.quads import QuadMesh
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshwind.cast import Bools, Floats, Ints, frozen
+from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.layup.crossings import SHARED, Crossings, own_crossings
 from meshwind.layup.faces import trace
 from meshwind.layup.polygons import split

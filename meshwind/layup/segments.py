@@ -5,7 +5,7 @@ from math import ceil, floor
 import numpy as np
 from numba import njit
 
-from meshwind.cast import Floats, Ints
+from meshwind.core.cast import Floats, Ints
 
 REACH = 1e-9
 """How far past its ends a segment still meets another, in its own lengths; the doubles are merged later."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from meshwind.cast import Bools, Floats, Ints
+from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.path.paths import Paths
 
 _STEPS = 4

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshwind.cast import Floats, Ints, frozen
+from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.surface.surface import Surface
 
 FLAT = 1e-3

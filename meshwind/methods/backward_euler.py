@@ -7,7 +7,7 @@ is O(n); with lifted particles its rows are those of (5.2).
 from numba import njit
 
 from meshwind.methods.chain import SOLVES
-from meshwind.path.block_tridiagonal import solve
+from meshwind.path.kernels.block_tridiagonal import solve
 from meshwind.surface.evaluate import SU
 
 

@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshwind.cast import Bools, Floats, Ints, floats, frozen
-from meshwind.errors import BadInputError
+from meshwind.core.cast import Bools, Floats, Ints, floats, frozen
+from meshwind.core.errors import BadInputError
 from meshwind.methods import march, march_space
 from meshwind.methods.chain import Physics
 from meshwind.methods.run import Ending, History, Method, Run

@@ -4,8 +4,8 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import ArrayLike
 
-from meshwind.cast import Floats, floats
-from meshwind.errors import BadInputError
+from meshwind.core.cast import Floats, floats
+from meshwind.core.errors import BadInputError
 from meshwind.methods.run import Method
 from meshwind.surface.evaluate import SU, SUU, SUV, SVV, S
 from meshwind.surface.surface import Surface

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import IntEnum, StrEnum
 
-from meshwind.cast import Bools, Floats
+from meshwind.core.cast import Bools, Floats
 from meshwind.path.paths import Counters
 
 

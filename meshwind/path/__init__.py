@@ -1,8 +1,7 @@
 """Taut paths on a surface."""
 
 from meshwind.path.drag import drag
-from meshwind.path.forward import Stop, Trace, trace, traces
 from meshwind.path.paths import Counters, Paths, Status
 from meshwind.path.solve import solve
 
-__all__ = ["Counters", "Paths", "Status", "Stop", "Trace", "drag", "solve", "trace", "traces"]
+__all__ = ["Counters", "Paths", "Status", "drag", "solve"]

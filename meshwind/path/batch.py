@@ -4,15 +4,15 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from meshwind.cast import Bools, Floats, Ints, frozen
-from meshwind.path.certificate import PULL
+from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.core.threads import spread
 from meshwind.path.friction import Friction
-from meshwind.path.hold import hold_all
-from meshwind.path.lay import lay_all
-from meshwind.path.refine import refine_all
-from meshwind.path.relax import LIFTED, relax_all
+from meshwind.path.kernels.certificate import PULL
+from meshwind.path.kernels.hold import hold_all
+from meshwind.path.kernels.lay import lay_all
+from meshwind.path.kernels.refine import refine_all
+from meshwind.path.kernels.relax import LIFTED, relax_all
 from meshwind.surface.surface import Surface
-from meshwind.threads import spread
 
 NO_TREE = frozen(np.empty((0, 12, 16))), frozen(np.empty((0, 3), np.int64)), frozen(np.empty((0, 3, 16)))
 """Read-only as the tree itself, so that kernels compile once."""

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshwind.cast import Floats, floats
-from meshwind.errors import BadInputError
+from meshwind.core.cast import Floats, floats
+from meshwind.core.errors import BadInputError
 from meshwind.path.batch import Batch, Setting, fresh
 from meshwind.path.friction import Friction, friction_of
 from meshwind.path.ladder import failing

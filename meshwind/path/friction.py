@@ -6,8 +6,8 @@ from functools import cache, cached_property
 
 import numpy as np
 
-from meshwind.cast import Floats, floats, frozen
-from meshwind.errors import BadInputError
+from meshwind.core.cast import Floats, floats, frozen
+from meshwind.core.errors import BadInputError
 from meshwind.surface.surface import Surface
 
 ROWS = COLUMNS = 256

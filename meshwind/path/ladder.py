@@ -8,10 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshwind.cast import Bools, Floats, Ints
+from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.path.batch import Batch, Setting, fresh, resampled
 from meshwind.path.friction import Friction, uniform
-from meshwind.path.lay import FEWEST, halvings, turn_of
+from meshwind.path.kernels.lay import FEWEST, halvings, turn_of
 from meshwind.path.paths import EDGE, Status, sharpest_turn
 
 REST, CUT = int(Status.CONVERGED), int(Status.TOO_COARSE)

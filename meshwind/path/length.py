@@ -8,11 +8,11 @@ is straight from where it truly leaves the surface, between particles, to where 
 import numpy as np
 from numba import njit
 
-from meshwind.cast import Bools, Floats
-from meshwind.path.state import distance
-from meshwind.path.touchdown import touchdown
+from meshwind.core.cast import Bools, Floats
+from meshwind.core.threads import spread
+from meshwind.path.kernels.state import distance
+from meshwind.path.kernels.touchdown import touchdown
 from meshwind.surface.surface import Surface
-from meshwind.threads import spread
 
 
 @njit(cache=True)

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from meshwind.cast import Bools, Floats, Ints, frozen
+from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.path.length import fibre_lengths
 from meshwind.surface.surface import Surface
 

@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshwind.cast import Floats, floats, frozen, ints
-from meshwind.errors import BadInputError
+from meshwind.core.cast import Floats, floats, frozen, ints
+from meshwind.core.errors import BadInputError
 from meshwind.path.batch import Batch, Setting
 from meshwind.path.friction import Friction, friction_of
 from meshwind.path.ladder import climb

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from meshwind.cast import Floats, Ints
-from meshwind.errors import BadInputError
-from meshwind.layup.lengths import lengths
+from meshwind.core.cast import Floats, Ints
+from meshwind.core.errors import BadInputError
+from meshwind.path.lengths import lengths
 from meshwind.pictures.subject import Subject
 from meshwind.pictures.winding_scene import winding_scene
 

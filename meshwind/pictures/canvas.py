@@ -8,7 +8,7 @@ import pyvista as pv
 from matplotlib import get_data_path
 from PIL import Image, ImageDraw, ImageFont
 
-from meshwind.output.looks import round_below
+from meshwind.appearance.looks import round_below
 from meshwind.pictures.page import DESIGNED, Page
 
 LEFT, RIGHT, TOP, BOTTOM = 60, 285, 150, 120

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from meshwind.layup.layup import Layup
-from meshwind.mandrel.annulus import Annulus
+from meshwind.mesh.geometry.annulus import Annulus
 from meshwind.pictures.fit_scene import fit_scene
 from meshwind.pictures.page import Page
 from meshwind.pictures.subject import subject

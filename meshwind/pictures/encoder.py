@@ -3,7 +3,7 @@
 import shutil
 from importlib.util import find_spec
 
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
 
 
 def encoder() -> str:

@@ -4,12 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from meshwind.cast import Bools, Floats
-from meshwind.mandrel.annulus import Annulus
-from meshwind.mandrel.measure import edge_lengths
-from meshwind.output.apart import Apart, Body, Place, apart
-from meshwind.output.view import around, place_view
-from meshwind.output.words import quantity
+from meshwind.appearance.view import around, place_view
+from meshwind.appearance.words import quantity
+from meshwind.core.cast import Bools, Floats
+from meshwind.mesh.geometry.annulus import Annulus
+from meshwind.mesh.geometry.measure import edge_lengths
+from meshwind.results.apart import Apart, Body, Place, apart
 from meshwind.surface.surface import Surface
 
 _EYES = 240

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from meshwind.output.looks import Look, fixed
+from meshwind.appearance.looks import Look, fixed
 from meshwind.pictures.subject import Subject
 from meshwind.pictures.winding_scene import fibres
 

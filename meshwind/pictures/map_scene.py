@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from meshwind.cast import Floats, Ints
+from meshwind.appearance.looks import MAPS
+from meshwind.appearance.words import quantity
+from meshwind.core.cast import Floats, Ints
 from meshwind.layup.windability import CONCAVE, CONVEX, SADDLE
-from meshwind.output.looks import MAPS
-from meshwind.output.words import quantity
 from meshwind.pictures.subject import Subject
 
 _GLYPHS = 26

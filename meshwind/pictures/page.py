@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
 
 LEAST, MOST = 240, 8192
 """Fewest pixels of a side that words can be read on, most that graphics can be trusted to draw."""

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 
-from meshwind.output.colours import colour_map
+from meshwind.appearance.colours import colour_map
 from meshwind.pictures import canvas, map_picture
 from meshwind.pictures.page import Page, page_of
 

@@ -7,14 +7,14 @@ from typing import Any
 import igl
 import numpy as np
 
-from meshwind.cast import Floats, Ints, floats, ints
-from meshwind.errors import BadInputError
-from meshwind.export.vtk_reading import read_faces
-from meshwind.output.looks import DIVERGING, Look, both_ways
-from meshwind.output.view import around, named_view, place_view
-from meshwind.output.words import quantity
+from meshwind.appearance.looks import DIVERGING, Look, both_ways
+from meshwind.appearance.view import around, named_view, place_view
+from meshwind.appearance.words import quantity
+from meshwind.core.cast import Floats, Ints, floats, ints
+from meshwind.core.errors import BadInputError
 from meshwind.pictures import driver
 from meshwind.pictures.page import Page
+from meshwind.results.vtk_reading import read_faces
 
 EDITED = "edited.vtu"
 """A redesign's folder is one that holds this: the edited mesh as triangles, with the point data `displacement`."""

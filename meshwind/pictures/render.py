@@ -7,10 +7,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from meshwind.errors import BadInputError
-from meshwind.export.place import beside
-from meshwind.export.results import read_report, read_results
-from meshwind.output.view import NAMED
+from meshwind.appearance.view import NAMED
+from meshwind.core.errors import BadInputError
+from meshwind.core.units import unit_told
 from meshwind.pictures import driver
 from meshwind.pictures.animation_scene import animation_scene
 from meshwind.pictures.encoder import encoder
@@ -19,7 +18,8 @@ from meshwind.pictures.page import Page
 from meshwind.pictures.redesign_scene import EDITED, redesign_in
 from meshwind.pictures.sheet import cell, write_sheet
 from meshwind.pictures.subject import Subject, subject_of
-from meshwind.units import unit_told
+from meshwind.results.place import beside
+from meshwind.results.reading import read_report, read_results
 
 Scenes = dict[str, dict[str, Any]]
 Tell = Callable[[str, int, int], None]

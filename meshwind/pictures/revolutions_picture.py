@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from meshwind.layup.revolutions import FRICTION, WIDER, Revolutions
+from meshwind.planning.revolutions import FRICTION, WIDER, Revolutions
 
 _INK, _FAINT = "#1c1c1c", "#5a5a5a"
 _PRESSES, _COMMON, _BRIDGED, _SLIDES, _CHOICE = "#b9cfe4", "#2f6da8", "#b3541e", "#d9d4cb", "#1c7c3c"

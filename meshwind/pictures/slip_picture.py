@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from meshwind.output.colours import colour_map
+from meshwind.appearance.colours import colour_map
 from meshwind.pictures import bodies, canvas, map_picture
 from meshwind.pictures.page import page_of
 

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from meshwind.cast import Floats
-from meshwind.output.looks import Scale
+from meshwind.appearance.looks import Scale
+from meshwind.core.cast import Floats
 from meshwind.pictures.subject import Subject
 from meshwind.pictures.winding_scene import fibres
 

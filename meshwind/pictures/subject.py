@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from meshwind.cast import Bools, Floats, Ints
-from meshwind.export.results import Results
+from meshwind.appearance.view import View, best_view, named_view
+from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.export.skin import read_skin
 from meshwind.layup.layup import Layup
-from meshwind.layup.lengths import lengths
-from meshwind.output.figures import PathFigures, path_figures
-from meshwind.output.maps import grid
-from meshwind.output.view import View, best_view, named_view
+from meshwind.path.lengths import lengths
 from meshwind.path.paths import Paths, Status
+from meshwind.results.figures import PathFigures, path_figures
+from meshwind.results.maps import grid
+from meshwind.results.reading import Results
 
 _MOST_POINTS, _FEWEST_POINTS, _ALL_POINTS = 250, 40, 60_000
 """Points of a path that are drawn, as more do not show; of many paths fewer each, as tubes take 7 kB a point."""

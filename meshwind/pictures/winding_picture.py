@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from meshwind.output.colours import colour_map
-from meshwind.output.looks import round_below
+from meshwind.appearance.colours import colour_map
+from meshwind.appearance.looks import round_below
 from meshwind.pictures import bodies, canvas
 from meshwind.pictures.page import page_of
 

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from meshwind.cast import Floats, Ints
-from meshwind.layup.lengths import Bridges, bridges, lengths
-from meshwind.output.words import quantity
+from meshwind.appearance.words import quantity
+from meshwind.core.cast import Floats, Ints
+from meshwind.path.lengths import Bridges, bridges, lengths
 from meshwind.path.paths import Paths
 from meshwind.pictures.subject import Subject
 

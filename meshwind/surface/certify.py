@@ -3,11 +3,11 @@
 import numpy as np
 from numba import njit
 
-from meshwind.cast import Floats
+from meshwind.core.cast import Floats
+from meshwind.core.threads import spread
 from meshwind.surface.evaluate import position
 from meshwind.surface.samples import Samples
 from meshwind.surface.surface import FitError, Surface
-from meshwind.threads import spread
 
 DENSITY, MOST = 4, 256
 """Samples a span, and at most, in each direction."""

@@ -7,7 +7,7 @@ from threadpoolctl import ThreadpoolController
 
 from meshwind.chart.chart import Chart
 from meshwind.chart.measure import speeds
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
 from meshwind.surface import normal_equations
 from meshwind.surface.certify import certify, to_mesh
 from meshwind.surface.noise import roughness

@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import make_interp_spline
 
-from meshwind.cast import Floats, floats, frozen
-from meshwind.errors import BadInputError
+from meshwind.core.cast import Floats, floats, frozen
+from meshwind.core.errors import BadInputError
 from meshwind.surface.interpolate import sites, through
 from meshwind.surface.surface import Surface
 

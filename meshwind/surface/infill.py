@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from meshwind.cast import Bools, Floats, Ints
+from meshwind.core.cast import Bools, Floats, Ints
 
 Int8s: TypeAlias = NDArray[np.int8]
 

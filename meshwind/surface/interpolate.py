@@ -6,7 +6,7 @@ from typing import TypeAlias
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from meshwind.cast import Floats
+from meshwind.core.cast import Floats
 from meshwind.surface.surface import DEGREE, Surface
 
 Formula: TypeAlias = Callable[[Floats, Floats], Floats]

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from meshwind.cast import Floats
+from meshwind.core.cast import Floats
 
 NEIGHBOURS = 20
 """Points of a local quadric: twice its unknowns and some."""

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from scipy.linalg import solveh_banded
 
-from meshwind.cast import Floats, Ints
+from meshwind.core.cast import Floats, Ints
 from meshwind.surface.evaluate import basis
 
 REACH = 3

@@ -6,13 +6,13 @@ from functools import cached_property
 import igl
 import numpy as np
 
-from meshwind.cast import Bools, Floats, Ints
 from meshwind.chart.chart import Chart
-from meshwind.mandrel.facet_tree import FacetTree
+from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.core.threads import spread
+from meshwind.mesh.geometry.facet_tree import FacetTree
 from meshwind.surface.foot import near_feet
 from meshwind.surface.infill import ANGLE, Int8s, infill, spans_across
 from meshwind.surface.surface import Surface
-from meshwind.threads import spread
 
 LOOSE = 0.1
 """Weight of a vertex that trimming made, against one of the part's own."""

@@ -9,8 +9,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from meshwind.cast import Floats
-from meshwind.errors import BadInputError
+from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
 from meshwind.surface.interpolate import Formula, interpolate
 from meshwind.surface.surface import Surface
 

@@ -6,10 +6,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshwind.cast import Floats, Ints, Kept, floats, frozen
-from meshwind.errors import BadInputError
+from meshwind.core.cast import Floats, Ints, Kept, floats, frozen
+from meshwind.core.errors import BadInputError
+from meshwind.core.threads import spread
 from meshwind.surface import evaluate, tree
-from meshwind.threads import spread
 
 DEGREE = 3
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from meshwind.output.staging import staged
+from meshwind.results.staging import staged
 
 _FIGURES = {
     "bridged_share": "bridged, share of length",

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
 from meshwind.sweep.jobs import Batch
 from meshwind.sweep.work import Done, fitted, wound
 

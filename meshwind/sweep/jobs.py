@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from meshwind.errors import BadInputError
-from meshwind.mandrel import Mesh, read
-from meshwind.mandrel.scalars import Scalars, read_scalars
+from meshwind.core.errors import BadInputError
+from meshwind.mesh import Mesh, read
+from meshwind.mesh.io.scalars import Scalars, read_scalars
 from meshwind.options import FIELD, Options
 from meshwind.sweep.study import Case
 

@@ -12,8 +12,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from meshwind.mandrel import Mesh
-from meshwind.mandrel.scalars import Scalars
+from meshwind.mesh import Mesh
+from meshwind.mesh.io.scalars import Scalars
 from meshwind.options import Options
 from meshwind.pipeline import Part
 from meshwind.sweep.jobs import Batch

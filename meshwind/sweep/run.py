@@ -8,7 +8,7 @@ from pathlib import Path
 from time import monotonic
 from typing import Any
 
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
 from meshwind.sweep.charts import draw_tradeoffs
 from meshwind.sweep.jobs import batches
 from meshwind.sweep.store import CASES, PICTURE, Store

@@ -14,9 +14,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from meshwind.errors import BadInputError
-from meshwind.output.report import plain
-from meshwind.output.staging import staged
+from meshwind.core.errors import BadInputError
+from meshwind.results.report import plain
+from meshwind.results.staging import staged
 from meshwind.sweep.study import Case, Study
 from meshwind.sweep.work import Done
 

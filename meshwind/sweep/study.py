@@ -9,11 +9,11 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from meshwind.errors import BadInputError
+from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import count, turns
+from meshwind.core.toml import nearest, read_toml
+from meshwind.core.version import version
 from meshwind.options import Options
-from meshwind.spelled import count, turns
-from meshwind.toml import nearest, read_toml
-from meshwind.version import version
 
 MOST = 100_000
 """Cases of one study; more are a slip in a list."""

@@ -8,9 +8,9 @@ from typing import Any
 import numba
 from threadpoolctl import threadpool_limits
 
-from meshwind.errors import BadInputError
-from meshwind.mandrel import Mesh
-from meshwind.mandrel.scalars import Scalars
+from meshwind.core.errors import BadInputError
+from meshwind.mesh import Mesh
+from meshwind.mesh.io.scalars import Scalars
 from meshwind.options import Options
 from meshwind.pipeline import Clock, Part, Result, fit_part, wind_part
 from meshwind.sweep.study import Case

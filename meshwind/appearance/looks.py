@@ -1,0 +1,161 @@
+"""How each map is shown: its name, its colours and its scale, the same in every picture and in the viewer."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from meshwind.core.cast import Floats
+
+_ROBUST = 0.99
+"""A scale that has no natural end ends here among its values, and says that there are more beyond, ..."""
+_NEAR = 1.25
+"""... unless the largest of them is hardly further."""
+_DECADES = 1.0 / 300.0
+"""A logarithmic scale goes down to this part of its end, ..."""
+_CLEAR = 0.08
+"""... and marks at its ends keep others this far off."""
+_NOTHING = 1e-200
+"""Where all values are less than this a scale goes to 1."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Values to shares of a scale of colours: low to high, evenly or by their logarithm.
+
+    words: lines that head the scale; colours: name of a colour map; step between its marks, None for a round one;
+    beyond: whether there are values above `high`, which get its colour.
+    """
+
+    words: tuple[str, ...]
+    colours: str
+    low: float
+    high: float
+    log: bool = False
+    step: float | None = None
+    beyond: bool = False
+
+    def shares(self, values: Floats) -> Floats:
+        """Where values (k,) lie on the scale, 0 to 1; NaN stays NaN."""
+        if self.log:
+            part = np.log(np.maximum(values, self.low) / self.low) / np.log(self.high / self.low)
+        else:
+            part = (values - self.low) / (self.high - self.low)
+        return np.asarray(np.clip(part, 0.0, 1.0))
+
+    @property
+    def marks(self) -> list[tuple[float, str]]:
+        """Round values on the scale: their shares, and their words."""
+        values = self._powers() if self.log else self._steps()
+        marks = [(float(share), f"{value:.4g}") for share, value in zip(self.shares(values), values, strict=True)]
+        if self.log:
+            marks = [mark for mark in marks if mark[0] > _CLEAR]
+            marks.insert(0, (0.0, f"≤ {self.low:.2g}"))
+        if self.beyond or self.log:
+            marks = [mark for mark in marks if mark[0] < 1.0 - _CLEAR]
+            marks.append((1.0, f"{'≥ ' if self.beyond else ''}{self.high:.2g}"))
+        return marks
+
+    @property
+    def told(self) -> dict[str, Any]:
+        """What the process that draws has to know, as arrays."""
+        marks = self.marks
+        return {
+            "colours": self.colours,
+            "words": np.array(self.words),
+            "marks": np.array([share for share, _ in marks]),
+            "mark_words": np.array([told for _, told in marks]),
+        }
+
+    def _steps(self) -> Floats:
+        step = self.step or round_below((self.high - self.low) / 3.0)
+        first, last = np.ceil(self.low / step - 1e-9), np.floor(self.high / step + 1e-9)
+        return np.asarray(step * np.arange(first, last + 1.0) + 0.0)  # no -0
+
+    def _powers(self) -> Floats:
+        last = np.floor(np.log10(self.high) + 1e-9)
+        return np.asarray(10.0 ** np.arange(np.ceil(np.log10(self.low) - 1e-9), last + 1.0))
+
+
+Rule = Callable[[Floats], tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a map is shown: what it is, the words of its scale, its unit, its colours, and how its scale is found.
+
+    unit: "{u}" stands for the mesh's unit of length.
+    """
+
+    title: str
+    words: str
+    unit: str
+    colours: str
+    rule: Rule
+    log: bool = False
+    step: float | None = None
+
+    def scale(self, values: Floats, units: str) -> Scale:
+        """The scale for values (k,) of a part in the named unit."""
+        known = values[np.isfinite(values)]
+        low, high = self.rule(known if len(known) else np.zeros(1))
+        unit = self.unit.format(u=units) if units or "{u}" not in self.unit else ""
+        words = tuple(self.words.split("\n")) + ((f"in {unit}",) if unit else ())
+        beyond = bool(known.max(initial=high) > high * (1.0 + 1e-9)) and high > 0.0
+        return Scale(words, self.colours, low, high, self.log, self.step, beyond)
+
+
+def fixed(low: float, high: float) -> Rule:
+    """A scale with natural ends."""
+    return lambda values: (low, high)  # noqa: ARG005
+
+
+def from_zero(values: Floats) -> tuple[float, float]:
+    """From 0 to about the largest."""
+    return 0.0, _end(values)
+
+
+def both_ways(values: Floats) -> tuple[float, float]:
+    """As far below 0 as above."""
+    end = _end(np.abs(values))
+    return -end, end
+
+
+def decades(values: Floats) -> tuple[float, float]:
+    """From the largest down to what no longer matters beside it."""
+    most = float(values.max())
+    high = most if most > _NOTHING else 1.0
+    return high * _DECADES, high
+
+
+def _end(values: Floats) -> float:
+    most, robust = float(values.max()), float(np.quantile(values, _ROBUST))
+    end = most if most <= _NEAR * robust else robust
+    return end if end > _NOTHING else 1.0
+
+
+def round_below(value: float) -> float:
+    """The largest of 1, 2, 5 times a power of ten that is not above value."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(power * max(digit for digit in (1.0, 2.0, 5.0) if digit * power <= value * (1.0 + 1e-12)))
+
+
+SEQUENTIAL, DIVERGING = "viridis", "RdBu_r"
+MAPS: dict[str, Look] = {
+    "coverage": Look("coverage", "layers of fibre", "", SEQUENTIAL, from_zero),
+    "layers": Look("layers of band", "bands over\nthe point", "", SEQUENTIAL, from_zero),
+    "angle": Look("winding angle", "winding angle\nof family +1", "degrees", "cividis", fixed(0.0, 90.0), step=15.0),
+    "windability": Look(
+        "windability", "share of the\ndirections\nthat press", "", "cividis", fixed(0.0, 1.0), step=0.25
+    ),
+    "press_reach": Look(
+        "press reach", "a fibre presses\nup to so far\nto both sides", "degrees", "cividis", fixed(0.0, 90.0), step=15.0
+    ),
+    "class": Look("class", "1 convex\n0 saddle\n−1 concave", "", "cividis", fixed(-1.0, 1.0), step=1.0),
+    "gaussian_curvature": Look("Gaussian curvature", "Gaussian\ncurvature", "1/{u}²", DIVERGING, both_ways),
+    "mean_curvature": Look("mean curvature", "mean curvature", "1/{u}", DIVERGING, both_ways),
+    "stretch": Look("stretch of the chart", "area scale\nover its mean", "", SEQUENTIAL, from_zero),
+    "fit_error": Look("fit error", "distance\nto the mesh", "{u}", "distance", decades, log=True),
+}  # fmt: skip
+"""The maps of surface.vtu that are numbers."""

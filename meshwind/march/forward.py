@@ -1,0 +1,256 @@
+"""The forward solver: from a point, a direction and a length, march a fibre over the surface (section 3.3).
+
+The march is by arc length, never by z, so that a path may turn back.  It is the ground truth for the taut paths
+where they touch, and a planner's tool of its own: with a constant slip, kg = slip * kn, the fibre leaves the
+geodesic by as much as a friction of |slip| can hold (3.12).
+"""
+
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from meshwind.core.cast import Floats, Ints, floats, frozen
+from meshwind.core.errors import BadInputError
+from meshwind.core.threads import spread
+from meshwind.march.march import EVALUATIONS, ROWS, RUNNING, STOP, march_all
+from meshwind.surface.surface import Surface
+
+Method: TypeAlias = Literal["adaptive", "rk4"]
+Press: TypeAlias = Literal["stop", "ignore"]
+
+CHUNK = 256
+"""Rows of a path that one compiled call writes; longer paths take more calls."""
+LIMIT = 1_000_000
+"""Most steps of a path."""
+RK4_STEP = 1e-3
+"""The fixed step over the part's size, where none is given."""
+FINEST, COARSEST = 1e-14, 1e-2
+
+
+class Stop(IntEnum):
+    """Why a march ended; 0 is the full length, anything else comes with advice."""
+
+    LENGTH = 0
+    RIM_START = 1
+    RIM_END = 2
+    EDGE = 3
+    LIFTS_OFF = 4
+    STEP_LIMIT = 5
+
+    @property
+    def advice(self) -> str:
+        """What the stop means and what to do about it."""
+        return _ADVICE[self]
+
+
+_ADVICE = {
+    Stop.LENGTH: "the full length",
+    Stop.RIM_START: "the fibre reached the start rim (v=0): to stay on the part, start at a larger angle from the axis",
+    Stop.RIM_END: "the fibre reached the end rim (v=1): to stay on the part, start at a larger angle from the axis",
+    Stop.EDGE: "the fibre reached an edge in u (u=0 or u=1): start further inside, or in another direction",
+    Stop.LIFTS_OFF: "the surface curves away under the fibre, which would bridge from here: change the direction, or "
+    'march on regardless with press="ignore"',
+    Stop.STEP_LIMIT: "too many steps, or none short enough: ask for a shorter length or a larger tolerance or step, "
+    "and keep away from poles, where the surface has no tangent plane",
+}
+
+
+@dataclass(frozen=True)
+class Trace:
+    """A fibre marched forward over a surface: n points, from the start to where it stopped.
+
+    points (n, 3); uv (n, 2), u unwrapped; uv_rate (n, 2) = d(u, v)/ds, the p and q of (3.22); tangent (n, 3) and
+    normal (n, 3), unit, the normal outward; arc_length (n,) from the start; normal_curvature (n,), positive where
+    the surface presses; geodesic_curvature (n,), positive where the fibre turns to its left as seen from outside;
+    stop says why it ended; evaluations counts the surface evaluations.
+    """
+
+    surface: Surface
+    points: Floats
+    uv: Floats
+    uv_rate: Floats
+    tangent: Floats
+    normal: Floats
+    arc_length: Floats
+    normal_curvature: Floats
+    geodesic_curvature: Floats
+    slip: float
+    stop: Stop
+    evaluations: int
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+
+def trace(
+    surface: Surface,
+    start: ArrayLike,
+    direction: ArrayLike,
+    length: float,
+    *,
+    slip: float = 0.0,
+    method: Method = "adaptive",
+    step: float | None = None,
+    tolerance: float = 1e-12,
+    press: Press = "stop",
+) -> Trace:
+    """March one fibre from start (u, v) over `length`, in the surface's units; see `traces` for the arguments."""
+    point, heading = floats(start, "start", 2), np.atleast_1d(np.asarray(direction, dtype=np.float64))
+    if heading.shape not in ((1,), (2,)):
+        raise BadInputError(f"direction has shape {heading.shape}; give an angle in radians or a tangent (du, dv)")
+    way = heading if len(heading) == 1 else heading[None]
+    return traces(
+        surface, point[None], way, length, slip=slip, method=method, step=step, tolerance=tolerance, press=press
+    )[0]
+
+
+def traces(
+    surface: Surface,
+    start: ArrayLike,
+    direction: ArrayLike,
+    length: ArrayLike,
+    *,
+    slip: ArrayLike = 0.0,
+    method: Method = "adaptive",
+    step: float | None = None,
+    tolerance: float = 1e-12,
+    press: Press = "stop",
+) -> tuple[Trace, ...]:
+    """March a batch of p fibres forward, over all cores; the answers do not depend on the number of threads.
+
+    start (p, 2): u in turns, v in [0, 1].  direction (p,): angle from the direction of v in radians, positive
+    towards +u, or (p, 2): tangents (du, dv) of any length.  length: one, or (p,).  slip: one, or (p,): the fibre's
+    geodesic curvature over its normal curvature, positive to the left as seen from outside; 0 is the geodesic, and
+    where the surface does not press it has no effect.
+
+    method "adaptive" is of order 8 and keeps each step's local error below tolerance: of the position over the
+    part's size and of the direction in radians.  Its points are its steps or, with `step`, every multiple of it.
+    method "rk4" is the source's, of fixed `step` (the part's size / 1000 by default).  press "stop" ends the path
+    where the surface no longer presses (normal curvature below 0) and it would bridge; "ignore" keeps it on.
+    Rims, edges and the point of lift-off are met to round-off.
+    """
+    _check(method, press, step, tolerance)
+    at = floats(start, "start", -1, 2)
+    if np.any((at[:, 1] < 0) | (at[:, 1] > 1)) or (not surface.periodic and np.any((at[:, 0] < 0) | (at[:, 0] > 1))):
+        raise BadInputError("a start point lies off the surface; give v (and u, unless periodic) in [0, 1]")
+    count = len(at)
+    lengths, slips = _each(length, "length", count), _each(slip, "slip", count)
+    if np.any(lengths <= 0):
+        raise BadInputError(f"length is {lengths.min():g}; give a length above 0, in the surface's units")
+    rates = _heading(surface, at, direction)
+    exact = method == "adaptive"
+    size = surface.size
+    spacing = step if step is not None else np.inf if exact else RK4_STEP * size
+    every = step is None and exact
+    spans = np.array(surface.spans if exact else (1, 1))
+    # as the kernels keep it: a place in the window, and which piece of the surface the window is
+    piece = np.zeros((count, 2), np.int64)
+    if exact:
+        piece = np.floor(at * spans).astype(np.int64)
+        piece[:, 1] = np.clip(piece[:, 1], 0, spans[1] - 1)
+        if not surface.periodic:
+            piece[:, 0] = np.clip(piece[:, 0], 0, spans[0] - 1)
+    state = np.column_stack([np.zeros(count), np.full(count, size), at * spans - piece, rates * spans])
+    counts = np.zeros((count, 7), np.int64)
+    counts[:, :2], counts[:, 2], counts[:, STOP] = piece, 1, RUNNING
+    setting = (size, exact, every, float(spacing), tolerance, press == "stop", LIMIT)
+    first = np.column_stack([np.zeros(count), at, rates])
+    rows = _march(np.array(surface.net), surface.periodic, setting, slips, lengths, state, counts, first)
+    return _finish(surface, rows, slips, counts)
+
+
+def _march(
+    net: Floats,
+    periodic: bool,
+    setting: tuple[float, bool, bool, float, float, bool, int],
+    slips: Floats,
+    lengths: Floats,
+    state: Floats,
+    counts: Ints,
+    first: Floats,
+) -> list[Floats]:
+    """March in chunks until every path has stopped; returns each path's rows (n, 5)."""
+    chunks = [[row[None]] for row in first]
+    going = np.arange(len(first))
+    while len(going):
+        some, tally, rows = state[going], counts[going], np.empty((len(going), CHUNK, 5))
+        tally[:, ROWS] = 0
+        spread(march_all, len(going), 1, net, periodic, setting, slips[going], lengths[going], some, tally, rows)
+        state[going], counts[going] = some, tally
+        for path, written, filled in zip(going, rows, tally[:, ROWS], strict=True):
+            chunks[path].append(written[:filled].copy())
+        going = going[tally[:, STOP] == RUNNING]
+    return [np.concatenate(parts) for parts in chunks]
+
+
+def _finish(surface: Surface, rows: list[Floats], slips: Floats, counts: Ints) -> tuple[Trace, ...]:
+    """Points, frames and curvatures of all rows at once, then cut into one `Trace` a path."""
+    if not rows:
+        return ()
+    whole = np.concatenate(rows)
+    frames = surface.frames(whole[:, 1:3])
+    p, q = whole[:, 3:4], whole[:, 4:5]
+    velocity = p * frames[:, 1] + q * frames[:, 2]
+    bend = p * p * frames[:, 3] + 2 * p * q * frames[:, 4] + q * q * frames[:, 5]
+    speed = np.linalg.norm(velocity, axis=1)
+    cross = np.cross(frames[:, 1], frames[:, 2])
+    normal = cross / np.linalg.norm(cross, axis=1, keepdims=True)
+    kn = -(bend * normal).sum(axis=1) / speed**2
+    kg = np.repeat(slips, [len(r) for r in rows]) * np.maximum(kn, 0.0)
+    tangent = velocity / speed[:, None]
+    columns = frames[:, 0], whole[:, 1:3], whole[:, 3:5], tangent, normal, whole[:, 0], kn, kg
+    cuts = np.cumsum([len(r) for r in rows])[:-1]
+    names = "points", "uv", "uv_rate", "tangent", "normal", "arc_length", "normal_curvature", "geodesic_curvature"
+    split = {name: np.split(column, cuts) for name, column in zip(names, columns, strict=True)}
+    return tuple(
+        Trace(
+            surface=surface,
+            slip=float(slips[path]),
+            stop=Stop(int(counts[path, STOP])),
+            evaluations=int(counts[path, EVALUATIONS]),
+            **{name: frozen(parts[path]) for name, parts in split.items()},
+        )
+        for path in range(len(rows))
+    )
+
+
+def _heading(surface: Surface, at: Floats, direction: ArrayLike) -> Floats:
+    """Unit-speed (p, q) of (3.19) for angles (n,) or tangents (n, 2)."""
+    frames = surface.frames(at)
+    su, sv = frames[:, 1], frames[:, 2]
+    area = np.linalg.norm(np.cross(su, sv), axis=1)
+    if np.any(area <= 1e-12 * np.linalg.norm(su, axis=1) * np.linalg.norm(sv, axis=1)):
+        raise BadInputError("the surface has no tangent plane at a start point; start away from the pole")
+    if np.ndim(direction) == 2:
+        rates = floats(direction, "direction", len(at), 2)
+        if not np.all(np.any(rates != 0, axis=1)):
+            raise BadInputError("a direction is (0, 0); give a tangent (du, dv) that is not zero")
+        rates = rates / np.abs(rates).max(axis=1, keepdims=True)
+    else:
+        angle = _each(direction, "direction", len(at))
+        meridian = np.linalg.norm(sv, axis=1)
+        # along v, and at right angles to it: s_v x n = (|s_v|^2 s_u - (s_u . s_v) s_v) / |s_u x s_v|
+        across = np.column_stack([meridian, -(su * sv).sum(axis=1) / meridian]) / area[:, None]
+        rates = np.sin(angle)[:, None] * across
+        rates[:, 1] += np.cos(angle) / meridian
+    speed = np.linalg.norm(rates[:, :1] * su + rates[:, 1:] * sv, axis=1, keepdims=True)
+    return np.asarray(rates / speed)
+
+
+def _each(value: ArrayLike, name: str, count: int) -> Floats:
+    """One number for each path, from one for all or from (count,)."""
+    return floats(np.repeat(value, count) if np.ndim(value) == 0 else value, name, count)
+
+
+def _check(method: str, press: str, step: float | None, tolerance: float) -> None:
+    if method not in ("adaptive", "rk4"):
+        raise BadInputError(f"method is {method!r}; choose 'adaptive' or 'rk4'")
+    if press not in ("stop", "ignore"):
+        raise BadInputError(f"press is {press!r}; choose 'stop' or 'ignore'")
+    if step is not None and not (np.isfinite(step) and step > 0):
+        raise BadInputError(f"step is {step}; give a length above 0, in the surface's units")
+    if not FINEST <= tolerance <= COARSEST:
+        raise BadInputError(f"tolerance is {tolerance}; give one from {FINEST:g} to {COARSEST:g}")

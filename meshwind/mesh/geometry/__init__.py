@@ -1,0 +1,1 @@
+"""The triangle mesh and its annulus, their edges, measures and search tree."""

@@ -1,0 +1,1 @@
+"""Mesh files to vertices and triangles, whatever their format."""

@@ -1,0 +1,88 @@
+"""Triangles from cells of every kind: polygons are cut, volumes give their skin."""
+
+from typing import TypeAlias
+
+import numpy as np
+
+from meshwind.core.cast import Ints
+
+CellBlock: TypeAlias = tuple[str, tuple[Ints, Ints]]
+"""Kind of the cells, their sizes (c,) and their nodes, one cell after the other."""
+
+# Corners of a kind; its further nodes lie on edges, faces or inside.
+_CORNERS = {"triangle": 3, "quad": 4, "tetra": 4, "hexahedron": 8, "wedge": 6, "vtk-wedge": 6, "pyramid": 5}
+# Faces of a volume cell, outward; a triangle is a quadrangle without its last corner, -1.
+_SIDES = {
+    "tetra": [[0, 2, 1, -1], [0, 1, 3, -1], [1, 2, 3, -1], [0, 3, 2, -1]],
+    "hexahedron": [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]],
+    "wedge": [[0, 2, 1, -1], [3, 4, 5, -1], [0, 1, 4, 3], [1, 2, 5, 4], [2, 0, 3, 5]],
+    "vtk-wedge": [[0, 1, 2, -1], [3, 5, 4, -1], [0, 3, 4, 1], [1, 4, 5, 2], [2, 5, 3, 0]],  # VTK mirrors it
+    "pyramid": [[0, 3, 2, 1], [0, 1, 4, -1], [1, 2, 4, -1], [2, 3, 4, -1], [3, 0, 4, -1]],
+}
+
+
+def triangles(blocks: list[CellBlock], points: int) -> Ints:
+    """Triangles (m, 3) of the blocks: the skin of the volume cells, or the surface cells where there are none.
+
+    Raises ValueError where a cell names a node that is not there.
+    """
+    for _, (_, nodes) in blocks:
+        if len(nodes) and (nodes.min() < 0 or nodes.max() >= points):
+            raise ValueError("a cell names a vertex that is not in the file")
+    sides = [_sides(kind, cells) for kind, cells in blocks if _base(kind) in _SIDES]
+    if sides:
+        return _cut_quads(_skin(np.concatenate(sides)))
+    surfaces = [_surface(kind, cells) for kind, cells in blocks]
+    return np.concatenate([*surfaces, np.empty((0, 3), dtype=np.int64)])
+
+
+def _base(kind: str) -> str:
+    """Name of the linear cell behind a kind such as 'tetra10'."""
+    return kind.rstrip("0123456789")
+
+
+def _table(kind: str, cells: tuple[Ints, Ints]) -> Ints:
+    """Corners of cells of one kind (c, corners), without the nodes on edges and inside."""
+    sizes, nodes = cells
+    corners = _CORNERS[_base(kind)]
+    if len(sizes) and (sizes.min() != sizes.max() or sizes[0] < corners):
+        raise ValueError(f"{kind} cells have the wrong number of nodes")
+    return nodes.reshape(len(sizes), -1)[:, :corners]
+
+
+def _sides(kind: str, cells: tuple[Ints, Ints]) -> Ints:
+    """Sides (s, 4) of volume cells; the last corner of a triangle is -1."""
+    corners = _table(kind, cells)
+    padded = np.column_stack([corners, np.full(len(corners), -1, dtype=np.int64)])
+    return padded[:, np.array(_SIDES[_base(kind)])].reshape(-1, 4)
+
+
+def _skin(sides: Ints) -> Ints:
+    """Sides that belong to one cell only."""
+    order = np.sort(sides, axis=1)
+    _, first, count = np.unique(order, axis=0, return_index=True, return_counts=True)
+    return np.asarray(sides[np.sort(first[count == 1])])
+
+
+def _cut_quads(quads: Ints) -> Ints:
+    """Two triangles for each quadrangle, one where its last corner is -1."""
+    second = quads[quads[:, 3] >= 0][:, [0, 2, 3]]
+    return np.concatenate([quads[:, :3], second])
+
+
+def _surface(kind: str, cells: tuple[Ints, Ints]) -> Ints:
+    """Triangles of surface cells, none for lines and points."""
+    base = _base(kind)
+    if base == "triangle":
+        return _table(kind, cells)
+    if base == "quad":
+        return _cut_quads(_table(kind, cells))
+    return _fans(*cells) if base == "polygon" else np.empty((0, 3), dtype=np.int64)
+
+
+def _fans(sizes: Ints, nodes: Ints) -> Ints:
+    """Cut each polygon into the fan about its first corner."""
+    count = np.maximum(sizes - 2, 0)
+    start = np.repeat(np.cumsum(sizes) - sizes, count)
+    step = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    return np.column_stack([nodes[start], nodes[start + step + 1], nodes[start + step + 2]])

@@ -1,0 +1,171 @@
+"""Look at a mesh as winding it would, change nothing, and tell all that was found."""
+
+from dataclasses import dataclass, replace
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+
+from meshwind.core.cast import Floats, Ints
+from meshwind.core.errors import BadInputError
+from meshwind.mesh.geometry.annulus import Annulus
+from meshwind.mesh.geometry.measure import loop_centroid, perimeter
+from meshwind.mesh.geometry.mesh import Mesh
+from meshwind.mesh.geometry.topology import boundary, edges, euler, loops
+from meshwind.mesh.io.read import load
+from meshwind.mesh.opening.ends import numbered
+from meshwind.mesh.opening.trim import annulus
+from meshwind.mesh.repair.manifold import disagreements
+from meshwind.mesh.repair.pieces import Pieces
+from meshwind.mesh.repair.repair import kept, made_manifold
+from meshwind.mesh.repair.weld import weld, without_collapsed, without_duplicates
+
+_MOST_PIECES = 100
+_SAME = 1e-6  # of the diagonal, between the centres of a rim before and after trimming
+
+Point = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A connected piece: its rank by area, 0 the largest, which `component` chooses it by."""
+
+    number: int
+    area: float
+    faces: int
+    closed: bool
+
+
+@dataclass(frozen=True)
+class Rim:
+    """An open rim of the chosen piece: the number that 'loops i j' names it by, its centre, length and vertices.
+
+    use: 'start', 'end', 'filled', or '' where the piece cannot be wound.
+    """
+
+    number: int
+    place: Point
+    length: float
+    vertices: int
+    use: str
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What a mesh is and what winding would do with it; lengths in the mesh's units.
+
+    vertices and faces are those of the file, size its extents along x, y and z; crowded_edges have more than two
+    faces, turned_edges two that face opposite ways; pieces lists the 100 largest.  component is the chosen piece,
+    one_sided, closed, genus (None where it could not be told) and rims are its own; repairs says what is changed
+    and what was noticed, ends how the ends are chosen, what is filled and how wide the openings are.
+    annulus_vertices, annulus_faces and rim_lengths are those of the mesh that is wound; problem is why it cannot
+    be wound, empty where it can.
+    """
+
+    name: str
+    format: str
+    vertices: int
+    faces: int
+    size: Point
+    diagonal: float
+    crowded_edges: int
+    turned_edges: int
+    piece_count: int
+    pieces: tuple[Piece, ...]
+    component: int
+    one_sided: bool = False
+    closed: bool = False
+    genus: int | None = None
+    rims: tuple[Rim, ...] = ()
+    repairs: tuple[str, ...] = ()
+    ends: str = ""
+    annulus_vertices: int = 0
+    annulus_faces: int = 0
+    rim_lengths: tuple[float, ...] = ()
+    problem: str = ""
+
+
+def inspect(
+    mesh: str | PathLike[str] | Mesh, ends: str = "auto", opening: float | None = None, component: int = 0
+) -> Findings:
+    """Find out what the mesh in a file, or one at hand, is and what winding would do with it.
+
+    ends, opening and component as in `annulus` and `read`.  Raises BadInputError only where there is no surface
+    to tell of; why else a mesh cannot be wound is in `Findings.problem`.
+    """
+    if isinstance(mesh, Mesh):
+        name, kind, vertices, faces = mesh.name, "", mesh.vertices, mesh.faces
+    else:
+        vertices, faces = load(mesh)
+        name, kind = Path(mesh).name, Path(mesh).suffix[1:].upper()
+    pieces, notes = made_manifold(vertices, faces, name)
+    used = vertices[np.unique(faces)]
+    extent = np.ptp(used, axis=0)
+    crowded, turned = _faults(used, np.unique(faces, return_inverse=True)[1].reshape(-1, 3))
+    told = _told(pieces)
+    findings = Findings(
+        name, kind, len(vertices), len(faces), _point(extent), float(np.linalg.norm(extent)), crowded, turned,
+        len(pieces.areas), told,
+        component, repairs=tuple(notes),
+    )  # fmt: skip
+    try:
+        chosen, _ = pieces.chosen(component, name)
+        findings = replace(findings, one_sided=disagreements(chosen) > 0, closed=len(boundary(chosen)) == 0)
+        part = kept(pieces, notes, component, name, (len(vertices), len(faces)))
+        findings = replace(findings, repairs=part.repairs)
+        findings = replace(findings, genus=_genus(part), rims=_rims(part, None))
+        found = annulus(part, ends, opening)
+    except BadInputError as error:
+        return replace(findings, problem=str(error))
+    return replace(
+        findings,
+        rims=_rims(part, found),
+        ends=found.ends,
+        annulus_vertices=len(found.vertices),
+        annulus_faces=len(found.faces),
+        rim_lengths=tuple(perimeter(found.vertices, rim) for rim in found.rims),
+    )
+
+
+def _faults(vertices: Floats, faces: Ints) -> tuple[int, int]:
+    """Edges with more than two faces, and edges whose two faces are turned opposite ways, before the repair."""
+    welded = without_duplicates(without_collapsed(weld(vertices, faces)[1]))
+    return int((edges(welded).count > 2).sum()), disagreements(welded)
+
+
+def _told(pieces: Pieces) -> tuple[Piece, ...]:
+    """The largest pieces."""
+    found = edges(pieces.faces)
+    rim = (found.count[found.of_face] == 1).any(axis=1)
+    count, rims = np.bincount(pieces.rank), np.bincount(pieces.rank, rim)
+    return tuple(
+        Piece(number, float(pieces.areas[number]), int(count[number]), not rims[number])
+        for number in range(min(len(count), _MOST_PIECES))
+    )
+
+
+def _genus(part: Mesh) -> int:
+    return (2 - len(loops(part.faces)) - euler(part.faces)) // 2
+
+
+def _rims(part: Mesh, found: Annulus | None) -> tuple[Rim, ...]:
+    rims = numbered(part.vertices, loops(part.faces))
+    centres = [loop_centroid(part.vertices, loop) for loop in rims]
+    ends = [] if found is None else [loop_centroid(found.vertices, rim) for rim in found.rims]
+    return tuple(
+        Rim(number, _point(centre), perimeter(part.vertices, loop), len(loop), _use(centre, ends, part.diagonal))
+        for number, (loop, centre) in enumerate(zip(rims, centres, strict=True))
+    )
+
+
+def _use(centre: Floats, ends: list[Floats], diagonal: float) -> str:
+    """What becomes of the rim with this centre, by the centres of the rims that are wound."""
+    if not ends:
+        return ""
+    away = [float(np.linalg.norm(end - centre)) for end in ends]
+    return ("start", "end")[int(np.argmin(away))] if min(away) < _SAME * diagonal else "filled"
+
+
+def _point(values: Floats) -> Point:
+    x, y, z = (float(value) for value in values)
+    return x, y, z

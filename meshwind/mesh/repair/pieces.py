@@ -1,0 +1,81 @@
+"""The connected pieces of a mesh, in order of their area."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshwind.core.cast import Floats, Ints
+from meshwind.core.errors import BadInputError
+from meshwind.mesh.geometry.measure import areas
+from meshwind.mesh.geometry.topology import patches
+
+_ALIKE = 1e9  # areas are equal, and so are places, that agree to this many parts
+_LARGE = 0.2  # of the kept piece's area, above which dropping another one deserves a warning
+_CRUMBS, _CRUMB = 20, 0.05  # more pieces than this, the largest below that share of the area: a mesh that is no surface
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """A manifold, oriented mesh in pieces.
+
+    vertices (n, 3), faces (m, 3); rank (m,) of each face's piece, 0 the largest; areas (p,) of the pieces.
+    """
+
+    vertices: Floats
+    faces: Ints
+    rank: Ints
+    areas: Floats
+
+    @staticmethod
+    def of(vertices: Floats, faces: Ints) -> "Pieces":
+        """Tell the pieces apart; those of one area are in the order of their centroids, x first."""
+        label, area = patches(faces), areas(vertices, faces)
+        size = np.bincount(label, area)
+        weight = np.maximum(size, np.finfo(float).tiny)
+        middle = vertices[faces].mean(axis=1) * area[:, None]
+        places = [np.bincount(label, middle[:, k]) / weight for k in range(3)]
+        extent = max(float(np.ptp(vertices, axis=0).max()), np.finfo(float).tiny)
+        z, y, x = (np.round(_ALIKE * (place / extent)) for place in places[::-1])
+        order = np.lexsort((z, y, x, -np.round(_ALIKE * (size / max(size.max(), np.finfo(float).tiny)))))
+        rank = np.empty(len(order), dtype=np.int64)
+        rank[order] = np.arange(len(order))
+        return Pieces(vertices, faces, rank[label], size[order].astype(np.float64))
+
+    def chosen(self, component: int, name: str) -> tuple[Ints, list[str]]:
+        """Faces of the piece of this rank, and what is to be said of the others."""
+        count = len(self.areas)
+        self._check(component, name)
+        kept = self.faces[self.rank == component]
+        if count == 1:
+            return kept, []
+        which = "the largest" if component == 0 else f"number {component} by area"
+        dropped = f"dropped {count - 1} {'piece' if count == 2 else 'pieces'} beside {which}"
+        notes = [f"{dropped} ({len(self.faces) - len(kept)} faces)"]
+        other = 1 if component == 0 else 0
+        share = self.areas[other] / self.areas[component]
+        if share > _LARGE:
+            inside = ", within its bounds," if self._within(kept, self.faces[self.rank == other]) else ""
+            notes.append(
+                f"warning: a dropped piece{inside} has {100 * share:.3g} % of the kept one's area;"
+                f" component {other} chooses it instead"
+            )
+        return kept, notes
+
+    def _check(self, component: int, name: str) -> None:
+        count = len(self.areas)
+        if isinstance(component, bool) or not isinstance(component, int | np.integer) or not 0 <= component < count:
+            pieces = "1 piece; give 0" if count == 1 else f"{count} pieces; give a number from 0 to {count - 1}"
+            raise BadInputError(f"{name}: component {component!r}: the mesh has {pieces}")
+        if count > _CRUMBS and self.areas[0] < _CRUMB * self.areas.sum():
+            raise BadInputError(
+                f"{name}: falls apart into {count} pieces, for its triangles do not meet; weld their vertices and"
+                " export the mesh again"
+            )
+
+    def _within(self, kept: Ints, other: Ints) -> bool:
+        """Whether the bounding box of one piece holds that of another."""
+        (low, high), (least, most) = (
+            (points.min(axis=0), points.max(axis=0))
+            for points in (self.vertices[kept.ravel()], self.vertices[other.ravel()])
+        )
+        return bool((low <= least).all() and (most <= high).all())

@@ -1,0 +1,152 @@
+"""Repair a triangle mesh and say what was done."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from meshwind.core.cast import Floats, Ints, floats, frozen
+from meshwind.core.errors import BadInputError
+from meshwind.mesh.geometry.measure import volume
+from meshwind.mesh.geometry.mesh import Mesh
+from meshwind.mesh.geometry.topology import compact, patches
+from meshwind.mesh.repair import cracks, manifold
+from meshwind.mesh.repair.overlaps import overlaps
+from meshwind.mesh.repair.pieces import Pieces
+from meshwind.mesh.repair.slivers import without_slivers
+from meshwind.mesh.repair.weld import weld, without_collapsed, without_duplicates
+
+_FARTHEST = 1e-8  # extent over distance from the origin: what is less has lost half its digits
+
+
+def mesh_from(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh", component: int = 0) -> Mesh:
+    """Make a repaired mesh from vertices (n, 3), in any unit, and triangles (m, 3) of indices from 0.
+
+    Vertices are welded, useless faces dropped, cracks closed, the rest made manifold and oriented outward, and
+    of several pieces one is kept: `component` is its rank by area, 0 the largest.  `repairs` of the result says
+    so, and what was noticed but left.  Raises BadInputError where no surface is left.
+    """
+    pieces, notes = made_manifold(vertices, faces, name)
+    return kept(pieces, notes, component, name, (len(np.asarray(vertices)), len(np.asarray(faces))))
+
+
+def made_manifold(vertices: ArrayLike, faces: ArrayLike, name: str) -> tuple[Pieces, list[str]]:
+    """The first half of the repair, all pieces still there; also says what was done."""
+    points, triangles = _checked(vertices, faces, name)
+    notes: list[str] = []
+    size = len(points)
+    points, triangles = _referenced(points, triangles)
+    _note(notes, size - len(points), "dropped {} that no face uses", "vertex", "vertices")
+    _check_size(points, name)
+    size = len(points)
+    points, triangles = weld(points, triangles)
+    _note(notes, size - len(points), "welded {} that lay on another", "vertex", "vertices")
+    triangles = _drop_useless(triangles, notes, name)
+    points, triangles = _close_cracks(points, triangles, notes)
+    points, triangles = _make_manifold(points, triangles, notes)
+    return Pieces.of(points, triangles), notes
+
+
+def kept(pieces: Pieces, notes: list[str], component: int, name: str, read: tuple[int, int]) -> Mesh:
+    """The second half: the mesh of one piece; `read` counts the vertices and faces of the file."""
+    triangles, words = pieces.chosen(component, name)
+    notes = notes + words
+    manifold.check_orientable(triangles, name)
+    triangles = _mend_slivers(pieces.vertices, triangles, notes, name)
+    points, triangles = _referenced(pieces.vertices, triangles)
+    if volume(points, triangles) < 0:
+        triangles = triangles[:, ::-1]
+        notes.append("turned all faces outward")
+    notes += overlaps(points, triangles)
+    return Mesh(frozen(points), frozen(triangles), name, tuple(notes), *read)
+
+
+def _checked(vertices: ArrayLike, faces: ArrayLike, name: str) -> tuple[Floats, Ints]:
+    """Arrays of the right shape, with finite coordinates and indices that exist."""
+    raw = np.asarray(vertices, dtype=np.float64)
+    bad = 0 if raw.ndim != 2 else int((~np.isfinite(raw)).any(axis=1).sum())
+    if bad:
+        count = f"{bad} of {len(raw)} vertices"
+        raise BadInputError(f"{name}: {count} have NaN or infinite coordinates; remove them and export the mesh again")
+    points = floats(raw, f"{name}: vertices", -1, 3)
+    given = np.asarray(faces)
+    if given.size == 0:
+        raise BadInputError(f"{name}: holds no triangles; export the part's surface as a triangle mesh")
+    indices = floats(given, f"{name}: faces", -1, 3)
+    if (indices != np.floor(indices)).any() or indices.min() < 0 or indices.max() >= len(points):
+        raise BadInputError(f"{name}: faces name vertices that are not there; give indices from 0 to {len(points) - 1}")
+    return points, indices.astype(np.int64)
+
+
+def _check_size(points: Floats, name: str) -> None:
+    """Refuse coordinates whose squares and cubes leave the range of numbers."""
+    size = float(np.abs(points).max())
+    if not 1e-50 < size < 1e50:
+        raise BadInputError(f"{name}: coordinates up to {size:g} are out of range; scale the mesh to ordinary units")
+    extent = float(np.ptp(points, axis=0).max())
+    if 0 < extent < _FARTHEST * size:
+        raise BadInputError(
+            f"{name}: lies {size:.2g} from the origin, too far for its size of {extent:.2g}; move it there"
+        )
+
+
+def _referenced(points: Floats, faces: Ints) -> tuple[Floats, Ints]:
+    """Drop vertices that no face uses."""
+    keep, renumber = compact(faces, len(points))
+    return points[keep], renumber[faces]
+
+
+def _note(notes: list[str], count: int, sentence: str, one: str = "face", many: str = "faces") -> None:
+    """Add a sentence to the repairs if there was anything to do."""
+    if count:
+        notes.append(sentence.format(f"{count} {one if count == 1 else many}"))
+
+
+def _drop_useless(faces: Ints, notes: list[str], name: str) -> Ints:
+    """Drop collapsed and duplicate faces."""
+    whole = without_collapsed(faces)
+    _note(notes, len(faces) - len(whole), "dropped {} collapsed to a line or point")
+    single = without_duplicates(whole)
+    _note(notes, len(whole) - len(single), "dropped {} that repeated another")
+    if len(single) == 0:
+        raise BadInputError(f"{name}: no face is left, all are collapsed; check the mesh's units and export it again")
+    return single
+
+
+def _close_cracks(vertices: Floats, faces: Ints, notes: list[str]) -> tuple[Floats, Ints]:
+    """Join boundaries that face each other across a crack, and halve edges at which a neighbour's vertex hangs."""
+    points, whole, count, widest = cracks.closed(vertices, faces)
+    _note(notes, count, f"closed cracks up to {widest:.2g} wide at {{}}", "vertex", "vertices")
+    return points, whole
+
+
+def _make_manifold(vertices: Floats, faces: Ints, notes: list[str]) -> tuple[Floats, Ints]:
+    """Leave at most two faces at an edge and one fan at a vertex, consistently oriented."""
+    calm = manifold.without_odd_faces(vertices, manifold.without_small_patches(vertices, faces))
+    _note(notes, len(faces) - len(calm), "dropped {} at edges with more than two faces")
+    turned = manifold.oriented(calm)
+    _note(notes, _minority(calm, turned), "turned {} to agree with the neighbours")
+    used = int(np.count_nonzero(np.bincount(turned.ravel())))
+    points, split = manifold.separated(vertices, turned)
+    _note(notes, len(points) - used, "split the surface at {} where parts of it touch", "vertex", "vertices")
+    return points, split if len(points) == used else manifold.oriented(split)
+
+
+def _minority(before: Ints, after: Ints) -> int:
+    """How many faces were turned, or were not where most of their patch was."""
+    if np.array_equal(before, after):
+        return 0
+    turned = np.ones(len(before), dtype=bool)
+    for shift in range(3):
+        turned &= (np.roll(after, shift, axis=1) != before).any(axis=1)
+    label = patches(after)
+    size, flipped = np.bincount(label), np.bincount(label, turned)
+    return int(np.minimum(flipped, size - flipped).sum())
+
+
+def _mend_slivers(vertices: Floats, faces: Ints, notes: list[str], name: str) -> Ints:
+    """Flip away faces without height."""
+    diagonal = float(np.linalg.norm(np.ptp(_referenced(vertices, faces)[0], axis=0)))
+    mended, count = without_slivers(vertices, faces, diagonal)
+    _note(notes, count, "flipped or dropped {} without height", "face", "faces")
+    if len(mended) == 0:
+        raise BadInputError(f"{name}: no face is left, none has an area; export the part's surface as a triangle mesh")
+    return mended

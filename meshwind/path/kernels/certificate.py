@@ -1,0 +1,90 @@
+"""What an answer is worth: true gaps, the friction that it needs, and whether its particles resolve the surface."""
+
+import numpy as np
+from numba import njit
+
+from meshwind.path.kernels.newton import measure_gap
+from meshwind.path.kernels.state import distance, energy
+from meshwind.surface.evaluate import S
+
+PULL = 1e-9
+"""A pull off the surface below this angle (radians) is round-off, not lift."""
+INSIDE = 1e-9
+"""A lifted particle deeper than this times the part's size is inside the body."""
+HALF_TURN, WHOLE_TURN = 0.4, 0.75
+"""Change of u or v from particle to particle that only two sides of the body explain."""
+LONGEST_SEGMENT = 2.0
+"""A segment on the surface longer than this share of the mean cuts an edge."""
+
+
+@njit(cache=True)
+def certify(net, periodic, tree, size, state, slip, tally):
+    """True gaps of the lifted particles, and the slip |kg| / kn that each touching one needs.
+
+    A lifted particle that turns out to be inside the body lands; returns how many did.
+    """
+    X, uv, frames, normal, touching, gap = state
+    n = len(X)
+    landed = 0
+    for i in range(n):
+        slip[i] = np.nan
+        if not touching[i]:
+            height, gap[i] = measure_gap(net, periodic, tree, state, i, tally)
+            if height < -INSIDE * size and 0.0 < uv[i, 1] < 1.0:
+                for k in range(3):
+                    X[i, k] = frames[i, S, k]
+                touching[i], gap[i] = True, 0.0
+                landed += 1
+    for i in range(1, n - 1):
+        if touching[i]:
+            gap[i] = 0.0
+            slip[i] = needed_slip(X, normal, i)
+    return landed
+
+
+@njit(cache=True)
+def unresolved(state, periodic):
+    """Whether the path cuts an edge by a segment on the surface much longer than the others, or the whole body."""
+    X, touching = state[0], state[4]
+    n = len(X)
+    if largest_leap(state, periodic) > max(HALF_TURN, 2.0 / (n - 1)):
+        return True
+    _, length = energy(X)
+    for i in range(n - 1):
+        if touching[i] and touching[i + 1] and distance(X, i, i + 1) > LONGEST_SEGMENT * length / (n - 1):
+            return True
+    return False
+
+
+@njit(cache=True)
+def largest_leap(state, periodic):
+    """Largest change of u or v from one particle, or its foot, to the next, where the body may be between the two.
+
+    It is not where their gaps cover the way; a foot leaps from side to side of a hollow, too.  But by a whole turn no
+    foot leaps.  Where u is not periodic only v counts.
+    """
+    X, uv, clear = state[0], state[1], state[5]
+    most = 0.0
+    for i in range(len(uv) - 1):
+        turn = abs(uv[i + 1, 0] - uv[i, 0]) if periodic else 0.0
+        leap = max(turn, abs(uv[i + 1, 1] - uv[i, 1]))
+        if turn > WHOLE_TURN or (leap > most and clear[i] + clear[i + 1] < distance(X, i, i + 1)):
+            most = max(most, leap)
+    return most
+
+
+@njit(cache=True)
+def needed_slip(X, normal, i):
+    """|kg| / kn from the turn of the polyline's unit tangent at particle i; 0 where the fibre runs straight."""
+    p = 1.0 / max(distance(X, i, i - 1), 1e-300)
+    q = 1.0 / max(distance(X, i + 1, i), 1e-300)
+    press = side = square = 0.0
+    for k in range(3):
+        c, d = (k + 1) % 3, (k + 2) % 3
+        turn = q * (X[i + 1, k] - X[i, k]) - p * (X[i, k] - X[i - 1, k])
+        b = normal[i, c] * (q * (X[i + 1, d] - X[i, d]) + p * (X[i, d] - X[i - 1, d]))
+        b -= normal[i, d] * (q * (X[i + 1, c] - X[i, c]) + p * (X[i, c] - X[i - 1, c]))
+        press -= turn * normal[i, k]
+        side += turn * b
+        square += b * b
+    return abs(side) / np.sqrt(max(square, 1e-300)) / press if press > PULL else 0.0

@@ -1,0 +1,76 @@
+"""Figures of each path: its length, what of it bridges, how far it lifts and what friction it needs."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.path.kernels.touchdown import touchdowns
+from meshwind.path.paths import Paths
+
+
+@dataclass(frozen=True)
+class Lengths:
+    """Of p paths of n particles: arc_length (p, n) from the start; length, bridged, max_gap, max_slip (p,).
+
+    Lengths are in the mesh's units; bridged is the length of all segments with an end off the surface.
+    """
+
+    arc_length: Floats
+    length: Floats
+    bridged: Floats
+    max_gap: Floats
+    max_slip: Floats
+
+
+@dataclass(frozen=True)
+class Bridges:
+    """The b spans off the surface: of `path` (b,), from particle `first` to `last` (b,), both included.
+
+    Both lie on the surface, unless the span reaches an end of its path.  ends (b, 2, 3) are the places, between
+    particles, where the fibre truly leaves the surface and comes back: tangent to it, to second order.
+    """
+
+    path: Ints
+    first: Ints
+    last: Ints
+    length: Floats
+    max_gap: Floats
+    ends: Floats
+
+    def __len__(self) -> int:
+        return len(self.path)
+
+
+def lengths(paths: Paths) -> Lengths:
+    """Measure every path."""
+    steps = np.linalg.norm(np.diff(paths.points, axis=1), axis=2)
+    arc = np.zeros(paths.gap.shape)
+    np.cumsum(steps, axis=1, out=arc[:, 1:])
+    clear = ~(paths.on_surface[:, :-1] & paths.on_surface[:, 1:])
+    slip = np.fmax.reduce(paths.slip, axis=1, initial=0.0)  # fmax passes over NaN
+    return Lengths(
+        frozen(arc),
+        frozen(arc[:, -1]),
+        frozen((steps * clear).sum(axis=1)),
+        frozen(paths.gap.max(axis=1, initial=0.0)),
+        frozen(slip),
+    )
+
+
+def bridges(paths: Paths) -> Bridges:
+    """Find every span of particles off the surface, path by path from the start."""
+    touching = np.pad(paths.on_surface, ((0, 0), (1, 1)), constant_values=True).astype(np.int8)
+    change = np.diff(touching, axis=1)
+    path, start = np.nonzero(change == -1)
+    _, stop = np.nonzero(change == 1)
+    first, last = np.maximum(start - 1, 0), np.minimum(stop, paths.gap.shape[1] - 1)
+    arc = lengths(paths).arc_length
+    # Gaps from each start to each stop; the odd stretches are those between bridges.
+    count = paths.gap.shape[1] + 1
+    bounds = np.stack([path * count + start, path * count + stop], axis=1).ravel()
+    padded = np.pad(paths.gap, ((0, 0), (0, 1)), constant_values=0.0).ravel()
+    gap = np.maximum.reduceat(padded, bounds)[::2] if len(bounds) else np.zeros(0)
+    length = arc[path, last] - arc[path, first]
+    ends, _ = touchdowns(paths, path, first, last)
+    return Bridges(frozen(path), frozen(first), frozen(last), frozen(length), frozen(gap), frozen(ends))

@@ -1,0 +1,160 @@
+"""Clairaut's bound: on a shape of revolution r sin(alpha) is constant, so no fibre can turn more than it allows."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from meshwind.core.cast import Floats, frozen
+from meshwind.surface.surface import Surface
+
+_AROUND, _ALONG = 24, 96
+"""Samples by which a surface is compared with the shape of revolution about its axis."""
+_EXACT, _FITTED = 1e-6, 2.0
+"""Largest deviation from a shape of revolution: over the part's size, and over the fit's largest error."""
+_FLAT = 1e-3
+"""Slope dr/ds at a rim below which it is as good as cylindrical: the bound is then beyond any use."""
+_TWIST = 1e-3
+"""Turns by which a meridian of the chart may wind from rim to rim."""
+_NODES = 6
+"""Gauss nodes a span along the meridian."""
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A shape of revolution's meridian in nodes of Gauss: r, slope dr/ds and curvature at the nodes (k,), weight (k,).
+
+    v (k,) is the parameter of each node; weight carries the arc length, so that sum(f weight) is the integral of f ds,
+    also where f has an inverse square root at a rim; rims: the two radii; slopes: dr/ds at both; deviation: largest
+    distance of the surface from the shape.
+    """
+
+    v: Floats
+    r: Floats
+    weight: Floats
+    bend: Floats
+    hoop: Floats
+    rims: tuple[float, float]
+    slopes: tuple[float, float]
+    deviation: float
+
+    def turns(self, constant: float) -> float:
+        """Turns from rim to rim of the geodesic with c = r sin(alpha): the integral of c / (r sqrt(r^2 - c^2)) ds."""
+        root = np.sqrt(np.maximum((self.r - constant) * (self.r + constant), 1e-24 * self.r**2))
+        return float((constant / (self.r * root) * self.weight).sum() / (2.0 * np.pi))
+
+    def bound(self) -> float:
+        """Most revolutions of a fibre that does not slide off: those at c = the smaller rim's radius; or infinity.
+
+        Infinite where the part is narrowest between the rims, or does not widen behind the narrower rim.
+        """
+        narrow = min(self.rims)
+        inward = self.slopes[0], -self.slopes[1]
+        at_narrow = [slope for rim, slope in zip(self.rims, inward, strict=True) if rim <= narrow * (1.0 + 1e-9)]
+        if self.r.min() < narrow or min(at_narrow) < _FLAT:
+            return float("inf")
+        # a bulge can let the turns fall again before c reaches the rim; past the largest no fibre is stable
+        shares = np.sin(np.linspace(0.0, 0.5 * np.pi, 65)[1:])
+        return max(self.turns(narrow * share) for share in shares)
+
+    def presses(self, constant: float) -> bool:
+        """Whether the geodesic presses on the part all the way."""
+        square = np.minimum((constant / self.r) ** 2, 1.0)
+        return bool((self.hoop * square + self.bend * (1.0 - square) >= -1e-6 / self.r.max()).all())
+
+
+def profile(surface: Surface) -> Profile | None:
+    """The meridian of a surface that is one of revolution to the fit's error, whose v runs from rim to rim; or None."""
+    allowed = _EXACT * surface.size
+    if surface.error is not None:
+        allowed = max(allowed, _FITTED * surface.error.max)
+    axis = _axis(surface)
+    if axis is None:
+        return None
+    middle, along = axis
+    u, v = np.arange(_AROUND) / _AROUND, np.linspace(0.0, 1.0, _ALONG + 1)
+    uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2)
+    off = surface.points(uv) - middle
+    flat = _flat(off, along)
+    deviation = _from_profile(flat, _flat(_meridian(surface, 64 * _ALONG) - middle, along))
+    if deviation > allowed or abs(_twist(surface, middle, along)) > _TWIST:
+        return None
+    return _nodes(surface, middle, along, deviation)
+
+
+def _axis(surface: Surface) -> tuple[Floats, Floats] | None:
+    """The line through the middles of the two rims: a point and a unit vector from start to end."""
+    middles = []
+    for v in (0.0, 1.0):
+        u = np.arange(16 * surface.spans[0]) / (16 * surface.spans[0])
+        frames = surface.frames(np.stack([u, np.full_like(u, v)], axis=1))
+        speed = np.linalg.norm(frames[:, 1], axis=1)
+        middles.append((frames[:, 0] * speed[:, None]).sum(axis=0) / max(float(speed.sum()), 1e-300))
+    step = middles[1] - middles[0]
+    length = float(np.linalg.norm(step))
+    return (middles[0], step / length) if length > 1e-3 * surface.size else None
+
+
+def _flat(off: Floats, along: Floats) -> Floats:
+    """Distance from the axis and height along it (k, 2) of points (k, 3) relative to a point of the axis."""
+    height = off @ along
+    return np.stack([np.linalg.norm(off - height[:, None] * along, axis=1), height], axis=1)
+
+
+def _meridian(surface: Surface, count: int) -> Floats:
+    v = np.linspace(0.0, 1.0, count + 1)
+    return surface.points(np.stack([np.zeros_like(v), v], axis=1))
+
+
+def _from_profile(points: Floats, line: Floats) -> float:
+    """Largest distance of points (k, 2) from a fine polyline (m, 2) that is continued straight past its ends."""
+    near = np.clip(cKDTree(line).query(points)[1], 1, len(line) - 2)
+    chord = line[near + 1] - line[near - 1]
+    off = points - line[near]
+    across = chord[:, 0] * off[:, 1] - chord[:, 1] * off[:, 0]
+    return float(np.abs(across / np.maximum(np.linalg.norm(chord, axis=1), 1e-300)).max())
+
+
+def _twist(surface: Surface, middle: Floats, along: Floats) -> float:
+    """Turns that the chart's meridian u = 0 winds about the axis from rim to rim."""
+    off = _meridian(surface, 8 * _ALONG) - middle
+    off -= (off @ along)[:, None] * along
+    step = np.arctan2(np.cross(off[:-1], off[1:]) @ along, (off[:-1] * off[1:]).sum(axis=1))
+    return float(step.sum() / (2.0 * np.pi))
+
+
+def _nodes(surface: Surface, middle: Floats, along: Floats, deviation: float) -> Profile:
+    """Integrate over t in v = (1 - cos(pi t)) / 2, which takes away the inverse square roots at the rims."""
+    node, weight = np.polynomial.legendre.leggauss(_NODES)
+    many = max(2 * surface.spans[1], 64)
+    t = ((np.arange(many)[:, None] + 0.5 * (node + 1.0)) / many).ravel()
+    v = np.concatenate([[0.0], np.sin(0.5 * np.pi * t) ** 2, [1.0]])
+    r, slope, speed, bend, hoop = _mean_ring(surface, middle, along, v)
+    stretch = 0.5 * np.pi * np.sin(np.pi * t) * np.tile(0.5 * weight / many, many)
+    return Profile(
+        v=frozen(v[1:-1]),
+        r=frozen(r[1:-1]),
+        weight=frozen(speed[1:-1] * stretch),
+        bend=frozen(bend[1:-1]),
+        hoop=frozen(hoop[1:-1]),
+        rims=(float(r[0]), float(r[-1])),
+        slopes=(float(slope[0]), float(slope[-1])),
+        deviation=deviation,
+    )
+
+
+def _mean_ring(surface: Surface, middle: Floats, along: Floats, v: Floats) -> tuple[Floats, ...]:
+    """Radius, dr/ds, ds/dv and the two normal curvatures (k,) at v (k,), each the mean around the part."""
+    u = np.arange(_AROUND) / _AROUND
+    uv = np.stack(np.meshgrid(v, u, indexing="ij")[::-1], axis=2).reshape(-1, 2)
+    frames = surface.frames(uv)
+    off = frames[:, 0] - middle
+    out = off - (off @ along)[:, None] * along
+    r = np.linalg.norm(out, axis=1)
+    speed = np.linalg.norm(frames[:, 2], axis=1)
+    slope = (out * frames[:, 2]).sum(axis=1) / np.maximum(r * speed, 1e-300)
+    normal = np.cross(frames[:, 1], frames[:, 2])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    bend = -(frames[:, 5] * normal).sum(axis=1) / np.maximum(speed, 1e-300) ** 2
+    hoop = -(frames[:, 3] * normal).sum(axis=1) / np.maximum((frames[:, 1] ** 2).sum(axis=1), 1e-300)
+    return tuple(each.reshape(len(v), _AROUND).mean(axis=1) for each in (r, slope, speed, bend, hoop))

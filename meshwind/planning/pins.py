@@ -1,0 +1,109 @@
+"""End points that a user gives: fixation pins, from a CSV file."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+
+from meshwind.core.cast import Floats, frozen
+from meshwind.core.errors import BadInputError
+from meshwind.planning.families import Families
+from meshwind.surface.foot import feet
+from meshwind.surface.surface import Surface
+
+PARAMETRIC = ("u0", "v0", "u1", "v1")
+SPATIAL = ("x0", "y0", "z0", "x1", "y1", "z1")
+TURNS = "revolutions"
+_COLUMNS = f"{','.join(PARAMETRIC)} or {','.join(SPATIAL)}, and {TURNS} beside the latter if need be"
+_FARTHEST = 0.05
+"""A pin further off the surface than this, over the part's size, is not meant for this part."""
+_SEEDS = (64, 65)
+"""Grid of points from which the nearest on the surface is looked for."""
+
+
+def read_pins(path: str | Path, surface: Surface, revolutions: float) -> Families:
+    """Read a path's two pins from each row of a CSV file whose first row names its columns.
+
+    Either u0,v0,u1,v1: parametric, u in turns and unwrapped, so that its change is the number of revolutions; or
+    x0,y0,z0,x1,y1,z1: points in the mesh's units, which are moved to the nearest point of the surface.  Their paths
+    turn by about what a column `revolutions` says, negative for the other sense, or by `revolutions`, once in each
+    sense, so that both families start from every pin.  Raises BadInputError, which names the row.
+    """
+    path = Path(path)
+    names, rows = _table(path)
+    if set(PARAMETRIC) <= set(names):
+        uv = rows[:, [names.index(name) for name in PARAMETRIC]]
+        start, end = uv[:, :2], uv[:, 2:]
+    elif set(SPATIAL) <= set(names):
+        xyz = rows[:, [names.index(name) for name in SPATIAL]]
+        turns = rows[:, names.index(TURNS)] if TURNS in names else None
+        start, end = (_on_surface(surface, points, path) for points in (xyz[:, :3], xyz[:, 3:]))
+        start, end = _turned(start, end, turns, revolutions)
+    else:
+        raise BadInputError(f"{path.name}: its first row is {','.join(names)!r}; name the columns {_COLUMNS}")
+    wrong = np.flatnonzero((start[:, 1] < 0) | (start[:, 1] > 1) | (end[:, 1] < 0) | (end[:, 1] > 1))
+    if len(wrong):
+        raise BadInputError(f"{path.name}: row {wrong[0] + 2} has v outside [0, 1]; v runs from rim to rim")
+    same = np.flatnonzero((start == end).all(axis=1))
+    if len(same):
+        raise BadInputError(f"{path.name}: row {same[0] + 2} starts and ends in one point; give two different pins")
+    return families_between(start, end)
+
+
+def families_between(start: Floats, end: Floats) -> Families:
+    """Paths between given parametric ends (p, 2), family +1 where u grows, then -1."""
+    family = np.where(end[:, 0] >= start[:, 0], 1, -1)
+    order = np.argsort(-family, kind="stable")
+    return Families(frozen(start[order]), frozen(end[order]), frozen(family[order]))
+
+
+def _table(path: Path) -> tuple[list[str], Floats]:
+    """Column names and numbers (rows, columns)."""
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
+    except FileNotFoundError as error:
+        raise BadInputError(f"{path}: there is no such file; give a CSV file of pins") from error
+    except (OSError, ValueError, csv.Error) as error:
+        raise BadInputError(f"{path}: cannot be read as CSV; give a text file of comma-separated numbers") from error
+    if len(rows) < 2:
+        raise BadInputError(f"{path.name}: holds no pins; give a row of column names, then a row a path")
+    names = [cell.strip().lower() for cell in rows[0]]
+    values = np.empty((len(rows) - 1, len(names)))
+    for number, row in enumerate(rows[1:]):
+        try:
+            values[number] = [float(cell) for cell in row]
+        except ValueError as error:
+            raise BadInputError(f"{path.name}: row {number + 2} is not {len(names)} numbers; mend it") from error
+    wrong = np.flatnonzero(~np.isfinite(values).all(axis=1))
+    if len(wrong):
+        raise BadInputError(f"{path.name}: row {wrong[0] + 2} holds NaN or infinite values; mend it")
+    return names, values
+
+
+def _on_surface(surface: Surface, points: Floats, path: Path) -> Floats:
+    """The parametric points (p, 2) of the surface that are nearest to points (p, 3)."""
+    u, v = np.arange(_SEEDS[0]) / _SEEDS[0], np.linspace(0.0, 1.0, _SEEDS[1])
+    grid = np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2)
+    apart = np.linalg.norm(surface.points(grid)[None] - points[:, None], axis=2)
+    at = np.array(grid[apart.argmin(axis=1)])
+    frames = np.empty((len(at), 6, 3))
+    feet(0, len(at), surface.net, surface.periodic, np.ascontiguousarray(points), at, frames)
+    off = np.linalg.norm(frames[:, 0] - points, axis=1)
+    far = np.flatnonzero(off > _FARTHEST * surface.size)
+    if len(far):
+        raise BadInputError(
+            f"{path.name}: row {far[0] + 2} has a pin {off[far[0]]:.3g} off the part; "
+            "give points on it, in the mesh's coordinates"
+        )
+    return at
+
+
+def _turned(start: Floats, end: Floats, turns: Floats | None, revolutions: float) -> tuple[Floats, Floats]:
+    """Unwrap the ends' u to the change nearest to what is wanted, in both senses where that is left open."""
+    if turns is None:
+        turns = np.repeat([revolutions, -revolutions], len(start))
+        start, end = np.concatenate([start, start]), np.concatenate([end, end])
+    end = end.copy()
+    end[:, 0] += np.round(start[:, 0] + turns - end[:, 0])
+    return start, end

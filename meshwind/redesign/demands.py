@@ -1,0 +1,173 @@
+"""What the paths ask of the control net: to reach them where they are lifted (6.9), to press everywhere else.
+
+(6.9) takes the surface's normal at the shadow.  Over a deep hollow the normals of neighbouring shadows cross before
+they reach the fibre, and a surface moved along them folds; so the move is along the direction across the chord that
+is nearest to the normal.  It is the normal itself where the surface below runs along the fibre.
+
+Reaching alone converges slowly: the surface then lies straight under the fibre, and every change of course lifts it
+again.  So each particle also asks for a little normal curvature along the fibre, which is linear in the control
+points as well; then the rounds converge like Newton's method.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+
+from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.path.paths import Paths, Status
+from meshwind.redesign.stencil import along, pitches, weights
+
+JUMP = 0.5
+"""Spans that neighbouring shadows may lie apart; where they skip the floor of a hollow, points between them count."""
+
+CLOSE, MOST_BETWEEN = 0.5, 4
+"""Neighbouring paths up to a span and this much apart have none between; others get so many at most."""
+
+
+@dataclass(frozen=True)
+class Demands:
+    """Inequalities matrix @ change >= least over the net's coordinates (k, 3m), in the surface's units.
+
+    chosen (k,) marks about one a span along each path: the others are nearly the same ones again.
+    """
+
+    matrix: sparse.csr_array
+    least: Floats
+    chosen: Bools
+
+
+def reach(paths: Paths) -> Demands:
+    """The surface must come up to every lifted particle, (6.9) to (6.11)."""
+    surface = paths.surface
+    lifted = ~paths.on_surface & _counts(paths)
+    path, at = np.nonzero(lifted)
+    spans, run = _travel(paths)
+    pieces = np.maximum(1, np.ceil(spans[path, at - 1] / JUMP)).astype(np.int64)
+    which = np.repeat(np.arange(len(path)), pieces)
+    step = np.arange(len(which)) - np.repeat(np.cumsum(pieces) - pieces, pieces) + 1
+    share = (step / pieces[which])[:, None]
+    path, at = path[which], at[which]
+    uv = (1 - share) * paths.uv[path, at - 1] + share * paths.uv[path, at]
+    points = (1 - share) * paths.points[path, at - 1] + share * paths.points[path, at]
+    chosen = _new_span(run[path, at - 1], spans[path, at - 1], step, pieces[which])
+    direction = _across(surface.normals(uv), _chords(paths)[path, at])
+    found, (part,) = weights(surface, uv, ((0, 0),))
+    least = ((points - surface.points(uv)) * direction).sum(axis=1)
+    return Demands(along(found, part, direction, surface.control_points.size // 3), least, chosen)
+
+
+def press(paths: Paths, curvature: float) -> Demands:
+    """The normal curvature along every path must be at least `curvature` (1 / length), times a span's length squared.
+
+    The change of the second fundamental form is n . (D_tt - G^k D_k) for a change D of the surface, with the
+    Christoffel symbols G of the fibre's direction t; the rows are in lengths, like those of `reach`.
+    """
+    surface = paths.surface
+    uv, chord = _pressed(paths)
+    frames = surface.frames(uv)
+    normal = surface.normals(uv)
+    a, b = _components(frames, chord)
+    speed = np.linalg.norm(a[:, None] * frames[:, 1] + b[:, None] * frames[:, 2], axis=1)
+    sound = speed > 1e-9 * np.linalg.norm(chord, axis=1)
+    uv, frames, normal = uv[sound], frames[sound], normal[sound]
+    a, b = a[sound] / speed[sound], b[sound] / speed[sound]
+    turn = (a * a)[:, None] * frames[:, 3] + (2 * a * b)[:, None] * frames[:, 4] + (b * b)[:, None] * frames[:, 5]
+    along_u, along_v = _components(frames, turn)
+    found, (d_u, d_v, d_uu, d_uv, d_vv) = weights(surface, uv, ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2)))
+    change = (a * a)[:, None] * d_uu + (2 * a * b)[:, None] * d_uv + (b * b)[:, None] * d_vv
+    change -= along_u[:, None] * d_u + along_v[:, None] * d_v
+    length = max(pitches(surface)) ** 2
+    matrix = along(found, -length * change, normal, surface.control_points.size // 3)
+    least = length * (curvature + (turn * normal).sum(axis=1))
+    return Demands(matrix, least, np.ones(len(least), dtype=bool))
+
+
+def _pressed(paths: Paths) -> tuple[Floats, Floats]:
+    """Where the fibres must press, in the plane (k, 2), and their chords there (k, 3).
+
+    About once a span along each path, and also between neighbours that run further apart than a span: from round
+    to round paths move sideways there, and another start may send one through.
+    """
+    uv, points = paths.uv, paths.points
+    spans, run = _travel(paths)
+    chosen = np.zeros(paths.gap.shape, dtype=bool)
+    chosen[:, 1:] = _new_span(run[:, :-1], spans, np.ones_like(spans), np.ones_like(spans))
+    chosen[:, [1, -2]] = True  # curvature runs straight within a span: its ends count, at the rims too
+    chosen &= _counts(paths)
+    chosen[:, [0, -1]] = False
+    chord = np.zeros(points.shape)
+    chord[:, 1:-1] = points[:, 2:] - points[:, :-2]
+    places, chords = [uv[chosen]], [chord[chosen]]
+    left = np.arange(len(paths))
+    right, turns = _neighbours(paths)
+    beside = uv[right] + turns[:, None, None] * [1.0, 0.0]
+    apart = np.abs((beside - uv) * np.array(paths.surface.spans)).max(axis=2)
+    open_ = chosen & chosen[right].any(axis=1, keepdims=True) & (right != left)[:, None]
+    for part in range(1, MOST_BETWEEN + 1):
+        pieces = np.minimum(np.ceil(apart - CLOSE), MOST_BETWEEN) + 1
+        here = open_ & (pieces > part)
+        share = (part / np.maximum(pieces, 1))[here][:, None]
+        places.append((1 - share) * uv[here] + share * beside[here])
+        chords.append((1 - share) * chord[here] + share * chord[right][here])
+    return np.concatenate(places), np.concatenate(chords)
+
+
+def _neighbours(paths: Paths) -> tuple[Ints, Floats]:
+    """The next path around of each path's family (p,), and the turns of u to it (p,)."""
+    right, turns = np.arange(len(paths)), np.zeros(len(paths))
+    if paths.surface.periodic:
+        for family in (1, -1):
+            mine = np.flatnonzero(paths.family == family)
+            order = mine[np.argsort(paths.uv[mine, 0, 0], kind="stable")]
+            right[order] = np.roll(order, -1)
+            turns[order[-1:]] = 1.0
+    return right, turns
+
+
+def _counts(paths: Paths) -> Bools:
+    """Mask (p,) of the paths whose place means something, (p, 1) for broadcasting over particles."""
+    return ~np.isin(paths.status, (Status.STALLED, Status.LEFT_CHART))[:, None]
+
+
+def _travel(paths: Paths) -> tuple[Floats, Floats]:
+    """Spans crossed by each step of a path (p, n - 1), and since its start (p, n)."""
+    spans = np.abs(np.diff(paths.uv, axis=1) * np.array(paths.surface.spans)).max(axis=2)
+    return spans, np.concatenate([np.zeros((len(paths), 1)), np.cumsum(spans, axis=1)], axis=1)
+
+
+def _new_span(start: Floats, length: Floats, step: Floats | Ints, pieces: Floats | Ints) -> Bools:
+    """Whether the given piece of a step is the first to cross into another span along the path."""
+    start = start + 1e-6  # particles may lie on knots to round-off, which must not decide
+    now, before = start + length * step / pieces, start + length * (step - 1) / pieces
+    return np.asarray(np.floor(now) > np.floor(before))
+
+
+def _chords(paths: Paths) -> Floats:
+    """Unit vector (p, n, 3) of the chord that each lifted particle lies on, between touching ones."""
+    touching = paths.on_surface.copy()
+    touching[:, 0] = touching[:, -1] = True
+    index = np.broadcast_to(np.arange(touching.shape[1]), touching.shape)
+    before = np.maximum.accumulate(np.where(touching, index, 0), axis=1)
+    last = touching.shape[1] - 1
+    after = np.minimum.accumulate(np.where(touching, index, last)[:, ::-1], axis=1)[:, ::-1]
+    rows = np.arange(len(paths))[:, None]
+    chord = paths.points[rows, after] - paths.points[rows, before]
+    size = np.linalg.norm(chord, axis=2, keepdims=True)
+    return np.asarray(np.divide(chord, size, out=np.zeros_like(chord), where=size > 0))
+
+
+def _across(normal: Floats, chord: Floats) -> Floats:
+    """The unit vectors across the chords nearest to the normals; the normal where it runs along its chord."""
+    across = normal - (normal * chord).sum(axis=1, keepdims=True) * chord
+    size = np.linalg.norm(across, axis=1, keepdims=True)
+    return np.where(size > 1e-3, across / np.maximum(size, 1e-3), normal)
+
+
+def _components(frames: Floats, vector: Floats) -> tuple[Floats, Floats]:
+    """Components (k,) by s_u and s_v of the tangential part of vectors (k, 3)."""
+    s_u, s_v = frames[:, 1], frames[:, 2]
+    e, f, g = (s_u * s_u).sum(axis=1), (s_u * s_v).sum(axis=1), (s_v * s_v).sum(axis=1)
+    p, q = (vector * s_u).sum(axis=1), (vector * s_v).sum(axis=1)
+    area = np.maximum(e * g - f * f, 1e-300)
+    return (g * p - f * q) / area, (e * q - f * p) / area

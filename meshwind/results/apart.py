@@ -1,0 +1,143 @@
+"""Where a fitted surface and its mesh lie apart, looked at from both."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import igl
+import numpy as np
+from numba import njit
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.core.threads import spread
+from meshwind.mesh.geometry.annulus import Annulus
+from meshwind.results.maps import Grid, grid
+from meshwind.surface.surface import Surface
+from meshwind.surface.tree import nearest_foot
+
+_FINE = 8, 320
+"""Samples of the surface a span and, at most, in each direction."""
+_REGION = 1.0 / 3.0
+"""What is further off than this part of the worst is a region to be named, ..."""
+_CLOSE = 0.05
+"""... unless it lies this close, over the diagonal, to a worse one; ..."""
+_MOST = 5
+"""... and no more of them than one can look at."""
+
+
+@dataclass(frozen=True)
+class Body:
+    """Triangles (m, 3) between points (n, 3), with a search tree."""
+
+    points: Floats
+    faces: Ints
+
+    @cached_property
+    def _tree(self) -> Any:
+        tree = igl.AABB()
+        tree.init(self.points, self.faces)
+        return tree
+
+    def nearest(self, points: Floats) -> tuple[Floats, Ints, Floats]:
+        """Distance (k,) of points (k, 3) to the body, the face (k,) and the point (k, 3) of it that is nearest."""
+        squared, face, foot = self._tree.squared_distance(self.points, self.faces, np.ascontiguousarray(points))
+        return np.sqrt(squared), np.asarray(face), np.asarray(foot)
+
+    def normal(self, point: Floats) -> Floats:
+        """Unit normal (3,) of the face nearest to a point (3,)."""
+        corner = self.points[self.faces[self.nearest(point[None])[1][0]]]
+        across = np.cross(corner[1] - corner[0], corner[2] - corner[0])
+        return np.asarray(across / max(float(np.linalg.norm(across)), 1e-300))
+
+    def clear(self, point: Floats, directions: Floats, skip: float) -> Bools:
+        """Whether nothing of the body lies before a point (3,) in each direction (k, 3), past a length to skip."""
+        origins = point + skip * directions
+        hit, _, _ = self._tree.intersect_ray_first(self.points, self.faces, origins, np.ascontiguousarray(directions))
+        return np.asarray(hit < 0)
+
+
+@dataclass(frozen=True)
+class Place:
+    """The worst of a region: a point (3,) of the mesh, one of the surface (3,), and how far they lie apart."""
+
+    away: float
+    on_mesh: Floats
+    on_surface: Floats
+
+
+@dataclass(frozen=True)
+class Apart:
+    """A surface and its mesh as triangles, the distances of the points of each to the other, the worst places.
+
+    to_surface (n,) is of the mesh's vertices, to_mesh (k,) of the grid's points; places begins with the worst and
+    has one a region: a patch of the mesh that lies off by more than a third of that, or that such a part of the
+    surface is nearest to.
+    """
+
+    grid: Grid
+    surface: Body
+    mesh: Body
+    to_surface: Floats
+    to_mesh: Floats
+    places: tuple[Place, ...]
+
+
+def apart(surface: Surface, annulus: Annulus) -> Apart:
+    """Measure a surface against the mesh that it was fitted to, both ways, and find the regions that it lost.
+
+    Vertices that trimming made have a distance but are no place, as they do not lie on the part.
+    """
+    on = grid(surface, *_FINE)
+    skin = Body(on.points, np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]]))
+    mesh = Body(np.ascontiguousarray(annulus.vertices), np.ascontiguousarray(annulus.faces))
+    to_surface, on_surface = _feet(on, skin, annulus.vertices)
+    to_mesh, face, on_mesh = mesh.nearest(on.points)
+    # both sides in one list: what lies apart, and the corners of the mesh that it lies at
+    away = np.concatenate([np.where(annulus.trusted, to_surface, 0.0), to_mesh])
+    pairs = np.concatenate([np.stack([annulus.vertices, on_surface], 1), np.stack([on_mesh, on.points], 1)])
+    corners = np.concatenate([np.repeat(np.arange(len(to_surface))[:, None], 3, axis=1), annulus.faces[face]])
+    worst = _worst(away, pairs, corners, annulus)
+    places = tuple(Place(float(away[k]), frozen(pairs[k, 0]), frozen(pairs[k, 1])) for k in worst)
+    return Apart(on, skin, mesh, frozen(to_surface), frozen(to_mesh), places)
+
+
+def _feet(on: Grid, skin: Body, points: Floats) -> tuple[Floats, Floats]:
+    """Distances (n,) of points (n, 3) to the surface and their feet (n, 3): closer than the grid's facets tell."""
+    surface, points = on.surface, np.ascontiguousarray(points)
+    guess = on.uv[on.quads[skin.nearest(points)[1] % len(on.quads), 0]]
+    feet = np.empty_like(points)
+    spread(_nearest_feet, len(points), 500, surface.net, surface.periodic, surface.tree, points, guess, feet)
+    return np.asarray(np.linalg.norm(points - feet, axis=1)), feet
+
+
+@njit(nogil=True, cache=True)
+def _nearest_feet(
+    first: int, last: int, net: Floats, periodic: bool, tree: tuple[Floats, Ints, Floats],
+    points: Floats, guesses: Floats, feet: Floats,
+) -> None:  # fmt: skip
+    """Write the feet (n, 3) of points (n, 3) first to last, each found from its guess (n, 2)."""
+    frame = np.empty((6, 3))
+    for i in range(first, last):
+        nearest_foot(net, periodic, tree, points[i], guesses[i], frame)
+        feet[i] = frame[0]
+
+
+def _worst(away: Floats, pairs: Floats, corners: Ints, annulus: Annulus) -> list[int]:
+    """Rows of the worst of each region, the worst of all first."""
+    order = np.argsort(-away, kind="stable")
+    order = order[: max(int((away > _REGION * away[order[0]]).sum()), 1)]
+    off = np.zeros(len(annulus.vertices), dtype=bool)
+    off[corners[order]] = True
+    a, b = annulus.faces.ravel(), np.roll(annulus.faces, -1, axis=1).ravel()
+    both = off[a] & off[b]
+    links = coo_array((np.ones(both.sum()), (a[both], b[both])), shape=(len(off), len(off)))
+    region = connected_components(links, directed=False)[1][corners[order, 0]]
+    peaks = order[np.sort(np.unique(region, return_index=True)[1])]
+    chosen: list[int] = []
+    while len(peaks) and len(chosen) < _MOST:
+        chosen.append(int(peaks[0]))
+        apart = np.linalg.norm(pairs[peaks] - pairs[peaks[0]], axis=2).min(axis=1)
+        peaks = peaks[apart > _CLOSE * annulus.mesh.diagonal]
+    return chosen

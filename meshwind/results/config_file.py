@@ -1,0 +1,36 @@
+"""meshwind.core.toml: the options of a run, which `--config` repeats."""
+
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+
+NAME = "meshwind.core.toml"
+_ON = {"particles": "auto"}
+"""What stands for an option that was left to the run; any other has no line of its own."""
+
+
+def write_config(path: Path, out: Path, options: Mapping[str, object], version: str, command: str = "wind") -> None:
+    """Write options by their long names; paths (Path) are told from the folder `out`, where the file comes to lie."""
+    lines = [
+        f"# meshwind {version}: repeat this run with `meshwind {command} --config {NAME}`",
+        "# paths are relative to this file",
+    ]
+    for name, value in options.items():
+        key = name.replace("_", "-")
+        told = _ON.get(name) if value is None else _from(value, out) if isinstance(value, Path) else value
+        lines.append(f"# {key}: not given" if told is None else f"{key} = {_toml(told)}")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8", errors="replace")
+
+
+def _toml(value: object) -> str:
+    """A number, a text or a truth as TOML writes it: as JSON does, but for floats, which come back to the last bit."""
+    return repr(value) if isinstance(value, float) else json.dumps(value, ensure_ascii=False)
+
+
+def _from(file: Path, folder: Path) -> str:
+    """The way to a file from a folder, with symbolic links followed, as a program takes it."""
+    try:
+        return Path(os.path.relpath(os.path.realpath(file), os.path.realpath(folder))).as_posix()
+    except ValueError:  # on another drive
+        return file.absolute().as_posix()

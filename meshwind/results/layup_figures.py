@@ -1,0 +1,125 @@
+"""Figures of the layup for report.json: crossings, coverage, spacing, windability, quads, fibre, revolutions."""
+
+from typing import Any
+
+import numpy as np
+
+from meshwind.core.cast import Floats
+from meshwind.layup.crossings import Crossings, counts
+from meshwind.layup.layup import Layup
+from meshwind.layup.windability import CONCAVE, CONVEX, SADDLE, Windability
+from meshwind.planning.revolutions import FRICTION, WIDER, Revolutions
+from meshwind.planning.spacing import Spaced
+
+REGIONS = (4, 8)
+"""Equal parts of u and of v in which crossings are counted."""
+
+
+def spread(values: Floats) -> dict[str, float | None]:
+    """Smallest, median and largest; None of nothing."""
+    if not len(values):
+        return {"min": None, "median": None, "max": None}
+    return {"min": float(values.min()), "median": float(np.median(values)), "max": float(values.max())}
+
+
+def crossing_figures(crossings: Crossings, own: int) -> dict[str, Any]:
+    """Angles in degrees, quality as |cos|, counts by region, and how often fibres cross their own family."""
+    return {
+        "count": len(crossings),
+        "angle": spread(np.degrees(crossings.angle)),
+        "quality": spread(np.abs(np.cos(crossings.angle))),
+        "off_surface": int((~crossings.on_surface).sum()),
+        "own_family": own,
+        "by_region": counts(crossings, *REGIONS),
+    }
+
+
+def coverage_figures(layup: Layup) -> dict[str, Any]:
+    """Layers by cells of a pitch, and shares of the area under no, one, two and more bands."""
+    bands, cover = layup.bands, layup.coverage
+    shares = {"bare": bands.bare, "once": bands.share(1), "twice": bands.share(2)}
+    return {
+        "min": cover.min,
+        "median": cover.median,
+        "max": cover.max,
+        "band_width": cover.width,
+        "cells": list(cover.layers.shape),
+        **shares,
+        "more": max(1.0 - sum(shares.values()), 0.0),
+        "most_layers": int(bands.layers.max(initial=0)),
+        "on_part": bands.balance,
+        "bare_caps": list(bands.caps),
+    }
+
+
+def spacing_figures(layup: Layup, spaced: Spaced | None) -> dict[str, Any]:
+    """Distances between neighbours and between crossings; the gap and overlap that the band's width leaves."""
+    largest, width = layup.neighbours.largest, layup.coverage.width
+    figures: dict[str, Any] = {
+        "neighbours": spread(largest),
+        "d1": spread(layup.sides.d1),
+        "d2": spread(layup.sides.d2),
+        "widest_gap": max(float(largest.max(initial=width)) - width, 0.0),
+        "neighbours_apart": float((largest > width).mean()) if len(largest) else None,
+    }
+    if spaced is not None:
+        figures |= {
+            "asked": spaced.spacing,
+            "kept": spaced.gap,
+            "paths_added": len(spaced.paths) - 2 * spaced.even,
+            "partings": spaced.partings,
+            "widest_parting": spaced.widest,
+        }
+    return figures
+
+
+def windability_figures(press: Windability) -> dict[str, Any]:
+    """Shares of the area by kind, and of the directions that press."""
+    share = float((press.share * press.weight).sum())
+    kinds = {name: press.area(kind) for name, kind in (("convex", CONVEX), ("saddle", SADDLE), ("concave", CONCAVE))}
+    return kinds | {"untouchable": press.untouchable, "directions": share}
+
+
+def quad_figures(layup: Layup) -> dict[str, Any]:
+    """Counts and quality of the quad mesh."""
+    mesh, quality = layup.quads, layup.quality
+    return {
+        "faces": len(mesh.quads) + len(mesh.triangles),
+        "quads": len(mesh.quads),
+        "triangles": len(mesh.triangles),
+        "convex_inner": quality.convex_share,
+        "scaled_jacobian": spread(quality.jacobian),
+        "aspect": spread(quality.aspect),
+        "warp": spread(quality.warp),
+        "off_surface_points": int((~mesh.on_surface).sum()),
+        "left_out": list(mesh.left_out),
+        "of": "windings as asked for" if layup.as_asked else "paths",
+        "note": mesh.note,
+    }
+
+
+def fibre_figures(layup: Layup, linear_density: float | None) -> dict[str, Any]:
+    """Length of all fibres, and their mass where the linear density is known."""
+    length = float(layup.paths.length.sum())
+    mass = None if linear_density is None else linear_density * length
+    return {"length": length, "linear_density": linear_density, "mass": mass}
+
+
+def revolution_figures(chosen: Revolutions) -> dict[str, Any]:
+    """The choice of revolutions and what it rests on; None for a bound stands for none."""
+    held = chosen.holding
+    return {
+        "chosen": chosen.choice,
+        "why": chosen.why,
+        "bridged_fraction": chosen.chosen.bridged,
+        "pressing": {"intervals": [list(each) for each in chosen.common], "share": chosen.common_share},
+        "holding": {"low": held.low, "high": held.high, "by": held.by, "slides_off": held.slides},
+        "square": chosen.square,
+        "further": {
+            "friction": FRICTION,
+            "with_friction": chosen.with_friction or None,
+            "opening": WIDER,
+            "with_opening": chosen.with_opening or None,
+        },
+        "trials": [[each.revolutions, each.at_rest, each.bridged] for each in chosen.trials],
+    }

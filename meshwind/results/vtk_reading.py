@@ -1,0 +1,142 @@
+"""VTK's XML files to arrays."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshwind.core.cast import Floats, Ints
+from meshwind.core.errors import BadInputError
+from meshwind.mesh.io.isolated import Arrays, isolated
+
+POINT, CELL = "point: ", "cell: "
+"""Before the names of data of points and of cells among the arrays of a file."""
+
+
+@dataclass(frozen=True)
+class Lines:
+    """Polylines: line k goes through points starts[k] to starts[k + 1], with data of the points and of the lines."""
+
+    points: Floats
+    starts: Ints
+    point_data: dict[str, NDArray[Any]]
+    cell_data: dict[str, NDArray[Any]]
+
+
+@dataclass(frozen=True)
+class Faces:
+    """Quads (q, 4) and triangles (t, 3) between points (n, 3), with data of the points."""
+
+    points: Floats
+    quads: Ints
+    triangles: Ints
+    point_data: dict[str, NDArray[Any]]
+
+
+def read_lines(path: Path) -> Lines:
+    """Read the polylines of a .vtp file; raises BadInputError where it cannot be read."""
+    held = _held(lines_by_vtk, path)
+    starts, corners, points = held["starts"], held["corners"], held["points"]
+    if len(starts) < 2 or len(corners) == 0:
+        return Lines(points[:0], np.zeros(1, np.int64), _named(held, POINT), {})
+    if not np.array_equal(corners, np.arange(len(points))):
+        raise BadInputError(f"{path} cannot be used (its lines share points); run `meshwind wind` again")
+    return Lines(points, starts, _named(held, POINT), _named(held, CELL))
+
+
+def read_vertices(path: Path) -> tuple[Floats, dict[str, NDArray[Any]]]:
+    """Read the points (n, 3) of a .vtp file and their data; raises BadInputError where it cannot be read."""
+    held = _held(lines_by_vtk, path)
+    return held["points"], _named(held, POINT)
+
+
+def read_faces(path: Path, trusted: bool = False) -> Faces:
+    """Read the quads and triangles of a .vtu file; raises BadInputError where it cannot be read.
+
+    trusted: it is read by this process, which saves starting another one.
+    """
+    held = faces_by_vtk(path) if trusted else _held(faces_by_vtk, path)
+    starts, corners = held["starts"], held["corners"]
+    sizes = np.diff(starts)
+    fours, threes = (
+        corners[starts[:-1][sizes == size][:, None] + np.arange(size)].reshape(-1, size) for size in (4, 3)
+    )
+    return Faces(held["points"], fours, threes, _named(held, POINT))
+
+
+def _held(work: Callable[[Path], Arrays], path: Path) -> Arrays:
+    """What a file holds, read by another process, which survives no damaged one."""
+    if not path.is_file():
+        raise BadInputError(f"{path} is missing; run `meshwind wind` again")
+    try:
+        held = isolated(work, path)
+    except (OSError, ValueError) as error:
+        raise BadInputError(f"{path} cannot be used (VTK cannot read it); run `meshwind wind` again") from error
+    starts, corners = held["starts"], held["corners"]
+    if len(starts) and (starts[0] != 0 or (np.diff(starts) < 0).any() or starts[-1] != len(corners)):
+        raise BadInputError(f"{path} cannot be used (its cells are damaged); run `meshwind wind` again")
+    if len(corners) and (corners.min() < 0 or corners.max() >= len(held["points"])):
+        raise BadInputError(f"{path} cannot be used (its cells name no points); run `meshwind wind` again")
+    return held
+
+
+def lines_by_vtk(path: Path) -> Arrays:
+    """Points, polylines and data of a .vtp file, for `isolated`."""
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+    poly = _read(vtkXMLPolyDataReader(), path)
+    return _packed(poly, poly.GetLines())
+
+
+def faces_by_vtk(path: Path) -> Arrays:
+    """Points, cells and data of a .vtu file, for `isolated`."""
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+    grid = _read(vtkXMLUnstructuredGridReader(), path)
+    return _packed(grid, grid.GetCells())
+
+
+def _packed(data: Any, cells: Any) -> Arrays:
+    starts, corners = _cells(cells)
+    held = {"points": _points(data), "starts": starts, "corners": corners}
+    for kind, attributes in ((POINT, data.GetPointData()), (CELL, data.GetCellData())):
+        held |= {kind + name: values for name, values in _data(attributes).items()}
+    return held
+
+
+def _named(held: Arrays, kind: str) -> dict[str, NDArray[Any]]:
+    return {name.removeprefix(kind): values for name, values in held.items() if name.startswith(kind)}
+
+
+def _read(reader: Any, path: Path) -> Any:
+    """Run a reader."""
+    reader.SetFileName(str(path))
+    if not reader.GetExecutive().Update() or reader.GetErrorCode():
+        raise ValueError("VTK cannot read it")
+    return reader.GetOutput()
+
+
+def _points(data: Any) -> Floats:
+    points = data.GetPoints()
+    return np.zeros((0, 3)) if points is None else _array(points.GetData()).astype(np.float64)
+
+
+def _cells(cells: Any) -> tuple[Ints, Ints]:
+    starts, corners = (_array(part) for part in (cells.GetOffsetsArray(), cells.GetConnectivityArray()))
+    return starts.astype(np.int64), corners.astype(np.int64)
+
+
+def _data(attributes: Any) -> dict[str, NDArray[Any]]:
+    arrays = (attributes.GetArray(k) for k in range(attributes.GetNumberOfArrays()))
+    return {array.GetName(): _array(array) for array in arrays if array is not None}
+
+
+def _array(values: Any) -> NDArray[Any]:
+    """A copy that outlives the VTK object."""
+    from vtkmodules.util import numpy_support
+
+    convert: Any = numpy_support.vtk_to_numpy
+    return np.array(convert(values))
