@@ -14,7 +14,7 @@ RIBS = shapes.revolution(lambda z: 1 + 0.3 * np.cos(4 * np.pi * z), 0.0, 4.0, (9
 def nearest(surface: Surface, point: tuple[float, float, float], guess: tuple[float, float]) -> float:
     """Distance by the tree and Newton from a guess that may be far off."""
     at, uv = np.empty((6, 3)), np.array(guess)
-    tree.nearest_foot(surface.net, surface.periodic, surface.tree, np.array(point), uv, at)
+    tree.nearest_foot(surface.body, np.array(point), uv, at)
     assert surface.points(uv[None])[0] == pytest.approx(at[0], abs=1e-12)
     assert abs(uv[0] - guess[0]) <= 0.5 + 1e-9
     return float(np.linalg.norm(at[0] - point))

@@ -80,7 +80,7 @@ def distances(points: Floats, surface: mw.Surface) -> Floats:
     lattice = np.stack([u.ravel(), v.ravel()], axis=1)
     guess = lattice[cKDTree(surface.points(lattice)).query(points)[1]]
     frames = np.empty((len(points), 6, 3))
-    feet(0, len(points), surface.net, surface.periodic, points, guess, frames)
+    feet(0, len(points), surface.spline, points, guess, frames)
     return np.asarray(np.linalg.norm(points - frames[:, 0], axis=1))
 
 

@@ -107,7 +107,7 @@ def on_rim(surface: mw.Surface, points: Floats, v: float) -> Floats:
     u = np.arange(4096) / 4096
     rim = np.stack([u, np.full_like(u, v)], axis=1)
     uv = rim[cKDTree(surface.points(rim)).query(points)[1]]
-    feet(0, len(uv), surface.net, surface.periodic, points, uv, np.empty((len(uv), 6, 3)))
+    feet(0, len(uv), surface.spline, points, uv, np.empty((len(uv), 6, 3)))
     uv[:, 1] = v
     return uv
 

@@ -39,7 +39,7 @@ def clocked(call: Callable[..., Any], *arguments: Any) -> tuple[float, Any]:
 def split() -> dict[str, float]:
     """Milliseconds of 1000 steps by part: the compiled parts called one by one, less what an idle call costs."""
     surface = PROBLEM.surface()
-    net, periodic, n = surface.net, surface.periodic, PARTICLES
+    spline, n = surface.spline, PARTICLES
     physics = Physics(STEP, 1.0, DAMPING, 0.0)
     t = np.linspace(0.0, 1.0, n)[:, None]
     uv = np.ascontiguousarray((1 - t) * np.array(PROBLEM.start) + t * np.array(PROBLEM.end))
@@ -56,22 +56,22 @@ def split() -> dict[str, float]:
     forces, kept, move, tally = forces_for(n), np.empty(n, np.bool_), np.zeros((n, 2)), np.zeros(4, np.int64)
     bits, metric = forces[0], forces[1]
     system = np.empty((n, 3)), np.zeros((n, 2, 2)), np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 3))
-    place(net, periodic, chain, np.arange(n), n, False)
+    place(spline, chain, np.arange(n), n, False)
     link(chain[5], before, after)
     spacing = PROBLEM.length / (n - 1)
     spent = {"build": 0.0, "solve": 0.0, "lift and land": 0.0, "other": 0.0}
-    contact(net, periodic, chain, True, PULL * spacing, before, after, kept, tally)
+    contact(spline, chain, True, PULL * spacing, before, after, kept, tally)
     for _ in range(STEPS):
-        gathered, (count, _worst) = clocked(gather, chain, periodic, 0.0, contacts, before, after, forces)
+        gathered, (count, _worst) = clocked(gather, chain, spline.periodic, 0.0, contacts, before, after, forces)
         building = (chain, physics, contacts, before, after)
         idle = clocked(backward_euler.build, *building, 0, bits, metric, system[0], system[1])[0]
         built = clocked(backward_euler.build, *building, count, bits, metric, system[0], system[1])[0]
         stepping = (forces, True, system, move, tally)
         idle_step = clocked(backward_euler.step, *building, 0, *stepping)[0]
         stepped = clocked(backward_euler.step, *building, count, *stepping)[0]
-        idle_carry = clocked(carry, net, periodic, chain, contacts, 0, move, False)[0]
-        carried = clocked(carry, net, periodic, chain, contacts, count, move, False)[0]
-        landed = clocked(contact, net, periodic, chain, True, PULL * spacing, before, after, kept, tally)[0]
+        idle_carry = clocked(carry, spline, chain, contacts, 0, move, False)[0]
+        carried = clocked(carry, spline, chain, contacts, count, move, False)[0]
+        landed = clocked(contact, spline, chain, True, PULL * spacing, before, after, kept, tally)[0]
         spent["build"] += built - idle
         spent["solve"] += stepped - idle_step - (built - idle)
         spent["lift and land"] += landed - idle_carry

@@ -29,13 +29,13 @@ def shoot(problem: Problem, tolerance: float) -> Attempt:
     tolerance: of the march, relative and absolute in the parameters; the root is found to ten times that.
     """
     surface, count = problem.surface(), 0
-    net, periodic = surface.net, surface.periodic
+    spline = surface.spline
     at, out = np.empty((7, 3)), np.empty(4)
 
     def rate(_: float, y: Floats) -> Floats:
         nonlocal count
         count += 1
-        rates(net, periodic, 0.0, y, at, out)
+        rates(spline, 0.0, y, at, out)
         return out.copy()
 
     def march(rates_at_start: Floats, length: float) -> Floats:

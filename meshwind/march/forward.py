@@ -16,6 +16,7 @@ from meshwind.core.cast import Floats, Ints, floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.threads import spread
 from meshwind.march.march import EVALUATIONS, ROWS, RUNNING, STOP, march_all
+from meshwind.surface.evaluate import Spline
 from meshwind.surface.surface import Surface
 
 Method: TypeAlias = Literal["adaptive", "rk4"]
@@ -158,13 +159,12 @@ def traces(
     counts[:, :2], counts[:, 2], counts[:, STOP] = piece, 1, RUNNING
     setting = (size, exact, every, float(spacing), tolerance, press == "stop", LIMIT)
     first = np.column_stack([np.zeros(count), at, rates])
-    rows = _march(np.array(surface.net), surface.periodic, setting, slips, lengths, state, counts, first)
+    rows = _march(Spline(np.array(surface.net), surface.periodic), setting, slips, lengths, state, counts, first)
     return _finish(surface, rows, slips, counts)
 
 
 def _march(
-    net: Floats,
-    periodic: bool,
+    spline: Spline,
     setting: tuple[float, bool, bool, float, float, bool, int],
     slips: Floats,
     lengths: Floats,
@@ -178,7 +178,7 @@ def _march(
     while len(going):
         some, tally, rows = state[going], counts[going], np.empty((len(going), CHUNK, 5))
         tally[:, ROWS] = 0
-        spread(march_all, len(going), 1, net, periodic, setting, slips[going], lengths[going], some, tally, rows)
+        spread(march_all, len(going), 1, spline, setting, slips[going], lengths[going], some, tally, rows)
         state[going], counts[going] = some, tally
         for path, written, filled in zip(going, rows, tally[:, ROWS], strict=True):
             chunks[path].append(written[:filled].copy())

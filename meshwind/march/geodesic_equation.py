@@ -18,14 +18,14 @@ NORMAL = 6
 
 
 @njit(cache=True)
-def rates(net, periodic, slip, y, at, out):
+def rates(spline, slip, y, at, out):
     """Write dy/ds (4,) of (3.22) into out; return (normal curvature, speed |p s_u + q s_v|).
 
     The normal curvature is positive where the surface presses against the fibre.  A positive slip turns the fibre
     to its left as seen from outside.  All of it scales with the speed as a curve does that is run through faster,
     so that round-off in the speed does not bend the path.  Where s_u and s_v do not span a plane all is NaN.
     """
-    frame(net, periodic, y[0], y[1], at)
+    frame(spline, y[0], y[1], at)
     area = unit_normal(at, at[NORMAL])
     if not area > 0.0:
         out[:] = np.nan
@@ -53,20 +53,20 @@ def rates(net, periodic, slip, y, at, out):
 
 
 @njit(cache=True)
-def runge_kutta_4(net, periodic, slip, y, h, at, K, end):
+def runge_kutta_4(spline, slip, y, h, at, K, end):
     """The source's step (section 3.3): classic RK4 from y by h into end (4,); K[0] holds the rates at y."""
     for stage in range(1, 4):
         share = h if stage == 3 else 0.5 * h
         for k in range(4):
             end[k] = y[k] + share * K[stage - 1, k]
-        rates(net, periodic, slip, end, at, K[stage])
+        rates(spline, slip, end, at, K[stage])
     for k in range(4):
         end[k] = y[k] + h / 6.0 * (K[0, k] + 2.0 * K[1, k] + 2.0 * K[2, k] + K[3, k])
     return 3
 
 
 @njit(cache=True)
-def dormand_prince_8(net, periodic, slip, y, h, at, K, end):
+def dormand_prince_8(spline, slip, y, h, at, K, end):
     """A step of order 8 from y by h into end (4,); K[0] holds the rates at y."""
     for stage in range(1, STAGES):
         for k in range(4):
@@ -74,7 +74,7 @@ def dormand_prince_8(net, periodic, slip, y, h, at, K, end):
             for m in range(stage):
                 total += A[stage, m] * K[m, k]
             end[k] = y[k] + h * total
-        rates(net, periodic, slip, end, at, K[stage])
+        rates(spline, slip, end, at, K[stage])
     for k in range(4):
         total = 0.0
         for m in range(STAGES):

@@ -9,7 +9,8 @@ import numpy as np
 from numba import njit
 
 from meshwind.march.geodesic_equation import STAGES, local_error, rates
-from meshwind.march.step_events import EDGE, KNOT, LIFTS, OPEN, SLACK, STAYS, end_inside, end_pressed, take
+from meshwind.march.step_events import EDGE, KNOT, LIFTS, OPEN, SLACK, STAYS, Ground, end_inside, end_pressed, take
+from meshwind.surface.evaluate import Spline
 
 RUNNING, LENGTH, RIM_START, RIM_END, EDGE_OF_SURFACE, LIFTS_OFF, STEP_LIMIT = range(-1, 6)
 S, REACH, Y = 0, 1, 2
@@ -24,17 +25,17 @@ SHORTEST = 1e-13
 
 
 @njit(cache=True)
-def open_window(net, periodic, exact, count, window):
+def open_window(spline, exact, count, window):
     """Set the window on the path's place: for the exact method one piece, about its own corner to lose no digits."""
     if not exact:
         return
     i, j = count[COLUMN], count[ROW]
-    if periodic:
-        i %= net.shape[0] - 3
+    if spline.periodic:
+        i %= spline.net.shape[0] - 3
     for a in range(4):
         for b in range(4):
             for k in range(3):
-                window[a, b, k] = net[i + a, j + b, k] - net[i + 1, j + 1, k]
+                window[a, b, k] = spline.net[i + a, j + b, k] - spline.net[i + 1, j + 1, k]
 
 
 @njit(cache=True)
@@ -89,7 +90,7 @@ def controlled(ground, tolerance, y, h, reach, work, end):
 
     Returns (length, the controller's next step, evaluations); the length is 0 where no step is short enough.
     """
-    size, exact = ground[3], ground[4]
+    size, exact = ground.size, ground.exact
     count = 0
     while True:
         count += take(ground, y, h, work, end)
@@ -120,25 +121,25 @@ def change_window(exact, sides, count, y):
 
 
 @njit(cache=True)
-def march(net, periodic, setting, slip, length, state, count, rows):
+def march(spline, setting, slip, length, state, count, rows):
     """March one path on until it stops or has filled its rows (m, 5) of (s, u, v, du/ds, dv/ds)."""
     size, exact, every, spacing, tolerance, presses, limit = setting
-    spans = (net.shape[0] - 3, net.shape[1] - 3) if exact else (1, 1)
-    window = np.empty((4, 4, 3)) if exact else net
-    ground = (window, periodic and not exact, slip, size, exact)
+    spans = (spline.net.shape[0] - 3, spline.net.shape[1] - 3) if exact else (1, 1)
+    window = np.empty((4, 4, 3)) if exact else spline.net
+    ground = Ground(Spline(window, spline.periodic and not exact), slip, size, exact)
     work = (np.empty((7, 3)), np.empty((STAGES, 4)), np.empty(4))
     K = work[1]
     end = np.empty(4)
     y = state[Y:]
     sides = np.empty(4, np.int64)
-    open_window(net, periodic, exact, count, window)
-    look_around(spans[0], spans[1], periodic, exact, count, sides)
+    open_window(spline, exact, count, window)
+    look_around(spans[0], spans[1], spline.periodic, exact, count, sides)
     while count[STOP] == RUNNING and count[ROWS] < len(rows):
         how = outward(sides, y)
         if how != STAYS:
             count[STOP] = reason(how)
             break
-        press, speed = rates(ground[0], ground[1], slip, y, work[0], K[0])
+        press, speed = rates(ground.spline, slip, y, work[0], K[0])
         count[EVALUATIONS] += 1
         if presses and press * size < -SLACK:
             count[STOP] = LIFTS_OFF
@@ -185,12 +186,12 @@ def march(net, periodic, setting, slip, length, state, count, rows):
                 row[3 + c] = y[2 + c] / spans[c]
             count[ROWS] += 1
         if change_window(exact, sides, count, y):
-            open_window(net, periodic, exact, count, window)
-            look_around(spans[0], spans[1], periodic, exact, count, sides)
+            open_window(spline, exact, count, window)
+            look_around(spans[0], spans[1], spline.periodic, exact, count, sides)
 
 
 @njit(nogil=True, cache=True)
-def march_all(first, last, net, periodic, setting, slip, length, state, count, rows):
+def march_all(first, last, spline, setting, slip, length, state, count, rows):
     """March paths first to last on; see `march`."""
     for path in range(first, last):
-        march(net, periodic, setting, slip[path], length[path], state[path], count[path], rows[path])
+        march(spline, setting, slip[path], length[path], state[path], count[path], rows[path])

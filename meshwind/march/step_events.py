@@ -4,10 +4,13 @@ Each is a root of a function of the step's own length, found on the step itself 
 it, so that it is as accurate as the method.  Coordinates are those of a window, [0, 1] in both directions.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
 from meshwind.march.geodesic_equation import dormand_prince_8, rates, runge_kutta_4
+from meshwind.surface.evaluate import Spline
 
 OPEN, KNOT, EDGE = range(3)
 """What a window's side is: nothing, the next polynomial piece, or the end of the surface."""
@@ -22,14 +25,26 @@ STAYS, LEAVES, LIFTS = -1, 0, 4
 ROUNDS = 80
 
 
+class Ground(NamedTuple):
+    """What a path marches over: the spline, or for the exact method one piece of it, and what the march obeys.
+
+    slip is the constant kg/kn that the fibre is steered with; size is the length that tolerances are relative to.
+    """
+
+    spline: Spline
+    slip: float
+    size: float
+    exact: bool
+
+
 @njit(cache=True)
 def take(ground, y, h, work, end):
     """One step from y by h into `end`, with K[0] set; returns the number of surface evaluations."""
-    net, periodic, slip, size, exact = ground
+    spline, slip, exact = ground.spline, ground.slip, ground.exact
     at, K, _ = work
     if exact:
-        return dormand_prince_8(net, periodic, slip, y, h, at, K, end)
-    return runge_kutta_4(net, periodic, slip, y, h, at, K, end)
+        return dormand_prince_8(spline, slip, y, h, at, K, end)
+    return runge_kutta_4(spline, slip, y, h, at, K, end)
 
 
 @njit(cache=True)
@@ -37,7 +52,7 @@ def measure(ground, what, end, work):
     """The quantity `what` at the end of a step."""
     if what < PRESS:
         return end[what]
-    return rates(ground[0], ground[1], ground[2], end, work[0], work[2])[0]
+    return rates(ground.spline, ground.slip, end, work[0], work[2])[0]
 
 
 @njit(cache=True)
@@ -143,7 +158,7 @@ def middle_press(ground, y, h, end, work):
         a, b, r0, r1, a0, a1 = y[c], end[c], y[2 + c], end[2 + c], K[0, 2 + c], out[2 + c]
         half[c] = 0.5 * (a + b) + h * (5.0 / 32.0 * (r0 - r1) + h / 64.0 * (a0 + a1))
         half[2 + c] = 15.0 / 8.0 * (b - a) / h - 7.0 / 16.0 * (r0 + r1) + h / 32.0 * (a1 - a0)
-    return rates(ground[0], ground[1], ground[2], half, work[0], out)[0]
+    return rates(ground.spline, ground.slip, half, work[0], out)[0]
 
 
 @njit(cache=True)
@@ -152,7 +167,7 @@ def end_pressed(ground, y, press, h, how, work, end):
 
     A dip within the step is found by the parabola through its ends and its middle.
     """
-    least = -SLACK / ground[3]
+    least = -SLACK / ground.size
     target = 0.0 if press > 0.0 else least
     at_end = measure(ground, PRESS, end, work)
     if at_end < least:

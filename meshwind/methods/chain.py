@@ -36,15 +36,15 @@ class Physics(NamedTuple):
 
 
 @njit(cache=True)
-def place(net, periodic, chain, contacts, count, bends):
+def place(spline, chain, contacts, count, bends):
     """Put the contacts on the surface at their parameters; with `bends` their frames have second derivatives too."""
     X, uv, V, frames, normal, touching, clear = chain
     for c in range(count):
         i = contacts[c]
         if bends:
-            frame(net, periodic, uv[i, 0], uv[i, 1], frames[i])
+            frame(spline, uv[i, 0], uv[i, 1], frames[i])
         else:
-            tangents(net, periodic, uv[i, 0], uv[i, 1], frames[i])
+            tangents(spline, uv[i, 0], uv[i, 1], frames[i])
         unit_normal(frames[i], normal[i])
         for k in range(3):
             X[i, k] = frames[i, S, k]
@@ -141,7 +141,7 @@ def rub(chain, physics, contacts, count, metric, press, move):
 
 
 @njit(cache=True)
-def carry(net, periodic, chain, contacts, count, move, bends):
+def carry(spline, chain, contacts, count, move, bends):
     """Move the contacts by `move`, stopping them at the rims (and edges); return the longest move in the plane."""
     uv, V = chain[1], chain[2]
     longest = 0.0
@@ -150,11 +150,11 @@ def carry(net, periodic, chain, contacts, count, move, bends):
         longest = max(longest, abs(move[c, 0]), abs(move[c, 1]))
         for a in range(2):
             x = uv[i, a] + move[c, a]
-            if (a == 1 or not periodic) and not 0.0 <= x <= 1.0:
+            if (a == 1 or not spline.periodic) and not 0.0 <= x <= 1.0:
                 x = min(max(x, 0.0), 1.0)
                 V[i, a] = 0.0
             uv[i, a] = x
-    place(net, periodic, chain, contacts, count, bends)
+    place(spline, chain, contacts, count, bends)
     return longest
 
 

@@ -15,7 +15,7 @@ from meshwind.surface.tree import nearest_foot
 
 
 @njit(cache=True)
-def feel(net, periodic, tree, strand, step, width, tally):
+def feel(body, strand, step, width, tally):
     """Measure the gaps after a move of step * W; particles nearer than `width` touch.
 
     A touching particle's foot is followed from the last one; one that comes down from the air is found with the
@@ -24,12 +24,12 @@ def feel(net, periodic, tree, strand, step, width, tally):
     X, W, uv, frames, normal, touching, gap = strand
     for i in range(1, len(X) - 1):
         if touching[i]:
-            tally[EVALUATIONS] += foot(net, periodic, X[i], uv[i], frames[i])
+            tally[EVALUATIONS] += foot(body.spline, X[i], uv[i], frames[i])
         else:
             gap[i] -= step * np.sqrt(W[i, 0] ** 2 + W[i, 1] ** 2 + W[i, 2] ** 2)
             if gap[i] > width:
                 continue
-            tally[EVALUATIONS] += nearest_foot(net, periodic, tree, X[i], uv[i], frames[i])
+            tally[EVALUATIONS] += nearest_foot(body, X[i], uv[i], frames[i])
         tally[FEET] += 1
         unit_normal(frames[i], normal[i])
         height = square = 0.0
@@ -38,7 +38,7 @@ def feel(net, periodic, tree, strand, step, width, tally):
             height += r * normal[i, k]
             square += r * r
         # beside the foot there is nothing but round-off, except at a rim, beyond which there is no body
-        beyond = square > 4.0 * height * height and outermost(periodic, uv[i])
+        beyond = square > 4.0 * height * height and outermost(body.spline.periodic, uv[i])
         gap[i] = np.sqrt(square) if beyond else height
         touching[i] = gap[i] <= width
 

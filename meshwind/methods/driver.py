@@ -145,11 +145,11 @@ def _on_surface(
     record: Floats,
     tally: Ints,
 ) -> Run:
-    n, body, origin = len(uv), surface.centred, surface.middle
+    n, centred, origin = len(uv), surface.centred, surface.middle
     X, V, frames, normal = np.empty((n, 3)), np.zeros((n, 2)), np.empty((n, 6, 3)), np.empty((n, 3))
     touching = np.ones(n, np.bool_)
     chain = X, uv, V, frames, normal, touching, np.zeros(n)
-    ending = march.march(body.net, body.periodic, rules, physics, chain, record, tally)
+    ending = march.march(centred.spline, rules, physics, chain, record, tally)
     return _result(method, surface, X + origin, uv, touching, ending, record, tally)
 
 
@@ -162,15 +162,13 @@ def _in_space(
     record: Floats,
     tally: Ints,
 ) -> Run:
-    n, body, origin = len(uv), surface.centred, surface.middle
+    n, centred, origin = len(uv), surface.centred, surface.middle
     frames = surface.frames(uv)
     X, W, normal = frames[:, S] - origin, np.zeros((n, 3)), np.empty((n, 3))
     touching = np.ones(n, np.bool_)
     strand = X, W, uv, frames, normal, touching, np.zeros(n)
     ending = march_space.march(
-        body.net,
-        body.periodic,
-        body.tree,
+        centred.body,
         contact,
         physics,
         strand,

@@ -58,7 +58,7 @@ def straighten(chain, after):
 
 
 @njit(cache=True)
-def land(net, periodic, chain, tally):
+def land(spline, chain, tally):
     """Algorithm 2: lifted particles below the surface land on their feet, found by Newton (5.4 to 5.7).
 
     Newton starts at the last foot, which is where (5.10) keeps the shadow particle.  The gap shrinks by no more
@@ -69,7 +69,7 @@ def land(net, periodic, chain, tally):
         if touching[m] or clear[m] > 0.0:
             continue
         tally[FEET] += 1
-        tally[EVALUATIONS] += foot(net, periodic, X[m], uv[m], frames[m])
+        tally[EVALUATIONS] += foot(spline, X[m], uv[m], frames[m])
         unit_normal(frames[m], normal[m])
         height = square = 0.0
         for k in range(3):
@@ -85,7 +85,7 @@ def land(net, periodic, chain, tally):
 
 
 @njit(cache=True)
-def contact(net, periodic, chain, weighted, slack, before, after, kept, tally):
+def contact(spline, chain, weighted, slack, before, after, kept, tally):
     """Lift, straighten, land; returns whether the set of touching particles has changed."""
     touching = chain[5]
     n = len(touching)
@@ -93,7 +93,7 @@ def contact(net, periodic, chain, weighted, slack, before, after, kept, tally):
         kept[i] = touching[i]
     lift(chain, weighted, slack, before, after)
     straighten(chain, after)
-    land(net, periodic, chain, tally)
+    land(spline, chain, tally)
     link(touching, before, after)
     changed = False
     for i in range(n):

@@ -53,7 +53,7 @@ def stages_for(n):
 
 
 @njit(nogil=True, cache=True)
-def march(net, periodic, rules, physics, chain, history, tally):
+def march(spline, rules, physics, chain, history, tally):
     """Step the chain from rest at its parameters; returns (residual, length, status).
 
     history (steps + 1, 3) or (0, 3) takes length, residual and mean angle of every state.
@@ -67,18 +67,18 @@ def march(net, periodic, rules, physics, chain, history, tally):
     bits, metric, force, press = forces
     system = np.empty((n, 3)), np.zeros((n, 2, 2)), np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 3))
     stage = stages_for(n)
-    place(net, periodic, chain, np.arange(n), n, inertial)
+    place(spline, chain, np.arange(n), n, inertial)
     tally[EVALUATIONS] += n
     link(touching, before, after)
     energy, length = stretch(X)
     bound = GROWTH * physics.stiff * energy
     if lifting:
-        contact(net, periodic, chain, weighted, PULL * length / (n - 1), before, after, kept, tally)
+        contact(spline, chain, weighted, PULL * length / (n - 1), before, after, kept, tally)
     changed, resting, age = True, False, reuse
     pinned = np.zeros(n, np.int64)
     for k in range(steps + 1):
         energy, length = stretch(X)
-        count, worst = gather(chain, periodic, friction, contacts, before, after, forces)
+        count, worst = gather(chain, spline.periodic, friction, contacts, before, after, forces)
         residual = max(worst, sag(X, after) if lifting else 0.0) * (n - 1) / max(length, TINY)
         if len(history) > 0:
             history[k, 0], history[k, 1], history[k, 2] = length, residual, mean_angle(X, normal, touching)
@@ -95,7 +95,7 @@ def march(net, periodic, rules, physics, chain, history, tally):
             )
         elif scheme == RUNGE_KUTTA:
             runge_kutta.step(
-                net, periodic, chain, physics, contacts, before, after, count, forces, inertial, stage, move, tally
+                spline, chain, physics, contacts, before, after, count, forces, inertial, stage, move, tally
             )
         else:
             explicit_euler.step(
@@ -103,13 +103,11 @@ def march(net, periodic, rules, physics, chain, history, tally):
             )
         kinetic = rub(chain, physics, contacts, count, metric, press, move)
         if not well or not kinetic + physics.stiff * energy <= bound:
-            place(net, periodic, chain, contacts, count, inertial)
+            place(spline, chain, contacts, count, inertial)
             return residual, length, DIVERGED
-        longest = carry(net, periodic, chain, contacts, count, move, inertial)
+        longest = carry(spline, chain, contacts, count, move, inertial)
         tally[EVALUATIONS] += count
         tally[STEPS] += 1
-        changed = lifting and contact(
-            net, periodic, chain, weighted, PULL * length / (n - 1), before, after, kept, tally
-        )
+        changed = lifting and contact(spline, chain, weighted, PULL * length / (n - 1), before, after, kept, tally)
         resting = friction > 0.0 and longest == 0.0 and kinetic == 0.0
     return residual, length, STOPPED

@@ -25,7 +25,7 @@ class Contact(NamedTuple):
 
 
 @njit(nogil=True, cache=True)
-def march(net, periodic, tree, rules, physics, strand, history, tally):
+def march(body, rules, physics, strand, history, tally):
     """Step the strand from rest; returns (residual, length, status), the arguments as for `march.march`."""
     X, W, uv, frames, normal, touching, gap = strand
     scheme, steps, tolerance, width, push, stabilisation = rules
@@ -37,7 +37,7 @@ def march(net, periodic, tree, rules, physics, strand, history, tally):
     factor(1.0 + h * physics.damp + 2.0 * coupling, coupling, pivots)
     energy, length = stretch(X)
     bound = GROWTH * (physics.stiff * energy + (0.5 * n * push * width if scheme == PENALTY else 0.0))
-    feel(net, periodic, tree, strand, 0.0, width, tally)
+    feel(body, strand, 0.0, width, tally)
     longest, status = np.inf, STOPPED
     for k in range(steps + 1):
         energy, length = stretch(X)
@@ -60,7 +60,7 @@ def march(net, periodic, tree, rules, physics, strand, history, tally):
             status = DIVERGED
             break
         longest = drift(X, W, h)
-        feel(net, periodic, tree, strand, h, width, tally)
+        feel(body, strand, h, width, tally)
         tally[STEPS] += 1
     for i in range(n):
         touching[i] = pressed[i] or i in (0, n - 1)

@@ -7,7 +7,7 @@ from meshwind.methods.explicit_euler import accelerate
 
 
 @njit(cache=True)
-def step(net, periodic, chain, physics, contacts, before, after, count, forces, inertial, stage, move, tally):
+def step(spline, chain, physics, contacts, before, after, count, forces, inertial, stage, move, tally):
     """New velocities and moves by four stages; which particles touch is kept within the step.
 
     stage is (forces, contacts, uv, V, gain, slope): work space for the stages' forces, the state before, the sum of
@@ -33,8 +33,8 @@ def step(net, periodic, chain, physics, contacts, before, after, count, forces, 
                 uv[i, a] = uv0[c, a] + reach * V[i, a]
                 V[i, a] = V0[c, a] + reach * slope[c, a]
         if s < 3:
-            place(net, periodic, chain, contacts, count, inertial)
-            gather(chain, periodic, 0.0, passed, before, after, now)
+            place(spline, chain, contacts, count, inertial)
+            gather(chain, spline.periodic, 0.0, passed, before, after, now)
             accelerate(chain, physics, contacts, count, now, inertial, slope)
     for c in range(count):
         i = contacts[c]

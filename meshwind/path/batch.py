@@ -4,7 +4,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.threads import spread
 from meshwind.path.friction import Friction
 from meshwind.path.kernels.certificate import PULL
@@ -13,9 +13,8 @@ from meshwind.path.kernels.lay import lay_all
 from meshwind.path.kernels.refine import refine_all
 from meshwind.path.kernels.relax import LIFTED, relax_all
 from meshwind.surface.surface import Surface
+from meshwind.surface.tree import Body
 
-NO_TREE = frozen(np.empty((0, 12, 16))), frozen(np.empty((0, 3), np.int64)), frozen(np.empty((0, 3, 16)))
-"""Read-only as the tree itself, so that kernels compile once."""
 COARSE = 1e-6
 """Unbalanced force that is left on the rungs below the last."""
 
@@ -118,18 +117,17 @@ class Setting:
         """
         surface = self.surface.centred
         if "tree" in vars(surface):
-            self._lay(batch, surface.tree)
+            self._lay(batch, surface.body)
             return
-        self._lay(batch, NO_TREE)
+        self._lay(batch, surface.untreed)
         lifted = np.flatnonzero(batch.status == LIFTED)
         if len(lifted):
             part = fresh(batch.starts[lifted], batch.X.shape[1])  # counted as if the tree had been there
-            self._lay(part, surface.tree)
+            self._lay(part, surface.body)
             batch.put(lifted, part)
 
-    def _lay(self, batch: Batch, tree: tuple[Floats, Ints, Floats]) -> None:
-        surface = self.surface.centred
-        spread(lay_all, len(batch), 1, surface.net, surface.periodic, tree, surface.size, self._pull_off,
+    def _lay(self, batch: Batch, body: Body) -> None:
+        spread(lay_all, len(batch), 1, body, self._pull_off,
                max(self.tolerance, COARSE), self.tolerance, self.iterations, batch.starts, batch.X, batch.uv,
                batch.normal, batch.touching, batch.gap, batch.slip, batch.residual, batch.status,
                batch.tallies)  # fmt: skip
@@ -159,10 +157,7 @@ class Setting:
             None if tree else (part.X.copy(), part.uv.copy(), part.touching.copy(), part.place.copy(), part.mode.copy())
         )
         general = (
-            surface.net,
-            surface.periodic,
-            surface.tree if tree else NO_TREE,
-            surface.size,
+            surface.body if tree else surface.untreed,
             self._pull_off,
             self.tolerance,
             self.iterations,

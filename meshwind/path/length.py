@@ -41,12 +41,12 @@ def run_length(X, first, last):
 def fibre_lengths(surface: Surface, points: Floats, uv: Floats, touching: Bools) -> Floats:
     """Lengths (p,) of fibres with particles points (p, n, 3), at or above uv (p, n, 2), in the surface's units."""
     length = np.empty(len(points))
-    spread(lengths_all, len(points), 8, surface.net, surface.periodic, points, uv, touching, length)
+    spread(lengths_all, len(points), 8, surface.spline, points, uv, touching, length)
     return length
 
 
 @njit(nogil=True, cache=True)
-def lengths_all(first, last, net, periodic, X, uv, touching, length):
+def lengths_all(first, last, spline, X, uv, touching, length):
     """Write the lengths (p,) of fibres first to last with particles X (p, n, 3)."""
     n = X.shape[1]
     frames = np.empty((6, 3))
@@ -64,8 +64,8 @@ def lengths_all(first, last, net, periodic, X, uv, touching, length):
             i = j + 1
             while i < n - 1 and not touching[p, i]:
                 i += 1
-            total += touchdown(net, periodic, X[p], uv[p], j, i, frames, place, here)
-            total += touchdown(net, periodic, X[p], uv[p], i, j, frames, place, there)
+            total += touchdown(spline, X[p], uv[p], j, i, frames, place, here)
+            total += touchdown(spline, X[p], uv[p], i, j, frames, place, there)
             square = 0.0
             for k in range(3):
                 square += (there[k] - here[k]) ** 2

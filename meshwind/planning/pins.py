@@ -88,7 +88,7 @@ def _on_surface(surface: Surface, points: Floats, path: Path) -> Floats:
     apart = np.linalg.norm(surface.points(grid)[None] - points[:, None], axis=2)
     at = np.array(grid[apart.argmin(axis=1)])
     frames = np.empty((len(at), 6, 3))
-    feet(0, len(at), surface.net, surface.periodic, np.ascontiguousarray(points), at, frames)
+    feet(0, len(at), surface.spline, np.ascontiguousarray(points), at, frames)
     off = np.linalg.norm(frames[:, 0] - points, axis=1)
     far = np.flatnonzero(off > _FARTHEST * surface.size)
     if len(far):

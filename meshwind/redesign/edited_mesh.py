@@ -11,6 +11,7 @@ from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.threads import spread
 from meshwind.mesh.geometry.measure import area_vectors, perimeter, volume
 from meshwind.mesh.geometry.mesh import Mesh
+from meshwind.surface.evaluate import Spline
 from meshwind.surface.foot import feet
 from meshwind.surface.surface import Surface
 
@@ -79,8 +80,8 @@ def _feet(surface: Surface, points: Floats, guess: Floats) -> tuple[Floats, Floa
     """Parameters (k, 2) of the feet of points (k, 3), from a guess (k, 2), and their distances (k,)."""
     middle = points.mean(axis=0)  # far from the origin the feet would lose digits
     uv, frames = np.array(guess), np.empty((len(points), 6, 3))
-    net = frozen(surface.net - middle)
-    spread(feet, len(points), 500, net, surface.periodic, points - middle, uv, frames)
+    spline = Spline(frozen(surface.net - middle), surface.periodic)
+    spread(feet, len(points), 500, spline, points - middle, uv, frames)
     return uv, np.asarray(np.linalg.norm(surface.points(uv) - points, axis=1))
 
 

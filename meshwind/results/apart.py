@@ -15,6 +15,7 @@ from meshwind.core.threads import spread
 from meshwind.mesh.geometry.annulus import Annulus
 from meshwind.results.maps import Grid, grid
 from meshwind.surface.surface import Surface
+from meshwind.surface.tree import Body as SurfaceBody
 from meshwind.surface.tree import nearest_foot
 
 _FINE = 8, 320
@@ -108,19 +109,16 @@ def _feet(on: Grid, skin: Body, points: Floats) -> tuple[Floats, Floats]:
     surface, points = on.surface, np.ascontiguousarray(points)
     guess = on.uv[on.quads[skin.nearest(points)[1] % len(on.quads), 0]]
     feet = np.empty_like(points)
-    spread(_nearest_feet, len(points), 500, surface.net, surface.periodic, surface.tree, points, guess, feet)
+    spread(_nearest_feet, len(points), 500, surface.body, points, guess, feet)
     return np.asarray(np.linalg.norm(points - feet, axis=1)), feet
 
 
 @njit(nogil=True, cache=True)
-def _nearest_feet(
-    first: int, last: int, net: Floats, periodic: bool, tree: tuple[Floats, Ints, Floats],
-    points: Floats, guesses: Floats, feet: Floats,
-) -> None:  # fmt: skip
+def _nearest_feet(first: int, last: int, body: SurfaceBody, points: Floats, guesses: Floats, feet: Floats) -> None:
     """Write the feet (n, 3) of points (n, 3) first to last, each found from its guess (n, 2)."""
     frame = np.empty((6, 3))
     for i in range(first, last):
-        nearest_foot(net, periodic, tree, points[i], guesses[i], frame)
+        nearest_foot(body, points[i], guesses[i], frame)
         feet[i] = frame[0]
 
 

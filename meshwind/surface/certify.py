@@ -5,7 +5,7 @@ from numba import njit
 
 from meshwind.core.cast import Floats
 from meshwind.core.threads import spread
-from meshwind.surface.evaluate import position
+from meshwind.surface.evaluate import Spline, position
 from meshwind.surface.samples import Samples
 from meshwind.surface.surface import FitError, Surface
 
@@ -50,11 +50,11 @@ def to_mesh(surface: Surface, samples: Samples) -> tuple[Floats, float]:
 def _points(surface: Surface, uv: Floats) -> Floats:
     """Positions (n, 3) at uv (n, 2), without the derivatives: a third of the time."""
     out = np.empty((len(uv), 3))
-    spread(_positions, len(uv), 10_000, surface.net, surface.periodic, uv, out)
+    spread(_positions, len(uv), 10_000, surface.spline, uv, out)
     return out
 
 
 @njit(nogil=True, cache=True)
-def _positions(first: int, last: int, net: Floats, periodic: bool, uv: Floats, out: Floats) -> None:
+def _positions(first: int, last: int, spline: Spline, uv: Floats, out: Floats) -> None:
     for i in range(first, last):
-        position(net, periodic, uv[i, 0], uv[i, 1], out[i])
+        position(spline, uv[i, 0], uv[i, 1], out[i])

@@ -1,17 +1,30 @@
 """Compiled evaluation of a uniform bicubic B-spline: position and five derivatives on a fixed 4 x 4 stencil.
 
-Kernels take `net`, the control points padded in the periodic direction so that no index wraps: shape
-(spans_u + 3, spans_v + 3, 3).  Both parameters run over [0, 1]; u outside it wraps when `periodic`, otherwise
-the end polynomial is continued.
+Both parameters run over [0, 1]; u outside it wraps where the spline is periodic, otherwise the end polynomial is
+continued.
 """
 
 from math import floor
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
+from meshwind.core.cast import Floats
+
 S, SU, SV, SUU, SUV, SVV = range(6)
 """Rows of a frame: position, first and second derivatives."""
+
+
+class Spline(NamedTuple):
+    """A surface as the kernels take it.
+
+    net (spans_u + 3, spans_v + 3, 3) holds the control points, padded in u where the spline is periodic so that no
+    index wraps.
+    """
+
+    net: Floats
+    periodic: bool
 
 
 @njit(inline="always", cache=True)
@@ -57,10 +70,11 @@ def bend(x, spans):
 
 
 @njit(cache=True)
-def frame(net, periodic, u, v, out):
+def frame(spline, u, v, out):
     """Write position and derivatives s, s_u, s_v, s_uu, s_uv, s_vv at (u, v) into out (6, 3)."""
+    net = spline.net
     nu, nv = net.shape[0] - 3, net.shape[1] - 3
-    i, x = locate(u, nu, periodic)
+    i, x = locate(u, nu, spline.periodic)
     j, y = locate(v, nv, False)
     b, d, e = basis(x), slope(x, nu), bend(x, nu)
     c, f, g = basis(y), slope(y, nv), bend(y, nv)
@@ -82,10 +96,11 @@ def frame(net, periodic, u, v, out):
 
 
 @njit(cache=True)
-def tangents(net, periodic, u, v, out):
+def tangents(spline, u, v, out):
     """Write s, s_u, s_v at (u, v) into the first rows of out: bit for bit those of `frame`, a third cheaper."""
+    net = spline.net
     nu, nv = net.shape[0] - 3, net.shape[1] - 3
-    i, x = locate(u, nu, periodic)
+    i, x = locate(u, nu, spline.periodic)
     j, y = locate(v, nv, False)
     b, d = basis(x), slope(x, nu)
     c, f = basis(y), slope(y, nv)
@@ -101,10 +116,11 @@ def tangents(net, periodic, u, v, out):
 
 
 @njit(cache=True)
-def position(net, periodic, u, v, out):
+def position(spline, u, v, out):
     """Write the position alone into out (3,): a third of a frame's cost."""
+    net = spline.net
     nu, nv = net.shape[0] - 3, net.shape[1] - 3
-    i, x = locate(u, nu, periodic)
+    i, x = locate(u, nu, spline.periodic)
     j, y = locate(v, nv, False)
     b, c = basis(x), basis(y)
     for k in range(3):
@@ -131,7 +147,7 @@ def unit_normal(frame, out):
 
 
 @njit(nogil=True, cache=True)
-def frames(first, last, net, periodic, uv, out):
+def frames(first, last, spline, uv, out):
     """Write the frames of rows first to last of uv (n, 2) into out (n, 6, 3)."""
     for i in range(first, last):
-        frame(net, periodic, uv[i, 0], uv[i, 1], out[i])
+        frame(spline, uv[i, 0], uv[i, 1], out[i])

@@ -37,16 +37,16 @@ def newton_step(periodic, u, v, gu, gv, auu, auv, avv, huu, huv, hvv):
 
 
 @njit(cache=True)
-def foot(net, periodic, point, guess, at):
+def foot(spline, point, guess, at):
     """Minimise g = |s(u, v) - point|^2 / 2 from `guess` (2,); leave the frame at the foot in `at` (6, 3).
 
-    v stays within [0, 1] (and u, where not periodic).  `guess` becomes the foot.  Returns the number of
+    v stays within [0, 1] (and u, where the spline is not periodic).  `guess` becomes the foot.  Returns the number of
     surface evaluations.  A step is Newton's where the Hessian (5.7) is positive definite, Gauss-Newton's
     otherwise, halved until g falls, so that g never grows.
     """
     trial = np.empty((6, 3))
     u, v = guess[0], guess[1]
-    frame(net, periodic, u, v, at)
+    frame(spline, u, v, at)
     count = 1
     for _ in range(MAX_STEPS):
         g0 = gu = gv = 0.0
@@ -62,7 +62,7 @@ def foot(net, periodic, point, guess, at):
             huu += r * at[SUU, k]
             huv += r * at[SUV, k]
             hvv += r * at[SVV, k]
-        du, dv = newton_step(periodic, u, v, gu, gv, auu, auv, avv, huu, huv, hvv)
+        du, dv = newton_step(spline.periodic, u, v, gu, gv, auu, auv, avv, huu, huv, hvv)
         reach = np.sqrt(auu * du * du + avv * dv * dv)
         scale = np.sqrt(auu + avv)
         if reach <= 1e-13 * scale:
@@ -72,12 +72,12 @@ def foot(net, periodic, point, guess, at):
         better = False
         for _ in range(30):
             nu_, nv_ = u + step * du, min(max(v + step * dv, 0.0), 1.0)
-            if not periodic:
+            if not spline.periodic:
                 nu_ = min(max(nu_, 0.0), 1.0)
             if whole:  # it mostly counts, and then its frame is wanted
-                frame(net, periodic, nu_, nv_, trial)
+                frame(spline, nu_, nv_, trial)
             else:
-                position(net, periodic, nu_, nv_, trial[S])
+                position(spline, nu_, nv_, trial[S])
             count += 1
             g1 = 0.0
             for k in range(3):
@@ -99,7 +99,7 @@ def foot(net, periodic, point, guess, at):
             if reach <= CLOSE * scale:
                 break
         else:
-            frame(net, periodic, u, v, at)
+            frame(spline, u, v, at)
             count += 1
     guess[0], guess[1] = u, v
     return count
@@ -185,7 +185,7 @@ def near_feet(first, last, net, points, close, guesses, distances):
 
 
 @njit(nogil=True, cache=True)
-def feet(first, last, net, periodic, points, guesses, frames):
+def feet(first, last, spline, points, guesses, frames):
     """Move guesses (n, 2) first to last to the feet of their points (n, 3); leave the frames (n, 6, 3) there."""
     for i in range(first, last):
-        foot(net, periodic, points[i], guesses[i], frames[i])
+        foot(spline, points[i], guesses[i], frames[i])

@@ -6,10 +6,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshwind.core.cast import Floats, Ints, Kept, floats, frozen
+from meshwind.core.cast import Floats, Kept, floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.threads import spread
 from meshwind.surface import evaluate, tree
+from meshwind.surface.evaluate import Spline
+from meshwind.surface.tree import NO_TREE, Body, SearchTree
 
 DEGREE = 3
 
@@ -82,11 +84,25 @@ class Surface(Kept):
         """
         return tuple(frozen(np.arange(-DEGREE, n + DEGREE + 1) / n) for n in self.spans)  # type: ignore[return-value]
 
+    @property
+    def spline(self) -> Spline:
+        """The surface as the evaluation kernels take it."""
+        return Spline(self.net, self.periodic)
+
     @cached_property
-    def tree(self) -> tuple[Floats, Ints, Floats]:
-        """The search tree for foot points, see `meshwind.surface.tree`; built on first use."""
-        boxes, levels, samples = tree.build(self.net, self.periodic)
-        return frozen(boxes), frozen(levels), frozen(samples)
+    def tree(self) -> SearchTree:
+        """The search tree for foot points; built on first use."""
+        return SearchTree(*map(frozen, tree.build(self.spline)))
+
+    @property
+    def body(self) -> Body:
+        """The surface as the contact kernels take it, with its search tree."""
+        return Body(self.spline, self.tree, self.size)
+
+    @property
+    def untreed(self) -> Body:
+        """The body without its search tree, for paths that do not leave the surface."""
+        return Body(self.spline, NO_TREE, self.size)
 
     @cached_property
     def middle(self) -> Floats:
@@ -107,7 +123,7 @@ class Surface(Kept):
         """Position and derivatives (n, 6, 3) in the order s, s_u, s_v, s_uu, s_uv, s_vv at uv (n, 2)."""
         where = floats(uv, "uv", -1, 2)
         out = np.empty((len(where), 6, 3))
-        spread(evaluate.frames, len(where), 2000, self.net, self.periodic, where, out)
+        spread(evaluate.frames, len(where), 2000, self.spline, where, out)
         return out
 
     def points(self, uv: ArrayLike) -> Floats:

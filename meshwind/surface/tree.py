@@ -6,16 +6,15 @@ its Bezier points fill; above them is a pyramid of such boxes, each around sixte
 nearer than the foot at hand, it answers at once where that foot is right: then no box but those about the foot itself
 reaches into the ball.
 
-A tree is (boxes, levels, samples).  boxes (k, 12, 16) are the children of every node, the pieces' parents first, as
-centre, unit normal, unit vector along u and half extents along u, across and along the normal, each for all 16 children
-at once so that the compiler takes them in vectors; levels (l, 3) as (first node, rows, columns); samples (m, 3, 16) of
-every piece, 4 x 4 with its edges.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from meshwind.surface.evaluate import S, position
+from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.surface.evaluate import S, Spline, position
 from meshwind.surface.foot import foot
 
 WIDE = 4
@@ -30,10 +29,39 @@ REACH = 0.36
 """No point of a piece is further from a sample than this share of its box's half extents, with a tenth to spare."""
 
 
+class SearchTree(NamedTuple):
+    """A pyramid of boxes over the surface's polynomial pieces.
+
+    boxes (k, 12, 16) are the children of every node, the pieces' parents first, as centre, unit normal, unit vector
+    along u and half extents along u, across and along the normal, each for all 16 children at once so that the
+    compiler takes them in vectors; levels (l, 3) as (first node, rows, columns); samples (m, 3, 16) of every piece,
+    4 x 4 with its edges.
+    """
+
+    boxes: Floats
+    levels: Ints
+    samples: Floats
+
+
+NO_TREE = SearchTree(frozen(np.empty((0, 12, 16))), frozen(np.empty((0, 3), np.int64)), frozen(np.empty((0, 3, 16))))
+"""Stands for a tree that is not needed; read-only as a tree itself, so that kernels compile once."""
+
+
+class Body(NamedTuple):
+    """A surface that fibres touch: its spline, its search tree (`NO_TREE` where none is needed) and its size.
+
+    size is the length that tolerances are relative to.
+    """
+
+    spline: Spline
+    tree: SearchTree
+    size: float
+
+
 @njit(cache=True)
-def build(net, periodic):
-    """The search tree of a surface."""
-    spans_u, spans_v = net.shape[0] - 3, net.shape[1] - 3
+def build(spline):
+    """The arrays of a surface's search tree: boxes, levels, samples."""
+    spans_u, spans_v = spline.net.shape[0] - 3, spline.net.shape[1] - 3
     levels = shape(spans_u, spans_v)
     boxes = np.zeros((levels[-1, 0] + 1, 12, WIDE * WIDE))
     boxes[:, :3], boxes[:, 5], boxes[:, 6] = FAR, 1.0, 1.0
@@ -41,12 +69,12 @@ def build(net, periodic):
     corners, at = np.empty((16, 3)), np.empty(3)
     for i in range(spans_u):
         for j in range(spans_v):
-            bezier(net, i, j, corners)
+            bezier(spline.net, i, j, corners)
             enclose(corners, boxes[parent(levels[0], i, j)], child(i, j))
             for a in range(4):
                 for b in range(4):
                     place = (i + a / DENSITY) / spans_u, (j + b / DENSITY) / spans_v
-                    position(net, periodic, place[0], place[1], at)
+                    position(spline, place[0], place[1], at)
                     for k in range(3):
                         samples[i * spans_v + j, k, 4 * a + b] = at[k]
     for level in range(1, len(levels)):
@@ -222,7 +250,7 @@ def rival(tree, rows, columns, periodic, point, square, u, v):
     Pieces next to (u, v), where the foot at hand is, are judged by their samples; from others a nearer foot may hide
     between samples, and these count by the nearest that it may be.  Pieces are numbered by rows of `columns`.
     """
-    boxes, levels, samples = tree
+    boxes, levels, samples = tree.boxes, tree.levels, tree.samples
     here_i = int(np.floor((u - np.floor(u)) * rows if periodic else u * rows))
     here_j = int(v * columns)
     best, piece, sample = square, -1, -1
@@ -257,30 +285,32 @@ def rival(tree, rows, columns, periodic, point, square, u, v):
 
 
 @njit(cache=True)
-def nearest_foot(net, periodic, tree, point, guess, at):
+def nearest_foot(body, point, guess, at):
     """As `foot`, but the nearest of all: where the tree knows a nearer piece, Newton starts again from there.
 
     u in `guess` stays within half a turn of where it was.  Returns the number of surface evaluations.
     """
     before = guess[0]
-    count = foot(net, periodic, point, guess, at)
+    count = foot(body.spline, point, guess, at)
     square = squared(at, point)
-    rows, columns = net.shape[0] - 3, net.shape[1] - 3
+    rows, columns = body.spline.net.shape[0] - 3, body.spline.net.shape[1] - 3
     for _ in range(ROUNDS - 1):
-        piece, sample = rival(tree, rows, columns, periodic, point, square * (1.0 - 1e-9), guess[0], guess[1])
+        piece, sample = rival(
+            body.tree, rows, columns, body.spline.periodic, point, square * (1.0 - 1e-9), guess[0], guess[1]
+        )
         if piece < 0:
             break
         local_u, local_v = guess[0], guess[1]
         guess[0] = (piece // columns + sample // 4 / DENSITY) / rows
         guess[1] = (piece % columns + sample % 4 / DENSITY) / columns
-        count += foot(net, periodic, point, guess, at)
+        count += foot(body.spline, point, guess, at)
         found = squared(at, point)
         if found >= square * (1.0 - 1e-12):
             guess[0], guess[1] = local_u, local_v
-            count += foot(net, periodic, point, guess, at)
+            count += foot(body.spline, point, guess, at)
             break
         square = found
-    if periodic:
+    if body.spline.periodic:
         guess[0] += np.round(before - guess[0])
     return count
 

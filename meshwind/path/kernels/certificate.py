@@ -18,7 +18,7 @@ LONGEST_SEGMENT = 2.0
 
 
 @njit(cache=True)
-def certify(net, periodic, tree, size, state, slip, tally):
+def certify(body, state, slip, tally):
     """True gaps of the lifted particles, and the slip |kg| / kn that each touching one needs.
 
     A lifted particle that turns out to be inside the body lands; returns how many did.
@@ -29,8 +29,8 @@ def certify(net, periodic, tree, size, state, slip, tally):
     for i in range(n):
         slip[i] = np.nan
         if not touching[i]:
-            height, gap[i] = measure_gap(net, periodic, tree, state, i, tally)
-            if height < -INSIDE * size and 0.0 < uv[i, 1] < 1.0:
+            height, gap[i] = measure_gap(body, state, i, tally)
+            if height < -INSIDE * body.size and 0.0 < uv[i, 1] < 1.0:
                 for k in range(3):
                     X[i, k] = frames[i, S, k]
                 touching[i], gap[i] = True, 0.0

@@ -25,7 +25,7 @@ NEAR = 1e-5
 
 
 @njit(cache=True)
-def glide(net, periodic, pull_off, tolerance, steps, uv, frames, system, tally):
+def glide(spline, pull_off, tolerance, steps, uv, frames, system, tally):
     """Bring the path uv (n, 2) to rest on the surface, in place; returns its residual and whether it is at rest.
 
     frames (n, 6, 3) are left as they are there.  system is (pivots (n, 3), upper (n, 2, 2), x (n, 2)), work space.
@@ -37,7 +37,7 @@ def glide(net, periodic, pull_off, tolerance, steps, uv, frames, system, tally):
     residual = np.inf
     for _ in range(steps):
         tally[ITERATIONS] += 1
-        energy, length = evaluate(net, periodic, uv, frames, near, tally)
+        energy, length = evaluate(spline, uv, frames, near, tally)
         if not energy <= before * (1.0 + 1e-12):
             return residual, False
         before, spacing = energy, length / (n - 1)
@@ -45,7 +45,7 @@ def glide(net, periodic, pull_off, tolerance, steps, uv, frames, system, tally):
             residual = unbalanced(frames, n) / spacing
             if residual <= tolerance:
                 return residual, presses(frames, n, pull_off * spacing)
-            evaluate(net, periodic, uv, frames, False, tally)
+            evaluate(spline, uv, frames, False, tally)
         tally[SOLVES] += 1
         worst = eliminate(frames, n, 1.0, pivots, upper, x)
         stable = worst >= 0.0
@@ -55,22 +55,22 @@ def glide(net, periodic, pull_off, tolerance, steps, uv, frames, system, tally):
         residual = worst / spacing
         if residual <= tolerance:
             return residual, stable and presses(frames, n, pull_off * spacing)
-        if not step(periodic, uv, n, pivots, upper, x):
+        if not step(spline.periodic, uv, n, pivots, upper, x):
             return residual, False
         near = stable and residual <= NEAR
     return residual, False
 
 
 @njit(cache=True)
-def evaluate(net, periodic, uv, frames, lean, tally):
+def evaluate(spline, uv, frames, lean, tally):
     """Frames at all particles, without second derivatives if `lean`; returns the springs' energy and the length."""
     energy = length = 0.0
     tally[EVALUATIONS] += len(uv)
     for i in range(len(uv)):
         if lean:
-            tangents(net, periodic, uv[i, 0], uv[i, 1], frames[i])
+            tangents(spline, uv[i, 0], uv[i, 1], frames[i])
         else:
-            frame(net, periodic, uv[i, 0], uv[i, 1], frames[i])
+            frame(spline, uv[i, 0], uv[i, 1], frames[i])
         if i > 0:
             square = 0.0
             for k in range(3):
@@ -187,12 +187,12 @@ def along(curve, t, out):
 
 
 @njit(cache=True)
-def spread_along(net, periodic, curve, uv, frames, tally):
+def spread_along(spline, curve, uv, frames, tally):
     """Fill uv (n, 2) with points of a polyline (m, 2) in the plane, evenly spaced by length on the surface."""
     n, last = len(uv), len(curve) - 1.0
     for i in range(n):
         along(curve, last * i / (n - 1), uv[i])
-    _, length = evaluate(net, periodic, uv, frames, True, tally)
+    _, length = evaluate(spline, uv, frames, True, tally)
     X = frames[:, S]
     j, s = 0, 0.0
     reach = distance(X, 0, 1)

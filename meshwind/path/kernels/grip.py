@@ -13,7 +13,7 @@ SETTLE = 1e-12
 
 
 @njit(cache=True)
-def slide(net, periodic, step, move, contacts, count, curve, balance, state, grip, trial, after_grip, size, tally):
+def slide(spline, step, move, contacts, count, curve, balance, state, grip, trial, after_grip, size, tally):
     """Write into `trial` the touching particles moved by step * move: along the curve if stuck, freely if slipping."""
     uv = state[1]
     place, offset, mode = grip
@@ -31,19 +31,19 @@ def slide(net, periodic, step, move, contacts, count, curve, balance, state, gri
             rate = np.sqrt((du * du + dv * dv) / max(ways[i, 0, 0] ** 2 + ways[i, 0, 1] ** 2, 1e-300))
             place_t[i] = min(max(place[i] + step * move[c, 0] / max(rate, 1e-300), 0.0), len(curve) - 1.0)
             u, v, _, _ = curve_at(curve, place_t[i])
-            touch_down(net, periodic, trial, i, u, v)
+            touch_down(spline, trial, i, u, v)
             continue
         u = uv[i, 0] + step * (move[c, 0] * ways[i, 0, 0] + move[c, 1] * ways[i, 1, 0])
         v = uv[i, 1] + step * (move[c, 0] * ways[i, 0, 1] + move[c, 1] * ways[i, 1, 1])
         v = min(max(v, 0.0), 1.0)
-        if not periodic:
+        if not spline.periodic:
             u = min(max(u, 0.0), 1.0)
-        touch_down(net, periodic, trial, i, u, v)
+        touch_down(spline, trial, i, u, v)
         locate(curve, i, trial, after_grip, size)
         if mode[i] != HELD and load[i, 3] > 0.0 and offset_t[i] * mode[i] >= 0.0:  # back on the curve, or across it
             mode_t[i] = np.int8(STUCK)
             u, v, _, _ = curve_at(curve, place_t[i])
-            touch_down(net, periodic, trial, i, u, v)
+            touch_down(spline, trial, i, u, v)
             offset_t[i] = 0.0
             tally[EVALUATIONS] += 1
     tally[EVALUATIONS] += count
@@ -67,7 +67,7 @@ def locate(curve, i, state, grip, size):
 
 
 @njit(cache=True)
-def take_hold(net, periodic, curve, state, grip, size, tally):
+def take_hold(spline, curve, state, grip, size, tally):
     """Complete the grip of a state: stuck particles go to their place, slipping ones measure their way from it."""
     X, uv, frames, normal, touching, clear = state
     place, offset, mode = grip
@@ -82,13 +82,13 @@ def take_hold(net, periodic, curve, state, grip, size, tally):
             mode[i] = np.int8(STUCK if offset[i] == 0.0 else (-1 if offset[i] > 0.0 else 1))
         if mode[i] == STUCK:
             u, v, _, _ = curve_at(curve, place[i])
-            touch_down(net, periodic, state, i, u, v)
+            touch_down(spline, state, i, u, v)
             tally[EVALUATIONS] += 1
             offset[i] = 0.0
 
 
 @njit(cache=True)
-def space_along(net, periodic, curve, state, place):
+def space_along(spline, curve, state, place):
     """Put the particles on the starting curve, evenly by length in space."""
     X = state[0]
     n = len(X)
@@ -97,11 +97,11 @@ def space_along(net, periodic, curve, state, place):
     for _ in range(2):
         for i in range(n):
             u, v, _, _ = curve_at(curve, place[i])
-            touch_down(net, periodic, state, i, u, v)
+            touch_down(spline, state, i, u, v)
         s = np.zeros(n)
         for i in range(1, n):
             s[i] = s[i - 1] + np.sqrt(((X[i] - X[i - 1]) ** 2).sum())
         place[:] = np.interp(np.linspace(0.0, s[n - 1], n), s, place)
     for i in range(n):
         u, v, _, _ = curve_at(curve, place[i])
-        touch_down(net, periodic, state, i, u, v)
+        touch_down(spline, state, i, u, v)

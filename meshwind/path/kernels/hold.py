@@ -48,13 +48,14 @@ def blank_balance(n):
 
 
 @njit(cache=True)
-def hold(net, periodic, tree, size, pull_off, tolerance, limit, table, curve, state, grip, tally):
+def hold(body, pull_off, tolerance, limit, table, curve, state, grip, tally):
     """Bring a path that touches as `state` and `grip` say to rest under friction, in place.
 
     Returns (residual, status) as `relax` does.
     """
     X, uv, frames, normal, touching, clear = state
     place, offset, mode = grip
+    periodic = body.spline.periodic
     n = len(X)
     trial = blank(n)
     after_grip = np.zeros(n), np.zeros(n), np.zeros(n, np.int8)
@@ -76,7 +77,7 @@ def hold(net, periodic, tree, size, pull_off, tolerance, limit, table, curve, st
     for turn in range(limit):
         tally[ITERATIONS] += 1
         if turn % PATIENCE == PATIENCE - 1:
-            take_hold(net, periodic, curve, state, grip, size, tally)
+            take_hold(body.spline, curve, state, grip, body.size, tally)
             shift, best = 0.0, np.inf
             stride = max(0.5 * stride, SHORT)
             now, length = energy(X)
@@ -88,7 +89,7 @@ def hold(net, periodic, tree, size, pull_off, tolerance, limit, table, curve, st
             released = lift(X, normal, touching, pull_off * spacing, caution == 0, before, after)
         else:
             link(touching, before, after)
-        if released > 0 and len(tree[1]) == 0:
+        if released > 0 and len(body.tree.levels) == 0:
             return residual, LIFTED
         barred[:] = False
         changed, force = weigh(state, periodic, before, after, table, curve, grip, barred, balance)
@@ -134,7 +135,18 @@ def hold(net, periodic, tree, size, pull_off, tolerance, limit, table, curve, st
                     shift = max(16.0 * shift, least)
                     weigh(state, periodic, before, after, table, curve, grip, barred, balance)
                 count = differentiate(
-                    state, periodic, before, after, table, mode, balance, contacts, lower, diagonal, upper, right
+                    state,
+                    periodic,
+                    before,
+                    after,
+                    table,
+                    mode,
+                    balance,
+                    contacts,
+                    lower,
+                    diagonal,
+                    upper,
+                    right,
                 )
                 continue
             slope, square, reach = 0.0, 0.0, 0.0
@@ -151,10 +163,10 @@ def hold(net, periodic, tree, size, pull_off, tolerance, limit, table, curve, st
             step = min(stride if residual > CALM else 1.0, LONGEST_MOVE / max(reach, 1e-300))
             while step > SHORTEST:
                 slide(
-                    net, periodic, step, move, contacts, count, curve, balance, state, grip, trial, after_grip, size,
+                    body.spline, step, move, contacts, count, curve, balance, state, grip, trial, after_grip, body.size,
                     tally,
                 )  # fmt: skip
-                carry_lifted(net, periodic, tree, size, step, contacts, count, state, trial, tally)
+                carry_lifted(body, step, contacts, count, state, trial, tally)
                 if largest_leap(trial, periodic) > most:
                     step *= 0.5
                     continue
@@ -190,7 +202,7 @@ def hold(net, periodic, tree, size, pull_off, tolerance, limit, table, curve, st
                     after_grip[0][i] = min(
                         max(0.5 * (after_grip[0][i - 1] + after_grip[0][i + 1]), 0.0), len(curve) - 1
                     )
-                    locate(curve, i, trial, after_grip, size)
+                    locate(curve, i, trial, after_grip, body.size)
                     d = after_grip[1][i]
                     after_grip[2][i] = np.int8(STUCK if d == 0.0 else (-1 if d > 0.0 else 1))
             copy(trial, state)
@@ -211,7 +223,7 @@ def hold(net, periodic, tree, size, pull_off, tolerance, limit, table, curve, st
 
 @njit(nogil=True, cache=True)
 def hold_all(
-    first, last, net, periodic, tree, size, pull_off, tolerance, limit, resume, final,
+    first, last, body, pull_off, tolerance, limit, resume, final,
     table, starts, place, mode, X, uv, normal, touching, gap, slip, residual, status, tallies,
 ):  # fmt: skip
     """Bring paths first to last to rest under friction: from their starting curves, or with `resume` as they are."""
@@ -222,28 +234,26 @@ def hold_all(
         grip = place[p], offset, mode[p]
         curve, tally = starts[p], tallies[p]
         if resume:
-            take_up(net, periodic, tree, size, state, tally)
-            take_hold(net, periodic, curve, state, grip, size, tally)
+            take_up(body, state, tally)
+            take_hold(body.spline, curve, state, grip, body.size, tally)
         else:
             mode[p, :] = STUCK
             offset[:] = 0.0
-            space_along(net, periodic, curve, state, place[p])
+            space_along(body.spline, curve, state, place[p])
             tally[EVALUATIONS] += 3 * n
         inside = 0
         for _ in range(MOST_LANDINGS):
-            residual[p], status[p] = hold(
-                net, periodic, tree, size, pull_off, tolerance, limit, table, curve, state, grip, tally
-            )
+            residual[p], status[p] = hold(body, pull_off, tolerance, limit, table, curve, state, grip, tally)
             if not final or status[p] == LIFTED:
                 break
-            inside = certify(net, periodic, tree, size, state, slip[p], tally)
+            inside = certify(body, state, slip[p], tally)
             if inside == 0 or status[p] != CONVERGED:
                 break
-            take_hold(net, periodic, curve, state, grip, size, tally)
+            take_hold(body.spline, curve, state, grip, body.size, tally)
         if final and status[p] == CONVERGED:
             if inside > 0:
                 status[p] = STALLED
-            elif unresolved(state, periodic):
+            elif unresolved(state, body.spline.periodic):
                 status[p] = TOO_COARSE
 
 

@@ -17,7 +17,7 @@ FEWEST = 96
 
 @njit(nogil=True, cache=True)
 def lay_all(
-    first, last, net, periodic, tree, size, pull_off, rough, tolerance, limit, starts,
+    first, last, body, pull_off, rough, tolerance, limit, starts,
     X, uv, normal, touching, gap, slip, residual, status, tallies,
 ):  # fmt: skip
     """Bring paths first to last to rest from their starting curves (p, m, 2); below the last rung to `rough` only.
@@ -31,17 +31,17 @@ def lay_all(
     for p in range(first, last):
         state = (X[p], uv[p], frames, normal[p], touching[p], gap[p])
         residual[p], at_rest = on_surface(
-            net, periodic, pull_off, tolerance, starts[p], state, system, slip[p], tallies[p]
+            body.spline, pull_off, tolerance, starts[p], state, system, slip[p], tallies[p]
         )
         status[p] = CONVERGED
         if not at_rest:
             residual[p], status[p] = by_rungs(
-                net, periodic, tree, size, pull_off, rough, tolerance, limit, starts[p], state, slip[p], tallies[p]
+                body, pull_off, rough, tolerance, limit, starts[p], state, slip[p], tallies[p]
             )
 
 
 @njit(cache=True)
-def on_surface(net, periodic, pull_off, tolerance, curve, state, system, slip, tally):
+def on_surface(spline, pull_off, tolerance, curve, state, system, slip, tally):
     """Glide from a starting curve (m, 2) into `state`; returns the residual and whether it is as simple as that."""
     X, uv, frames, normal, touching, clear = state
     n = len(uv)
@@ -49,22 +49,22 @@ def on_surface(net, periodic, pull_off, tolerance, curve, state, system, slip, t
     steps = STEPS
     if 2 * few < n:
         rough = np.empty((few, 2))
-        spread_along(net, periodic, curve, rough, frames[:few], tally)
-        residual, at_rest = glide(net, periodic, pull_off, tolerance, STEPS, rough, frames[:few], system, tally)
+        spread_along(spline, curve, rough, frames[:few], tally)
+        residual, at_rest = glide(spline, pull_off, tolerance, STEPS, rough, frames[:few], system, tally)
         if not at_rest:
             return residual, False
         resample(rough, uv)
         steps = LAST_STEPS
     else:
-        spread_along(net, periodic, curve, uv, frames, tally)
-    residual, at_rest = glide(net, periodic, pull_off, tolerance, steps, uv, frames, system, tally)
+        spread_along(spline, curve, uv, frames, tally)
+    residual, at_rest = glide(spline, pull_off, tolerance, steps, uv, frames, system, tally)
     if not at_rest:
         return residual, False
     for i in range(n):
         unit_normal(frames[i], normal[i])
         for k in range(3):
             X[i, k] = frames[i, S, k]
-    if unresolved(state, periodic):
+    if unresolved(state, spline.periodic):
         return residual, False
     for i in range(1, n - 1):
         slip[i] = needed_slip(X, normal, i)
@@ -72,24 +72,22 @@ def on_surface(net, periodic, pull_off, tolerance, curve, state, system, slip, t
 
 
 @njit(cache=True)
-def by_rungs(net, periodic, tree, size, pull_off, rough, tolerance, limit, curve, state, slip, tally):
+def by_rungs(body, pull_off, rough, tolerance, limit, curve, state, slip, tally):
     """Relax a path from its starting curve (m, 2) on ever more particles; the last rung is `state`."""
     n = len(state[0])
     level = halvings(curve, n)
     low = blank(((n - 1) >> level) + 1) if level else state
-    begin(net, periodic, curve, low, tally)
+    begin(body.spline, curve, low, tally)
     residual, status = np.inf, CONVERGED
     while status == CONVERGED:
-        residual, status = settle(
-            net, periodic, tree, size, pull_off, rough if level else tolerance, limit, level == 0, low, slip, tally
-        )
+        residual, status = settle(body, pull_off, rough if level else tolerance, limit, level == 0, low, slip, tally)
         if level == 0:
             break
         level -= 1
         high = blank(((n - 1) >> level) + 1) if level else state
         refine(low[0], low[1], low[4], low[5], high[0], high[1], high[4], high[5])
         if status == CONVERGED:
-            take_up(net, periodic, tree, size, high, tally)
+            take_up(body, high, tally)
         low = high
     return residual, status
 

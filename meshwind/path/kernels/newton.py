@@ -92,7 +92,7 @@ def assemble(state, periodic, before, after, contacts, diagonal, upper, metric, 
 
 
 @njit(cache=True)
-def move_touching(net, periodic, step, move, contacts, count, state, trial, tally):
+def move_touching(spline, step, move, contacts, count, state, trial, tally):
     """Write into `trial` the touching particles moved on the surface by step * move (count, 2), and the two ends."""
     uv = state[1]
     n = len(uv)
@@ -101,14 +101,14 @@ def move_touching(net, periodic, step, move, contacts, count, state, trial, tall
     for c in range(count):
         i = contacts[c]
         u, v = uv[i, 0] + step * move[c, 0], min(max(uv[i, 1] + step * move[c, 1], 0.0), 1.0)
-        if not periodic:
+        if not spline.periodic:
             u = min(max(u, 0.0), 1.0)
-        touch_down(net, periodic, trial, i, u, v)
+        touch_down(spline, trial, i, u, v)
     tally[EVALUATIONS] += count
 
 
 @njit(cache=True)
-def carry_lifted(net, periodic, tree, size, step, contacts, count, state, trial, tally):
+def carry_lifted(body, step, contacts, count, state, trial, tally):
     """Write into `trial` the lifted particles, so that none is inside the body.
 
     They are carried along by their two touching neighbours, which `trial` already holds, and drawn towards the
@@ -133,12 +133,12 @@ def carry_lifted(net, periodic, tree, size, step, contacts, count, state, trial,
             trial[5][m] = clear[m] - np.sqrt(moved)
             # the gap shrinks by no more than the particle moved: mostly no foot point is needed
             if trial[5][m] <= 0.0:
-                land(net, periodic, tree, size, X, trial, m, tally)
+                land(body, X, trial, m, tally)
         i = j
 
 
 @njit(cache=True)
-def land(net, periodic, tree, size, X, trial, m, tally):
+def land(body, X, trial, m, tally):
     """Find the foot of lifted particle m, which comes from X[m]; let it touch there if it has sunk (Algorithm 2).
 
     Else its gap is noted.  A particle whose foot is on a side that faces the other way may have gone through the
@@ -149,13 +149,13 @@ def land(net, periodic, tree, size, X, trial, m, tally):
     for k in range(3):
         facing[k] = normal[m, k]
     u, v = uv[m, 0], uv[m, 1]
-    height, gap = measure_gap(net, periodic, tree, trial, m, tally)
-    sunk = height < -SINK * size
+    height, gap = measure_gap(body, trial, m, tally)
+    sunk = height < -SINK * body.size
     turned = 0.0
     for k in range(3):
         turned += facing[k] * normal[m, k]
     if not sunk and turned < 0.0:
-        sunk = follow(net, periodic, tree, size, X[m], u, v, trial, m, tally)
+        sunk = follow(body, X[m], u, v, trial, m, tally)
     touching[m] = sunk
     clear[m] = 0.0 if sunk else gap
     if sunk:
@@ -164,11 +164,11 @@ def land(net, periodic, tree, size, X, trial, m, tally):
 
 
 @njit(cache=True)
-def measure_gap(net, periodic, tree, trial, m, tally):
+def measure_gap(body, trial, m, tally):
     """Height of particle m over its nearest foot, along the normal there, and its distance from it."""
     Y, uv, frames, normal = trial[0], trial[1], trial[2], trial[3]
     tally[FEET] += 1
-    tally[EVALUATIONS] += nearest_foot(net, periodic, tree, Y[m], uv[m], frames[m])
+    tally[EVALUATIONS] += nearest_foot(body, Y[m], uv[m], frames[m])
     unit_normal(frames[m], normal[m])
     height = 0.0
     square = 0.0
@@ -180,7 +180,7 @@ def measure_gap(net, periodic, tree, trial, m, tally):
 
 
 @njit(cache=True)
-def follow(net, periodic, tree, size, start, u, v, trial, m, tally):
+def follow(body, start, u, v, trial, m, tally):
     """Follow particle m from `start`, whose foot is near (u, v), to where it is; whether it meets the body.
 
     Each step is as long as the gap, so that none leaps over a thin part.  Leaves the foot where it goes in, or that
@@ -200,18 +200,18 @@ def follow(net, periodic, tree, size, start, u, v, trial, m, tally):
     for _ in range(MOST_STEPS):
         for k in range(3):
             Y[m, k] = start[k] + t * (goal[k] - start[k])
-        height, gap = measure_gap(net, periodic, tree, trial, m, tally)
-        if height < -SINK * size:
+        height, gap = measure_gap(body, trial, m, tally)
+        if height < -SINK * body.size:
             met = True
             break
-        t += max(gap, 1e-3 * size) / max(way, 1e-300)
+        t += max(gap, 1e-3 * body.size) / max(way, 1e-300)
         if t >= 1.0:
             break
     for k in range(3):
         Y[m, k] = goal[k]
     if not met:
         uv[m, 0], uv[m, 1] = goal_u, goal_v
-        measure_gap(net, periodic, tree, trial, m, tally)
+        measure_gap(body, trial, m, tally)
     return met
 
 

@@ -43,23 +43,23 @@ MOST_FALLS = 5
 
 
 @njit(cache=True)
-def relax(net, periodic, tree, size, pull_off, tolerance, limit, state, tally):
+def relax(body, pull_off, tolerance, limit, state, tally):
     """Bring a path to rest from `state`, in place.
 
     pull_off: angle (radians) of the pull that lifts a particle, infinite for a fibre that cannot leave the surface.
     Returns (residual, status): residual is the largest unbalanced force over the tension, an angle in radians.
     """
     trial = blank(len(state[0]))
-    residual, status, odd = descend(net, periodic, tree, size, pull_off, tolerance, limit, state, trial, tally)
+    residual, status, odd = descend(body, pull_off, tolerance, limit, state, trial, tally)
     if odd:
         copy(trial, state)
     return residual, status
 
 
 @njit(cache=True)
-def descend(net, periodic, tree, size, pull_off, tolerance, limit, state, trial, tally):
+def descend(body, pull_off, tolerance, limit, state, trial, tally):
     """As `relax`; the answer is left in `state` or, where the third result says so, in `trial`."""
-    n = len(state[0])
+    n, periodic = len(state[0]), body.spline.periodic
     odd = False
     contacts = np.empty(n, np.int64)
     before, after = np.zeros(n, np.int64), np.zeros(n, np.int64)
@@ -82,7 +82,7 @@ def descend(net, periodic, tree, size, pull_off, tolerance, limit, state, trial,
             released = lift(X, normal, touching, pull_off * spacing, caution == 0, before, after)
         else:
             link(touching, before, after)
-        if released > 0 and len(tree[1]) == 0:
+        if released > 0 and len(body.tree.levels) == 0:
             return residual, LIFTED, odd
         count, force, leaning = assemble(state, periodic, before, after, contacts, diagonal, upper, metric, right)
         residual = max(force, sag(X, after)) / spacing
@@ -96,7 +96,7 @@ def descend(net, periodic, tree, size, pull_off, tolerance, limit, state, trial,
                 return residual, UNSTABLE if falls > 0 else leaving_by(uv, leaning), odd
             falls += 1
             if falls > MOST_FALLS or not fall(
-                net, periodic, tree, size, state, trial, contacts, count,
+                body, state, trial, contacts, count,
                 diagonal, upper, metric, least, tally,
             ):  # fmt: skip
                 return residual, UNSTABLE, odd
@@ -122,8 +122,8 @@ def descend(net, periodic, tree, size, pull_off, tolerance, limit, state, trial,
         step = min(1.0, LONGEST_MOVE / max(reach, 1e-300))
         accepted = False
         while step > SMALLEST_STEP:
-            move_touching(net, periodic, step, move, contacts, count, state, trial, tally)
-            carry_lifted(net, periodic, tree, size, step, contacts, count, state, trial, tally)
+            move_touching(body.spline, step, move, contacts, count, state, trial, tally)
+            carry_lifted(body, step, contacts, count, state, trial, tally)
             if largest_leap(trial, periodic) > most:  # neighbours on two sides: one went through the body
                 step *= 0.5
                 continue
@@ -149,7 +149,7 @@ def descend(net, periodic, tree, size, pull_off, tolerance, limit, state, trial,
 
 
 @njit(cache=True)
-def fall(net, periodic, tree, size, state, trial, contacts, count, diagonal, upper, metric, least, tally):
+def fall(body, state, trial, contacts, count, diagonal, upper, metric, least, tally):
     """Leave a saddle of the energy along its steepest descending mode, found by inverse iteration.
 
     Writes the lower of the two sides into `trial`; returns False where neither side is lower.
@@ -177,14 +177,14 @@ def fall(net, periodic, tree, size, state, trial, contacts, count, diagonal, upp
     best = energy(state[0])[0]
     chosen = 0.0
     for step in (0.03, -0.03):
-        move_touching(net, periodic, step, mode, contacts, count, state, trial, tally)
-        carry_lifted(net, periodic, tree, size, 0.0, contacts, count, state, trial, tally)
+        move_touching(body.spline, step, mode, contacts, count, state, trial, tally)
+        carry_lifted(body, 0.0, contacts, count, state, trial, tally)
         then = energy(trial[0])[0]
         if then < best:
             best, chosen = then, step
     if chosen > 0.0:  # the trial holds the other side
-        move_touching(net, periodic, chosen, mode, contacts, count, state, trial, tally)
-        carry_lifted(net, periodic, tree, size, 0.0, contacts, count, state, trial, tally)
+        move_touching(body.spline, chosen, mode, contacts, count, state, trial, tally)
+        carry_lifted(body, 0.0, contacts, count, state, trial, tally)
     return chosen != 0.0
 
 
@@ -207,7 +207,7 @@ def leaving_by(uv, i):
 
 @njit(nogil=True, cache=True)
 def relax_all(
-    first, last, net, periodic, tree, size, pull_off, tolerance, limit, resume, final, starts,
+    first, last, body, pull_off, tolerance, limit, resume, final, starts,
     X, uv, normal, touching, gap, slip, residual, status, tallies,
 ):  # fmt: skip
     """Relax paths first to last: from their starting curves (p, m, 2), or with `resume` from what the arrays hold.
@@ -219,24 +219,22 @@ def relax_all(
     for p in range(first, last):
         state = (X[p], uv[p], frames, normal[p], touching[p], gap[p])
         if resume:
-            take_up(net, periodic, tree, size, state, tallies[p])
+            take_up(body, state, tallies[p])
         else:
-            begin(net, periodic, starts[p], state, tallies[p])
-        residual[p], status[p] = settle(
-            net, periodic, tree, size, pull_off, tolerance, limit, final, state, slip[p], tallies[p]
-        )
+            begin(body.spline, starts[p], state, tallies[p])
+        residual[p], status[p] = settle(body, pull_off, tolerance, limit, final, state, slip[p], tallies[p])
 
 
 @njit(cache=True)
-def begin(net, periodic, curve, state, tally):
+def begin(spline, curve, state, tally):
     """Put a path on its starting curve (m, 2), evenly spaced by length."""
-    spread_along(net, periodic, curve, state[1], state[2], tally)
-    place(net, periodic, state)
+    spread_along(spline, curve, state[1], state[2], tally)
+    place(spline, state)
     tally[EVALUATIONS] += len(state[1])
 
 
 @njit(cache=True)
-def settle(net, periodic, tree, size, pull_off, tolerance, limit, final, state, slip, tally):
+def settle(body, pull_off, tolerance, limit, final, state, slip, tally):
     """Bring a path to rest from `state` and, if the answer is `final`, certify it; what it finds inside lands.
 
     Returns (residual, status).
@@ -244,27 +242,27 @@ def settle(net, periodic, tree, size, pull_off, tolerance, limit, final, state, 
     inside = 0
     residual, status = np.inf, STALLED
     for _ in range(MOST_LANDINGS):
-        residual, status = relax(net, periodic, tree, size, pull_off, tolerance, limit, state, tally)
+        residual, status = relax(body, pull_off, tolerance, limit, state, tally)
         if not final or status == LIFTED:
             return residual, status
-        inside = certify(net, periodic, tree, size, state, slip, tally)
+        inside = certify(body, state, slip, tally)
         if inside == 0 or status != CONVERGED:
             break
     if status == CONVERGED:
         if inside > 0:
             status = STALLED
-        elif unresolved(state, periodic):
+        elif unresolved(state, body.spline.periodic):
             status = TOO_COARSE
     return residual, status
 
 
 @njit(cache=True)
-def take_up(net, periodic, tree, size, state, tally):
+def take_up(body, state, tally):
     """Complete a state of which positions, parameters and contacts are known; what is inside the body lands."""
     touching, uv, clear = state[4], state[1], state[5]
     for i in range(len(touching)):
         if touching[i]:
-            touch_down(net, periodic, state, i, uv[i, 0], uv[i, 1])
+            touch_down(body.spline, state, i, uv[i, 0], uv[i, 1])
             tally[EVALUATIONS] += 1
         elif clear[i] <= 0.0:
-            land(net, periodic, tree, size, state[0], state, i, tally)
+            land(body, state[0], state, i, tally)

@@ -56,11 +56,11 @@ def copy_lifted(source, target, i):
 
 
 @njit(cache=True)
-def touch_down(net, periodic, state, i, u, v):
+def touch_down(spline, state, i, u, v):
     """Put particle i on the surface at (u, v)."""
     X, uv, frames, normal, touching, clear = state
     uv[i, 0], uv[i, 1] = u, v
-    frame(net, periodic, u, v, frames[i])
+    frame(spline, u, v, frames[i])
     unit_normal(frames[i], normal[i])
     for k in range(3):
         X[i, k] = frames[i, S, k]
@@ -69,11 +69,11 @@ def touch_down(net, periodic, state, i, u, v):
 
 
 @njit(cache=True)
-def place(net, periodic, state):
+def place(spline, state):
     """Put every particle on the surface at its own parameters."""
     uv = state[1]
     for i in range(len(uv)):
-        touch_down(net, periodic, state, i, uv[i, 0], uv[i, 1])
+        touch_down(spline, state, i, uv[i, 0], uv[i, 1])
 
 
 @njit(inline="always", cache=True)

@@ -21,7 +21,7 @@ FARTHEST = 2.0
 
 
 @njit(cache=True)
-def touchdown(net, periodic, X, uv, here, there, frames, place, point):
+def touchdown(spline, X, uv, here, there, frames, place, point):
     """End of the bridge from particle `here`, which touches, to `there`.
 
     Leaves its parameters in place (2,) and its position in point (3,); frames (6, 3) is work space.  Returns how far
@@ -34,7 +34,7 @@ def touchdown(net, periodic, X, uv, here, there, frames, place, point):
     place[0], place[1] = uv[here, 0], uv[here, 1]
     if here == 0 or here == n - 1:
         return 0.0
-    frame(net, periodic, place[0], place[1], frames)
+    frame(spline, place[0], place[1], frames)
     normal, along, rate = np.empty(3), np.empty(3), np.empty(2)
     unit_normal(frames, normal)
     far = 0.0
@@ -52,9 +52,9 @@ def touchdown(net, periodic, X, uv, here, there, frames, place, point):
     step = -dip / press
     place[0] += step * rate[0]
     place[1] = min(max(place[1] + step * rate[1], 0.0), 1.0)
-    if not periodic:
+    if not spline.periodic:
         place[0] = min(max(place[0], 0.0), 1.0)
-    frame(net, periodic, place[0], place[1], frames)
+    frame(spline, place[0], place[1], frames)
     for k in range(3):
         point[k] = frames[S, k]
     chord, bend = 0.0, press / max(dot(along, along), 1e-300)
@@ -64,12 +64,12 @@ def touchdown(net, periodic, X, uv, here, there, frames, place, point):
 
 
 @njit(cache=True)
-def _touchdowns(net, periodic, X, uv, path, first, last, points, places):
+def _touchdowns(spline, X, uv, path, first, last, points, places):
     frames = np.empty((6, 3))
     for b in range(len(path)):
         p = path[b]
-        touchdown(net, periodic, X[p], uv[p], first[b], last[b], frames, places[b, 0], points[b, 0])
-        touchdown(net, periodic, X[p], uv[p], last[b], first[b], frames, places[b, 1], points[b, 1])
+        touchdown(spline, X[p], uv[p], first[b], last[b], frames, places[b, 0], points[b, 0])
+        touchdown(spline, X[p], uv[p], last[b], first[b], frames, places[b, 1], points[b, 1])
 
 
 def touchdowns(paths: "Paths", path: Ints, first: Ints, last: Ints) -> tuple[Floats, Floats]:
@@ -80,5 +80,5 @@ def touchdowns(paths: "Paths", path: Ints, first: Ints, last: Ints) -> tuple[Flo
     """
     ends, places = np.empty((len(path), 2, 3)), np.empty((len(path), 2, 2))
     surface = paths.surface
-    _touchdowns(surface.net, surface.periodic, paths.points, paths.uv, path, first, last, ends, places)
+    _touchdowns(surface.spline, paths.points, paths.uv, path, first, last, ends, places)
     return ends, places
