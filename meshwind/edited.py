@@ -37,7 +37,7 @@ def write_redesign(
 
     before.png and after.png show the windings of the mesh that was read and of the edited one, redesign.png what was
     moved.  units: name of the mesh's; overwrite: replace the results that `out` holds; seconds: of the stages before;
-    options: what was asked for by the names of the command line, which meshwind.core.toml then holds.
+    options: what was asked for by the names of the command line, which meshwind.toml then holds.
     Returns the report, with a note where there are no pictures for want of an OpenGL driver.  Raises BadInputError
     where `out` cannot be written or, without `overwrite`, holds results.
     """

@@ -104,9 +104,7 @@ def moments(folder: Path, count: int) -> tuple[list[dict[str, str]], list[Sight]
     whole, took = [], 0.0
     for k, result in enumerate(results):
         start = time.perf_counter()
-        result.write(
-            folder / f"whole-{k}" / "out", render=False
-        )  # as deep as the others: meshwind.core.toml tells the way
+        result.write(folder / f"whole-{k}" / "out", render=False)  # as deep as the others: meshwind.toml tells the way
         took = time.perf_counter() - start
         whole.append(visible(folder / f"whole-{k}" / "out"))
     seen, random_time = [], random.Random(1)

@@ -21,7 +21,7 @@ FILES = {
     "surface.npz",
     "chart.png",
     "report.json",
-    "meshwind.core.toml",
+    "meshwind.toml",
 }
 
 

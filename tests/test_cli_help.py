@@ -51,7 +51,7 @@ def test_options_stand_in_groups() -> None:
 def test_examples_can_be_typed(example: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Names, types and files of configuration are right; nothing is run."""
     (tmp_path / "part-wound").mkdir()
-    (tmp_path / "part-wound" / "meshwind.core.toml").write_text('mesh = "../part.stl"\npaths = 12\n')
+    (tmp_path / "part-wound" / "meshwind.toml").write_text('mesh = "../part.stl"\npaths = 12\n')
     monkeypatch.chdir(tmp_path)
     _, name, *arguments = shlex.split(example)
     if "--help" not in arguments:

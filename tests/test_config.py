@@ -48,7 +48,7 @@ def test_the_command_line_outranks_the_file(first: Path) -> None:
 
 
 def test_a_run_leaves_all_its_options(first: Path) -> None:
-    text = (first / "meshwind.core.toml").read_text()
+    text = (first / "meshwind.toml").read_text()
     assert text.startswith("# meshwind 0.")
     assert "# opening: not given" in text
     assert tomllib.loads(text) == {
@@ -61,7 +61,7 @@ def test_a_run_leaves_all_its_options(first: Path) -> None:
 def test_it_repeats_the_run_to_the_last_byte(first: Path, tmp_path: Path) -> None:
     """From another folder, into one at the same place: only the report, which holds times, differs."""
     again = first.with_name("again")
-    done = wind("--config", first / "meshwind.core.toml", "--out", again, folder=tmp_path)
+    done = wind("--config", first / "meshwind.toml", "--out", again, folder=tmp_path)
     assert done.returncode == 0, done.stderr
     assert contents(again) == contents(first)
 
@@ -69,7 +69,7 @@ def test_it_repeats_the_run_to_the_last_byte(first: Path, tmp_path: Path) -> Non
 def test_whatever_was_left_to_the_run_is_left_to_it_again(tmp_path: Path) -> None:
     options = {"paths": 2, "revolutions": "auto", "particles": None, "pins": None}
     mw.wind(DATA / "tank.ply", out=tmp_path / "run", render=False, **options)  # type: ignore[arg-type]
-    held = tomllib.loads((tmp_path / "run" / "meshwind.core.toml").read_text())
+    held = tomllib.loads((tmp_path / "run" / "meshwind.toml").read_text())
     assert (held["revolutions"], held["particles"], held["units"]) == ("auto", "auto", "")
     assert (tmp_path / "run" / held["mesh"]).resolve() == (DATA / "tank.ply").resolve()
 

@@ -72,7 +72,7 @@ def test_from_the_command_line(tmp_path: Path) -> None:
         subprocess.run([sys.executable, "-m", "meshwind", *arguments], cwd=tmp_path, check=True, capture_output=True)
     assert {"fibers.vtu", "viewer.html", "frames/path_003.csv"} <= everything(tmp_path / "run")
     (tmp_path / "run" / "frames" / "robot.txt").write_text("mine")
-    again = "wind", "--config", "run/meshwind.core.toml", "--quiet", "--overwrite"
+    again = "wind", "--config", "run/meshwind.toml", "--quiet", "--overwrite"
     subprocess.run([sys.executable, "-m", "meshwind", *again], cwd=tmp_path, check=True, capture_output=True)
     assert not exports_in(tmp_path / "run")
     assert everything(tmp_path / "run") >= {"report.json", "frames/robot.txt"}

@@ -70,12 +70,12 @@ def test_a_redesign_which_its_own_options_repeat(tmp_path: Path) -> None:
         *command[:3],
         "redesign",
         "--config",
-        str(tmp_path / "r" / "meshwind.core.toml"),
+        str(tmp_path / "r" / "meshwind.toml"),
         "--out",
         str(tmp_path / "s"),
     ]
     subprocess.run(again, capture_output=True, check=True, timeout=120)
-    for name in ("edited.ply", "edited.vtu", "meshwind.core.toml"):
+    for name in ("edited.ply", "edited.vtu", "meshwind.toml"):
         assert (tmp_path / "s" / name).read_bytes() == (tmp_path / "r" / name).read_bytes()
 
 

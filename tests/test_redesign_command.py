@@ -12,7 +12,7 @@ import pytest
 import meshwind as mw
 
 DATA = Path(__file__).parents[1] / "data"
-FILES = {"edited.ply", "edited.vtu", "report.json", "meshwind.core.toml"}
+FILES = {"edited.ply", "edited.vtu", "report.json", "meshwind.toml"}
 
 
 def meshwind(*arguments: str | Path) -> subprocess.CompletedProcess[str]:

@@ -43,7 +43,7 @@ EXAMPLES = """
     meshwind wind part.stl --ends z --opening 15
 
     # the same again, but denser, elsewhere
-    meshwind wind --config part-wound/meshwind.core.toml --paths 48 --out denser
+    meshwind wind --config part-wound/meshwind.toml --paths 48 --out denser
 """
 
 

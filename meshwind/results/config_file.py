@@ -1,11 +1,11 @@
-"""meshwind.core.toml: the options of a run, which `--config` repeats."""
+"""meshwind.toml: the options of a run, which `--config` repeats."""
 
 import json
 import os
 from collections.abc import Mapping
 from pathlib import Path
 
-NAME = "meshwind.core.toml"
+NAME = "meshwind.toml"
 _ON = {"particles": "auto"}
 """What stands for an option that was left to the run; any other has no line of its own."""
 

@@ -13,7 +13,7 @@ RESULTS = frozenset(
     + ("chart.png", "report.json", "winding.png", "fit_error.png", "revolutions.png", "sheet.png", "crossings.png")
     + ("coverage.png", "windability.png", "slip.png", "fit.png", "unrolled.png", "quads.png", "redesign.png")
     + ("winding.gif", "winding.mp4", "viewer.html", "edited.ply", "edited.vtu", "before.png", "after.png")
-    + ("meshwind.core.toml",)
+    + ("meshwind.toml",)
 )
 """All that a run, or what is made of it, may leave in its folder."""
 
