@@ -1,7 +1,8 @@
-"""The source's figures 4.2 (c, d) and 4.3 (e to g) redone: convergence on a half sphere without and with friction.
+"""The source's figure 4.2 (c, d) and figure 4.3 (e to g) redone: on half a sphere, with and without friction.
 
-The source gives neither its sphere's radius, nor its time step, nor its particles, only that the ends are 2 apart
-(4.2) and that 4.3 has damping: those stand here as what they are, our choice, and best found for its method.
+The source gives neither its sphere's radius, nor its time step, nor its number of particles, only that the ends are 2
+apart in figure 4.2 and that the runs of figure 4.3 are damped.  The values here are our choice, the best found for its
+method.
 """
 
 from typing import Any

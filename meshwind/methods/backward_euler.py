@@ -1,4 +1,4 @@
-"""Linearised backward Euler (4.16), damped (4.17), with the factored matrix kept over several steps (7.2).
+"""Linearised backward Euler (4.16), damped (4.17), with the factored matrix kept over several steps (section 7.2).
 
 The matrix is symmetric, positive definite and 2 x 2 block tridiagonal over the touching particles, so that a step
 is O(n); with lifted particles its rows are those of (5.2).

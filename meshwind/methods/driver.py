@@ -64,7 +64,7 @@ def run(
     On the surface: lifting=False keeps every particle there (chapter 4); weighted=True lifts by the force of (5.2)
     rather than by Algorithm 1's test; inertial=True keeps the velocity term of (4.10) that (4.12) drops; friction
     scales velocities by (4.19), and the run has then converged when nothing moves at all.  reuse: steps that
-    backward Euler's factored matrix serves (7.2).
+    backward Euler's factored matrix serves (section 7.2).
 
     In space: width is epsilon_PF of (7.1), 1e-3 of the surface's size by default, and for KKT the gap below which a
     particle is in contact, 1e-5 of it; push is the penalty force k_PF, the tension at the start by default;

@@ -1,4 +1,4 @@
-"""New paths where neighbours lie too far apart (6.3), until they do not, or no fibre rests between them.
+"""New paths where neighbours lie too far apart (section 6.3), until they do not, or no fibre rests between them.
 
 Between two neighbours of a family new ends are spread evenly over both rims, and the new paths start from their
 neighbours' curves.  On a part with a boss, fibres rest on either side of it but not on it: however close the ends,

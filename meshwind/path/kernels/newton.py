@@ -112,7 +112,7 @@ def carry_lifted(body, step, contacts, count, state, trial, tally):
     """Write into `trial` the lifted particles, so that none is inside the body.
 
     They are carried along by their two touching neighbours, which `trial` already holds, and drawn towards the
-    chord; those that would sink land on their feet (5.3).
+    chord; those that would sink land on their feet (section 5.3).
     """
     X, clear = state[0], state[5]
     Y = trial[0]
