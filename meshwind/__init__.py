@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from meshwind.chart import flatten as flatten
     from meshwind.core.errors import BadInputError as BadInputError
     from meshwind.edited import write_redesign as write_redesign
+    from meshwind.editing.redesign import Redesign as Redesign
+    from meshwind.editing.redesign import redesign as redesign
     from meshwind.export.cad_surface import read_cad as read_cad
     from meshwind.layup import Layup as Layup
     from meshwind.layup import assess as assess
@@ -45,8 +47,6 @@ if TYPE_CHECKING:
     from meshwind.planning import families as families
     from meshwind.planning import read_pins as read_pins
     from meshwind.planning import space_out as space_out
-    from meshwind.redesign.redesign import Redesign as Redesign
-    from meshwind.redesign.redesign import redesign as redesign
     from meshwind.results.image_files import read_image as read_image
     from meshwind.surface import FitError as FitError
     from meshwind.surface import Surface as Surface
@@ -70,7 +70,7 @@ _HOME = {
     "space_out": "planning",
     "Layup": "layup", "assess": "layup", "windability": "layup",
     "read_cad": "export.cad_surface",
-    "Redesign": "redesign.redesign", "redesign": "redesign.redesign", "write_redesign": "edited",
+    "Redesign": "editing.redesign", "redesign": "editing.redesign", "write_redesign": "edited",
     "Result": "pipeline", "wind": "pipeline",
     "render": "pictures.render", "Page": "pictures.page", "draw_redesign": "pictures.redesign_scene",
 }  # fmt: skip

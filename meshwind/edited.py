@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from meshwind.core.version import version
+from meshwind.editing.redesign import Redesign
 from meshwind.export.edited_files import redesign_report, write_edited
 from meshwind.layup.layup import assess
 from meshwind.notes import Note
@@ -15,7 +16,6 @@ from meshwind.pictures.redesign_scene import redesign_scene
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.pipeline import Clock
-from meshwind.redesign.redesign import Redesign
 from meshwind.results import folder
 from meshwind.results.config_file import NAME as CONFIG
 from meshwind.results.config_file import write_config

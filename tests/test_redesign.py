@@ -9,14 +9,14 @@ import trimesh
 from scipy import sparse
 
 import meshwind as mw
+from meshwind.editing import Outcome, edit, redesign
+from meshwind.editing.demands import Demands, press, reach
+from meshwind.editing.edited_mesh import displacement, within
+from meshwind.editing.freedom import free_moves, frozen_mask
+from meshwind.editing.program import ACCURACY, Solution, certified, minimise
+from meshwind.editing.step import GIVE, Program, assembled, energy
 from meshwind.mesh import mesh_from
 from meshwind.mesh.geometry.measure import volume
-from meshwind.redesign import Outcome, edit, redesign
-from meshwind.redesign.demands import Demands, press, reach
-from meshwind.redesign.edited_mesh import displacement, within
-from meshwind.redesign.freedom import free_moves, frozen_mask
-from meshwind.redesign.program import ACCURACY, Solution, certified, minimise
-from meshwind.redesign.step import GIVE, Program, assembled, energy
 from meshwind.surface import Surface, shapes
 
 DATA = Path(__file__).parents[1] / "data"

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import meshwind as mw
+from meshwind.editing.region import parse
 from meshwind.mesh.io.scalars import Scalars
-from meshwind.redesign.region import parse
 from meshwind.surface import Surface, shapes
 
 NONE = np.zeros((0, 2))

@@ -11,6 +11,8 @@ import pytest
 
 import meshwind as mw
 from meshwind.core.cast import Floats
+from meshwind.editing.demands import reach
+from meshwind.editing.stencil import along, weights
 from meshwind.march.geodesic_equation import rates
 from meshwind.methods import Ending, Run, penalty, run
 from meshwind.methods.blocks import room
@@ -19,8 +21,6 @@ from meshwind.path.kernels.contact import lift, pull
 from meshwind.path.kernels.state import energy
 from meshwind.path.solve import straight
 from meshwind.planning.pressing import pressing
-from meshwind.redesign.demands import reach
-from meshwind.redesign.stencil import along, weights
 from meshwind.surface import Surface, shapes
 from meshwind.surface.foot import foot, newton_step
 

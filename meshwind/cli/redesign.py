@@ -96,7 +96,7 @@ def redesign(
     """
     # the numerical libraries are imported late: --help and usage errors must not wait for them
     from meshwind.edited import write_redesign
-    from meshwind.redesign import redesign as edit_mesh
+    from meshwind.editing import redesign as edit_mesh
     from meshwind.results import folder
 
     del config  # its values have become those of the others

@@ -7,10 +7,10 @@ import meshio
 import numpy as np
 
 from meshwind.core.version import version
+from meshwind.editing.redesign import Redesign
+from meshwind.editing.result import Round
 from meshwind.export.signature import sign
 from meshwind.path.paths import Status
-from meshwind.redesign.redesign import Redesign
-from meshwind.redesign.result import Round
 from meshwind.results.report import mesh_figures, plain, unsettled
 from meshwind.results.vtk_files import write_faces
 

@@ -73,7 +73,7 @@ and the edit is the least change that satisfies them, a convex quadratic program
 
 As the paths move on the edited surface, the part is wound and edited again until no path bridges.
 
-Departures in meshwind, all argued in `meshwind.redesign`: rows take the direction across the chord nearest to the
+Departures in meshwind, all argued in `meshwind.editing`: rows take the direction across the chord nearest to the
 normal, in place of the normal; they are elastic, as neighbouring rows all but repeat each other; the objective has a
 term that keeps the change smooth; particles that touch ask for a least normal curvature along the fibre, which makes
 the rounds converge quickly; and control points may be frozen, bounded or tied by a symmetry.

@@ -15,8 +15,8 @@ import numpy as np
 from scipy import sparse
 
 from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.editing.stencil import along, pitches, weights
 from meshwind.path.paths import Paths, Status
-from meshwind.redesign.stencil import along, pitches, weights
 
 JUMP = 0.5
 """Spans that neighbouring shadows may lie apart; where they skip the floor of a hollow, points between them count."""

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 from meshwind.chart import Chart, flatten
 from meshwind.core.cast import Bools
+from meshwind.editing.edit import threshold_of
 from meshwind.mesh import Mesh, annulus
 from meshwind.path import Paths, Status, solve
 from meshwind.planning.families import families
-from meshwind.redesign.edit import threshold_of
 from meshwind.surface import Surface, fit
 
 

@@ -8,8 +8,8 @@ from scipy.spatial import cKDTree
 
 from meshwind.core.cast import Bools, Floats
 from meshwind.core.errors import BadInputError
+from meshwind.editing.stencil import weights
 from meshwind.mesh.io.scalars import Scalars
-from meshwind.redesign.stencil import weights
 from meshwind.surface.surface import Surface
 
 FIELD = "field:"

@@ -7,14 +7,14 @@ import numpy as np
 
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
+from meshwind.editing.demands import press, reach
+from meshwind.editing.edited_mesh import within
+from meshwind.editing.freedom import Frozen, free_moves, frozen_mask
+from meshwind.editing.program import ACCURACY
+from meshwind.editing.result import Outcome, Round
+from meshwind.editing.step import Step, energy, step
 from meshwind.path import Paths, solve
 from meshwind.planning.families import families
-from meshwind.redesign.demands import press, reach
-from meshwind.redesign.edited_mesh import within
-from meshwind.redesign.freedom import Frozen, free_moves, frozen_mask
-from meshwind.redesign.program import ACCURACY
-from meshwind.redesign.result import Outcome, Round
-from meshwind.redesign.step import Step, energy, step
 from meshwind.surface.surface import Surface
 
 FAIRNESS = 0.4

@@ -1,7 +1,7 @@
 """Automatic surface editing: move the control points as little as possible until no fibre bridges."""
 
-from meshwind.redesign.edit import Edit, edit
-from meshwind.redesign.redesign import Redesign, redesign
-from meshwind.redesign.result import Outcome, Round
+from meshwind.editing.edit import Edit, edit
+from meshwind.editing.redesign import Redesign, redesign
+from meshwind.editing.result import Outcome, Round
 
 __all__ = ["Edit", "Outcome", "Redesign", "Round", "edit", "redesign"]

@@ -12,10 +12,10 @@ import numpy as np
 from scipy import sparse
 
 from meshwind.core.cast import Bools, Floats
-from meshwind.redesign.demands import Demands
-from meshwind.redesign.freedom import octahedra
-from meshwind.redesign.program import Solution, minimise
-from meshwind.redesign.stencil import bending
+from meshwind.editing.demands import Demands
+from meshwind.editing.freedom import octahedra
+from meshwind.editing.program import Solution, minimise
+from meshwind.editing.stencil import bending
 from meshwind.surface.surface import Surface
 
 GIVE = 3e-2

@@ -10,17 +10,17 @@ from meshwind.core.cast import Floats
 from meshwind.core.cast import frozen as immutable
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import AUTO
+from meshwind.editing.edit import FAIRNESS, PRESSING, Edit, Tell, check, edit
+from meshwind.editing.edited_mesh import displaced, displacement, turned_over, volume_change, within
+from meshwind.editing.freedom import Frozen
+from meshwind.editing.proof import Winding, Wound, fitted
+from meshwind.editing.region import Region, parse
+from meshwind.editing.result import Outcome, Round
 from meshwind.mesh import Mesh, read
 from meshwind.mesh.geometry.measure import volume
 from meshwind.mesh.io.scalars import Scalars, read_scalars
 from meshwind.path import Paths, Status
 from meshwind.planning.revolutions import Revolutions, choose_revolutions
-from meshwind.redesign.edit import FAIRNESS, PRESSING, Edit, Tell, check, edit
-from meshwind.redesign.edited_mesh import displaced, displacement, turned_over, volume_change, within
-from meshwind.redesign.freedom import Frozen
-from meshwind.redesign.proof import Winding, Wound, fitted
-from meshwind.redesign.region import Region, parse
-from meshwind.redesign.result import Outcome, Round
 from meshwind.surface import Surface
 
 STAGES = 3
