@@ -105,7 +105,7 @@ def test_bridges(written: tuple[Layup, Path]) -> None:
         assert poly.cell_data["length"][k] == pytest.approx(chord, rel=1e-12)
         owner = poly.cell_data["path"][k]
         assert (np.abs(paths.points[owner] - poly.points[line[0]]).max(axis=1) == 0.0).any()
-    assert poly.cell_data["length"].sum() == pytest.approx(lengths(paths).bridged.sum(), rel=1e-12)
+    assert poly.cell_data["length"].sum() == pytest.approx(lengths(paths).bridged_length.sum(), rel=1e-12)
 
 
 def test_crossings(written: tuple[Layup, Path]) -> None:

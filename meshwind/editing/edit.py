@@ -14,6 +14,7 @@ from meshwind.editing.program import ACCURACY
 from meshwind.editing.result import Outcome, Round
 from meshwind.editing.step import Step, energy, step
 from meshwind.path import Paths, solve
+from meshwind.path.lengths import lifted_share
 from meshwind.planning.families import families
 from meshwind.surface.surface import Surface
 
@@ -49,7 +50,7 @@ class Edit:
     @property
     def bridged(self) -> float:
         """Share of the paths' particles whose gap is above the threshold."""
-        return _bridged(self.paths, self.threshold)
+        return lifted_share(self.paths.gap, self.threshold)
 
 
 def edit(
@@ -92,7 +93,9 @@ def edit(
         if laid.gap.max() <= FIRM * limit:
             break
         if progress is not None:
-            progress(f"round {number + 1}: {100 * _bridged(laid, limit):.2g}% bridged, gap {laid.gap.max():.3g}")
+            progress(
+                f"round {number + 1}: {100 * lifted_share(laid.gap, limit):.2g}% bridged, gap {laid.gap.max():.3g}"
+            )
         moved = (now.control_points - surface.control_points).reshape(-1, 3)
         curvature = pressing / surface.size
         found = step(reach(laid), press(laid, curvature), cost, moves, moved, bound, limit)
@@ -150,19 +153,15 @@ def _rewound(surface: Surface, laid: Paths, particles: int) -> Paths:
     return solve(surface, uv[:, 0], uv[:, -1], family=laid.family, particles=particles, initial=uv)
 
 
-def _bridged(paths: Paths, threshold: float) -> float:
-    return float((paths.gap > threshold).mean())
-
-
 def _worst(paths: Paths, threshold: float) -> tuple[float, float]:
-    return _bridged(paths, threshold), float(paths.gap.max())
+    return lifted_share(paths.gap, threshold), float(paths.gap.max())
 
 
 def _figures(before: Paths, after: Paths, found: Step, now: Surface, first: Surface, limit: float) -> Round:
     return Round(
         threshold=limit,
-        bridged_before=_bridged(before, limit),
-        bridged_after=_bridged(after, limit),
+        bridged_before=lifted_share(before.gap, limit),
+        bridged_after=lifted_share(after.gap, limit),
         gap_before=float(before.gap.max()),
         gap_after=float(after.gap.max()),
         change=float(np.linalg.norm(now.control_points - first.control_points, axis=2).max()),

@@ -6,7 +6,9 @@ from meshwind.chart import Chart, flatten
 from meshwind.core.cast import Bools
 from meshwind.editing.edit import threshold_of
 from meshwind.mesh import Mesh, annulus
-from meshwind.path import Paths, Status, solve
+from meshwind.path import Paths, solve
+from meshwind.path.lengths import lifted_share
+from meshwind.path.paths import converged_or_all
 from meshwind.planning.families import families
 from meshwind.surface import Surface, fit
 
@@ -50,20 +52,19 @@ class Wound:
     threshold: float
 
     @property
-    def told(self) -> Bools:
+    def counted(self) -> Bools:
         """The paths (p,) whose gaps count: those at rest, or all where none is."""
-        rest: Bools = self.paths.status == Status.CONVERGED
-        return rest if rest.any() else ~rest
+        return converged_or_all(self.paths.status)
 
     @property
     def gap(self) -> float:
         """Largest gap of the paths that count."""
-        return float(self.paths.gap[self.told].max())
+        return float(self.paths.gap[self.counted].max())
 
     @property
     def bridged(self) -> float:
         """Share of those paths' particles whose gap is above the threshold."""
-        return float((self.paths.gap[self.told] > self.threshold).mean())
+        return lifted_share(self.paths.gap[self.counted], self.threshold)
 
     @property
     def sound(self) -> bool:

@@ -19,7 +19,7 @@ from meshwind.appearance.words import quantity
 from meshwind.core.cast import Bools, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.export.skin import read_skin
-from meshwind.path.lengths import lengths
+from meshwind.path.lengths import bridged_share, lengths
 from meshwind.results.reading import Results
 from meshwind.results.vtk_reading import Faces
 
@@ -161,10 +161,10 @@ def _facts(results: Results) -> list[str]:
     paths = results.paths
     each = lengths(paths)
     at_rest = int(results.at_rest.sum())
-    total, bridged = float(each.length.sum()), float(each.bridged.sum())
+    total, bridged = float(each.polyline_length.sum()), bridged_share((each, np.ones(len(paths), dtype=bool)))
     lines = [
         f"{len(paths)} fibres, {at_rest} at rest",
-        f"length {quantity(total, results.units)}, {100.0 * bridged / max(total, 1e-300):.1f} % of it bridged",
+        f"length {quantity(total, results.units)}, {100.0 * bridged:.1f} % of it bridged",
         f"friction {paths.friction:g}",
     ]
     width = results.band_width

@@ -1,24 +1,28 @@
-"""Figures of each path: its length, what of it bridges, how far it lifts and what friction it needs."""
+"""Figures of each path: its polyline's length, what of that bridges, how far it lifts and what friction it needs.
 
-from dataclasses import dataclass
+The polyline through the particles is shorter than the fibre itself, whose length `Paths.length` gives.
+"""
+
+from dataclasses import dataclass, fields
 
 import numpy as np
 
-from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.path.kernels.touchdown import touchdowns
 from meshwind.path.paths import Paths
 
 
 @dataclass(frozen=True)
 class Lengths:
-    """Of p paths of n particles: arc_length (p, n) from the start; length, bridged, max_gap, max_slip (p,).
+    """Of p paths of n particles: arc_length (p, n) from the start; the others (p,).
 
-    Lengths are in the mesh's units; bridged is the length of all segments with an end off the surface.
+    Lengths are those of polylines, in the mesh's units; bridged_length is that of all segments with an end off the
+    surface.
     """
 
     arc_length: Floats
-    length: Floats
-    bridged: Floats
+    polyline_length: Floats
+    bridged_length: Floats
     max_gap: Floats
     max_slip: Floats
 
@@ -41,6 +45,11 @@ class Bridges:
     def __len__(self) -> int:
         return len(self.path)
 
+    def of(self, paths: Bools) -> "Bridges":
+        """The spans of some of the paths (p,)."""
+        mine = paths[self.path]
+        return Bridges(*(frozen(getattr(self, field.name)[mine]) for field in fields(self)))
+
 
 def lengths(paths: Paths) -> Lengths:
     """Measure every path."""
@@ -56,6 +65,23 @@ def lengths(paths: Paths) -> Lengths:
         frozen(paths.gap.max(axis=1, initial=0.0)),
         frozen(slip),
     )
+
+
+def bridged_share(*counted: tuple[Lengths, Bools]) -> float:
+    """Share of the polylines' length that is off the surface, over the counted paths (p,) of one or more batches."""
+    total = bridged = 0.0
+    for each, mask in counted:
+        total += float(each.polyline_length[mask].sum())
+        bridged += float(each.bridged_length[mask].sum())
+    return bridged / total if total > 0.0 else 0.0
+
+
+def lifted_share(gap: Floats, threshold: float) -> float:
+    """Share of the particles (p, n) that lie further off the surface than a threshold.
+
+    Unlike `bridged_share` it counts particles, not length, and takes small gaps for none.
+    """
+    return float((gap > threshold).mean())
 
 
 def bridges(paths: Paths) -> Bridges:

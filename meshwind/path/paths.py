@@ -115,6 +115,13 @@ class Paths:
         return status.advice + (f"; {' or '.join(ways)} would hold it" if ways else "")
 
 
+def converged_or_all(status: Ints, among: Bools | None = None) -> Bools:
+    """Which paths (p,) figures are taken over: those of `among` that converged, or all of them where none did."""
+    mine: Bools = np.ones(len(status), dtype=bool) if among is None else among
+    converged: Bools = mine & (status == Status.CONVERGED)
+    return converged if converged.any() else mine
+
+
 def sharpest_turn(normal: Floats, touching: Bools) -> Floats:
     """Largest angle (p,), in radians, between the normals (p, n, 3) of neighbours that touch (p, n)."""
     facing = np.einsum("pnk,pnk->pn", normal[:, :-1], normal[:, 1:])

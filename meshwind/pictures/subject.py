@@ -84,7 +84,7 @@ class Subject:
     @property
     def pitch(self) -> float:
         """Mean distance from fibre to fibre of a family, in mesh units."""
-        each = lengths(self.paths).length.sum() / len(np.unique(self.paths.family))
+        each = lengths(self.paths).polyline_length.sum() / len(np.unique(self.paths.family))
         return float(self.layup.coverage.area.sum() / max(each, 1e-300))
 
     def framed(self, kind: str, title: str, subtitle: str) -> dict[str, Any]:

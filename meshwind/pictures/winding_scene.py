@@ -88,9 +88,13 @@ def _turns(of: Subject) -> float:
 def _subtitle(of: Subject) -> str:
     """The report's figures in a line."""
     figures, paths = of.figures, of.paths
-    bridged = f"bridged {100.0 * figures.bridged_fraction:.1f} %" if len(figures.spans) else "no bridges"
-    parts = [f"fibre length {quantity(figures.length, of.units)}", bridged, f"{len(of.layup.crossings)} crossings"]
-    if figures.at_rest < len(paths):
-        whose = "these" if figures.at_rest else "all"
-        parts[0] = f"{figures.at_rest} of {len(paths)} at rest; {whose}: {parts[0]}"
+    bridged = f"bridged {100.0 * figures.bridged_share:.1f} %" if len(figures.spans) else "no bridges"
+    parts = [
+        f"fibre length {quantity(figures.fibre_length, of.units)}",
+        bridged,
+        f"{len(of.layup.crossings)} crossings",
+    ]
+    if figures.converged < len(paths):
+        whose = "these" if figures.converged else "all"
+        parts[0] = f"{figures.converged} of {len(paths)} at rest; {whose}: {parts[0]}"
     return "  ·  ".join(parts)

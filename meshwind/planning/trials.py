@@ -8,7 +8,8 @@ from meshwind.path import Paths, Status, solve
 from meshwind.path.batch import Setting, fresh
 from meshwind.path.friction import Friction, friction_of
 from meshwind.path.ladder import fewest, search
-from meshwind.path.lengths import lengths
+from meshwind.path.lengths import bridged_share, lengths
+from meshwind.path.paths import converged_or_all
 from meshwind.path.solve import as_paths, straight
 from meshwind.planning.families import families
 from meshwind.surface.surface import Surface
@@ -76,12 +77,9 @@ def told(laid: Paths, revolutions: float) -> Trial:
 
 def _sum_up(batches: list[Paths], revolutions: float) -> Trial:
     """The figures of paths of which those not at rest were tried again in the batch that follows."""
-    rest = [laid.status == Status.CONVERGED for laid in batches]
-    held = sum(int(each.sum()) for each in rest)
-    length = bridged = 0.0
-    for laid, mask in zip(batches, rest, strict=True):
-        figures, told = lengths(laid), mask if held else np.ones_like(mask)
-        length += float(figures.length[told].sum())
-        bridged += float(figures.bridged[told].sum())
+    converged = sum(int((laid.status == Status.CONVERGED).sum()) for laid in batches)
+    counted = converged_or_all(np.concatenate([laid.status for laid in batches]))
+    masks = np.split(counted, np.cumsum([len(laid) for laid in batches[:-1]]))
+    bridged = bridged_share(*zip(map(lengths, batches), masks, strict=True))
     slid = tuple(int((batches[-1].status == end).sum()) for end in (Status.SLID_OFF_START, Status.SLID_OFF_END))
-    return Trial(float(revolutions), held / len(batches[0]), bridged / max(length, 1e-300), (slid[0], slid[1]))
+    return Trial(float(revolutions), converged / len(batches[0]), bridged, (slid[0], slid[1]))

@@ -25,9 +25,9 @@ def write_paths(path: Path, paths: Paths, units: str = "") -> None:
     cell_data = {
         "path": np.arange(p),
         "family": paths.family,
-        "length": figures.length,
+        "length": figures.polyline_length,
         "fibre_length": paths.length,
-        "bridged_length": figures.bridged,
+        "bridged_length": figures.bridged_length,
         "max_gap": figures.max_gap,
         "max_slip": figures.max_slip,
         "status": paths.status,

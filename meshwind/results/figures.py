@@ -1,26 +1,25 @@
-"""What a batch of paths comes to, over one and the same set of paths in report, summary and picture."""
+"""Figures of a batch of paths: the same, over the same paths, in report, summary and picture."""
 
-from dataclasses import dataclass, replace
-
-import numpy as np
+from dataclasses import dataclass
 
 from meshwind.core.cast import Bools, frozen
-from meshwind.path.lengths import Bridges, bridges, lengths
-from meshwind.path.paths import Paths, Status
+from meshwind.path.lengths import Bridges, bridged_share, bridges, lengths
+from meshwind.path.paths import Paths, Status, converged_or_all
 
 
 @dataclass(frozen=True)
 class PathFigures:
-    """Figures of the paths at rest, or of all where none is: `told` (p,) says which.
+    """Figures of the paths that converged, or of all where none did: `counted` (p,) says which.
 
-    length is their total, bridged_fraction the share of it off the surface, spans their bridges; lengths in the
-    mesh's units, max_slip as |kg| / kn, max_residual over the tension.
+    converged: how many did; fibre_length: the total; bridged_share: share of the polylines' length off the surface;
+    spans: the bridges.  Lengths are in the mesh's units, max_slip is the required friction |kg| / kn, max_residual is
+    over the tension.
     """
 
-    told: Bools
-    at_rest: int
-    length: float
-    bridged_fraction: float
+    counted: Bools
+    converged: int
+    fibre_length: float
+    bridged_share: float
     spans: Bridges
     max_gap: float
     max_slip: float
@@ -33,30 +32,20 @@ class PathFigures:
 
     @property
     def over(self) -> str:
-        """In words, which paths these are the figures of."""
-        return "paths at rest" if self.at_rest else "all paths, as none is at rest"
+        """Which paths these are the figures of, as text."""
+        return "paths at rest" if self.converged else "all paths, as none is at rest"
 
 
 def path_figures(paths: Paths) -> PathFigures:
-    """Measure the paths that came to rest, or all where none did."""
-    taut = paths.status == Status.CONVERGED
-    told: Bools = taut if taut.any() else np.ones(len(paths), dtype=bool)
-    each = lengths(paths)
-    total, bridged = float(each.length[told].sum()), float(each.bridged[told].sum())
+    """Measure the paths that converged, or all where none did."""
+    counted, each = converged_or_all(paths.status), lengths(paths)
     return PathFigures(
-        told=frozen(told),
-        at_rest=int(taut.sum()),
-        length=float(paths.length[told].sum()),
-        bridged_fraction=bridged / total if total > 0.0 else 0.0,
-        spans=_of(told, bridges(paths)),
-        max_gap=float(each.max_gap[told].max(initial=0.0)),
-        max_slip=float(each.max_slip[told].max(initial=0.0)),
-        max_residual=float(paths.residual[told].max(initial=0.0)),
+        counted=frozen(counted),
+        converged=int((paths.status == Status.CONVERGED).sum()),
+        fibre_length=float(paths.length[counted].sum()),
+        bridged_share=bridged_share((each, counted)),
+        spans=bridges(paths).of(counted),
+        max_gap=float(each.max_gap[counted].max(initial=0.0)),
+        max_slip=float(each.max_slip[counted].max(initial=0.0)),
+        max_residual=float(paths.residual[counted].max(initial=0.0)),
     )
-
-
-def _of(told: Bools, spans: Bridges) -> Bridges:
-    """Those bridges that are of the told paths."""
-    mine = told[spans.path]
-    names = "path", "first", "last", "length", "max_gap"
-    return replace(spans, **{name: frozen(getattr(spans, name)[mine]) for name in names})

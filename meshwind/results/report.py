@@ -135,11 +135,11 @@ def _surface(surface: Surface, chart: Chart | None, tolerance: float | None) -> 
 def _paths(paths: Paths) -> dict[str, Any]:
     figures = path_figures(paths)
     return {
-        "converged": figures.at_rest,
+        "converged": figures.converged,
         "not_converged": unsettled(paths),
         "figures_over": figures.over,
-        "length_total": figures.length,
-        "bridged_fraction": figures.bridged_fraction,
+        "length_total": figures.fibre_length,
+        "bridged_fraction": figures.bridged_share,
         "bridges": len(figures.spans),
         "longest_bridge": figures.longest_bridge,
         "max_gap": figures.max_gap,
