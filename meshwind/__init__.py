@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from meshwind.chart import Chart as Chart
     from meshwind.chart import flatten as flatten
     from meshwind.core.errors import BadInputError as BadInputError
-    from meshwind.edited import write_redesign as write_redesign
     from meshwind.editing.redesign import Redesign as Redesign
     from meshwind.editing.redesign import redesign as redesign
     from meshwind.export.cad_surface import read_cad as read_cad
@@ -40,14 +39,15 @@ if TYPE_CHECKING:
     from meshwind.pictures.page import Page as Page
     from meshwind.pictures.redesign_scene import draw_redesign as draw_redesign
     from meshwind.pictures.render import render as render
-    from meshwind.pipeline import Result as Result
-    from meshwind.pipeline import wind as wind
     from meshwind.planning import Families as Families
     from meshwind.planning import choose_revolutions as choose_revolutions
     from meshwind.planning import families as families
     from meshwind.planning import read_pins as read_pins
     from meshwind.planning import space_out as space_out
     from meshwind.results.image_files import read_image as read_image
+    from meshwind.run.redesign import write_redesign as write_redesign
+    from meshwind.run.wind import Result as Result
+    from meshwind.run.wind import wind as wind
     from meshwind.surface import FitError as FitError
     from meshwind.surface import Surface as Surface
     from meshwind.surface import fit as fit
@@ -70,8 +70,8 @@ _HOME = {
     "space_out": "planning",
     "Layup": "layup", "assess": "layup", "windability": "layup",
     "read_cad": "export.cad_surface",
-    "Redesign": "editing.redesign", "redesign": "editing.redesign", "write_redesign": "edited",
-    "Result": "pipeline", "wind": "pipeline",
+    "Redesign": "editing.redesign", "redesign": "editing.redesign", "write_redesign": "run.redesign",
+    "Result": "run.wind", "wind": "run.wind",
     "render": "pictures.render", "Page": "pictures.page", "draw_redesign": "pictures.redesign_scene",
 }  # fmt: skip
 

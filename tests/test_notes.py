@@ -11,7 +11,7 @@ import meshwind as mw
 from meshwind.appearance.words import power, quantity, ratio
 from meshwind.cli.summary import described
 from meshwind.core.cast import Floats, frozen
-from meshwind.notes import about_fit
+from meshwind.workflow.notes import about_fit
 
 DIAGONAL = 10.0
 TIP = np.array([-4.5, 0.0, 0.0])

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import meshwind as mw
-from meshwind.options import Options
+from meshwind.workflow.options import Options
 
 BAD: list[tuple[dict[str, Any], str]] = [
     ({"paths": 0}, "paths is 0; give a whole number from 1 up"),

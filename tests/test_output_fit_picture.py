@@ -16,13 +16,13 @@ from meshwind.core.cast import Floats, frozen
 from meshwind.layup.layup import assess
 from meshwind.mesh import mesh_from
 from meshwind.mesh.opening.ends import place
-from meshwind.notes import FIT_ERROR, Note
 from meshwind.pictures import driver
 from meshwind.pictures.fit_scene import fit_scene
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.results.apart import Apart, apart
 from meshwind.surface import shapes
+from meshwind.workflow.notes import FIT_ERROR, Note
 
 AROUND, ALONG, HEIGHT = 48, 40, 4.0
 

@@ -16,9 +16,8 @@ from pyarrow import parquet
 
 from meshwind.core.errors import BadInputError
 from meshwind.sweep import read_study, sweep
-from meshwind.sweep.jobs import batches
 from meshwind.sweep.local import run_local
-from meshwind.sweep.work import Done
+from meshwind.sweep.work import Done, grouped
 
 DATA = Path(__file__).parents[1] / "data"
 FEW = "paths = 3\nparticles = 41\n"
@@ -56,7 +55,7 @@ def test_cases_that_are_alike_are_one_and_share_a_part(tmp_path: Path) -> None:
     plan = read_study(study(tmp_path, f'{FEW}mesh = {mesh("vase.stl")}\nrevolutions = [0.3, 0.3, 0.5]\n'
                                       'tolerance = [1e-5, 1e-4]\n'))  # fmt: skip
     assert len(plan) == 4
-    assert sorted(len(batch.cases) for batch in batches(dict(enumerate(plan.cases)))) == [2, 2]
+    assert sorted(len(group.cases) for group in grouped(dict(enumerate(plan.cases)))) == [2, 2]
 
 
 @pytest.mark.parametrize(
@@ -75,9 +74,9 @@ def test_cases_that_are_alike_are_one_and_share_a_part(tmp_path: Path) -> None:
     ],
 )
 def test_a_study_that_makes_no_sense_is_refused_in_one_line(text: str, says: str, tmp_path: Path) -> None:
-    with pytest.raises(BadInputError) as told:
+    with pytest.raises(BadInputError) as caught:
         read_study(study(tmp_path, text))
-    assert says in str(told.value) and "\n" not in str(told.value)
+    assert says in str(caught.value) and "\n" not in str(caught.value)
 
 
 def rows(folder: Path) -> list[dict[str, str]]:
@@ -143,10 +142,10 @@ def workers(parent: int) -> list[int]:
     for each in Path("/proc").iterdir():
         if each.name.isdigit():
             try:
-                told, line = (each / "stat").read_text(), (each / "cmdline").read_bytes()
+                stat, line = (each / "stat").read_text(), (each / "cmdline").read_bytes()
             except OSError:
                 continue
-            if int(told.rpartition(")")[2].split()[1]) == parent and b"spawn_main" in line:
+            if int(stat.rpartition(")")[2].split()[1]) == parent and b"spawn_main" in line:
                 found.append(int(each.name))
     return found
 
@@ -156,7 +155,7 @@ def test_killed_workers_cases_are_run_again_and_come_once(tmp_path: Path) -> Non
     plan = read_study(study(tmp_path, text))
     came: list[int] = []
     killed = 0
-    for number, found in run_local(batches(dict(enumerate(plan.cases))), 2):
+    for number, found in run_local(grouped(dict(enumerate(plan.cases))), 2):
         assert isinstance(found, Done) and not found.reason
         came.append(number)
         if len(came) in (2, 6) and (mine := workers(os.getpid())):
@@ -171,13 +170,13 @@ def test_a_job_that_kills_every_worker_is_given_up_and_the_others_done(tmp_path:
     from meshwind.sweep import local
 
     plan = read_study(study(tmp_path, f"{FEW}mesh = [{mesh('vase.stl')}]\nrevolutions = [0.3, 0.4]\n"))
-    state = local._State(batches(dict(enumerate(plan.cases))), tmp_path, deque())
+    queue = local._Queue(grouped(dict(enumerate(plan.cases))), tmp_path, deque())
     job = local._Job(0, 1)
-    told: list[Any] = []
-    for _ in range(local.ATTEMPTS):
-        told += list(local._mourned(state, [job]))
-        state.again.clear()
-    assert [number for number, _ in told] == [1] and told[0][1].lost and "killed" in told[0][1].reason
+    came: list[Any] = []
+    for _ in range(local.MAX_ATTEMPTS):
+        came += list(local._requeue(queue, [job]))
+        queue.retries.clear()
+    assert [number for number, _ in came] == [1] and came[0][1].lost and "killed" in came[0][1].reason
 
 
 def test_interrupted_and_started_again_every_case_is_there_once(tmp_path: Path) -> None:
@@ -196,8 +195,8 @@ def test_interrupted_and_started_again_every_case_is_there_once(tmp_path: Path) 
     assert half >= 3
     again = subprocess.run([*command[:-1], "--json"], capture_output=True, text=True, timeout=240)
     assert again.returncode == 0, again.stderr
-    told = json.loads(again.stdout)
-    assert told["anew"] == 12 - half
+    printed = json.loads(again.stdout)
+    assert printed["anew"] == 12 - half
     assert len(rows(out)) == 12 and len({row["case"] for row in rows(out)}) == 12
     assert all(
         (case / "report.json").is_file() and (case / "case.json").is_file() for case in (out / "cases").iterdir()
@@ -216,10 +215,10 @@ def test_a_cluster_gives_the_same_table(done: tuple[Path, Path], tmp_path: Path)
         assert (tmp_path / "dask" / name).read_bytes() == (reference / name).read_bytes()
 
 
-def test_no_scheduler_is_told_in_one_line(tmp_path: Path) -> None:
+def test_a_missing_scheduler_is_one_line(tmp_path: Path) -> None:
     from meshwind.sweep import cluster
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(cluster, "SECONDS", 1)
+        patch.setattr(cluster, "CONNECT_SECONDS", 1)
         with pytest.raises(BadInputError, match="no scheduler answers"):
             sweep(small(tmp_path), tmp_path / "out", scheduler="tcp://127.0.0.1:1")

@@ -95,9 +95,9 @@ def redesign(
     bridge, or slide off (the report says which, and what would help).
     """
     # the numerical libraries are imported late: --help and usage errors must not wait for them
-    from meshwind.edited import write_redesign
     from meshwind.editing import redesign as edit_mesh
     from meshwind.results import folder
+    from meshwind.run.redesign import write_redesign
 
     del config  # its values have become those of the others
     check_units(units)

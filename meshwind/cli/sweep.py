@@ -65,7 +65,7 @@ def sweep(
 
     folder = out if out is not None else Path(f"{study.stem}-swept")
     with counter("cases", quiet or as_json) as progress:
-        swept = run(study, folder, processes=processes, scheduler=scheduler, overwrite=overwrite, tell=progress)
+        swept = run(study, folder, processes=processes, scheduler=scheduler, overwrite=overwrite, progress=progress)
     how = Counter(row["status"] for row in swept.rows)
     reasons = Counter(row["reason"] for row in swept.rows if row["reason"])
     lines = [

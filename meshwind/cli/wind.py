@@ -114,12 +114,12 @@ def wind(
     come to rest (the report says which and why).
     """
     # the numerical libraries are imported late: --help and usage errors must not wait for them
-    from meshwind import pipeline
+    from meshwind.run.wind import wind as run
 
     del config  # its values have become those of the others
     folder = out if out is not None else f"{mesh.stem}-wound"
     with display(quiet or as_json) as progress:
-        result = pipeline.wind(
+        result = run(
             mesh,
             paths=paths,
             revolutions=turns(revolutions),

@@ -1,4 +1,4 @@
-"""Run a study on this machine: processes that take a job each, and others in the place of one that is killed."""
+"""Run a study on this machine, in processes; the jobs of a process that is killed are run again."""
 
 import pickle
 from collections import Counter, deque
@@ -12,136 +12,133 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from meshwind.mesh import Mesh
-from meshwind.mesh.io.scalars import Scalars
-from meshwind.options import Options
-from meshwind.pipeline import Part
-from meshwind.sweep.jobs import Batch
 from meshwind.sweep.study import Case
-from meshwind.sweep.work import Done, fitted, wound
+from meshwind.sweep.work import CaseGroup, Done, fit_job, wind_job
+from meshwind.workflow.options import Options
+from meshwind.workflow.part import Part, Source
 
-ATTEMPTS = 3
-"""A job that has lost so many workers is given up."""
+MAX_ATTEMPTS = 3
+"""Times that a job is tried whose worker is killed."""
 LOST = (
-    "its worker was killed, {} times over: it may need more memory than there is; try it alone, or on a larger machine"
+    f"its worker was killed {MAX_ATTEMPTS} times: it may need more memory than there is; try it alone, or on a larger "
+    "machine"
 )
 
 
 @dataclass(frozen=True)
 class _Job:
-    """A part to fit, number None, or a case to wind."""
+    """A part to fit, where number is None, or a case to wind."""
 
-    batch: int
+    group: int
     number: int | None
 
 
 @dataclass
-class _State:
-    """What is to be done yet; winding comes before fitting, so that few parts are held at a time."""
+class _Queue:
+    """The jobs that are left.  Winding comes before fitting, so that few fitted parts are stored at a time."""
 
-    batches: list[Batch]
-    place: Path
+    groups: list[CaseGroup]
+    folder: Path
     fits: deque[int]
     winds: deque[_Job] = field(default_factory=deque)
-    again: deque[_Job] = field(default_factory=deque)
-    killed: Counter[_Job] = field(default_factory=Counter)
+    retries: deque[_Job] = field(default_factory=deque)
+    kills: Counter[_Job] = field(default_factory=Counter)
 
     def next(self) -> _Job | None:
-        """The next job."""
-        if self.again:
-            return self.again.popleft()
+        """The next job, None where there is none."""
+        if self.retries:
+            return self.retries.popleft()
         if self.winds:
             return self.winds.popleft()
         return _Job(self.fits.popleft(), None) if self.fits else None
 
-    def file(self, batch: int) -> Path:
-        """Where a fitted part waits for its cases."""
-        return self.place / f"{batch}.pickle"
+    def file(self, group: int) -> Path:
+        """The file that a fitted part is stored in."""
+        return self.folder / f"{group}.pickle"
 
 
-def run_local(batches: list[Batch], processes: int) -> Iterator[tuple[int, Done]]:
-    """Give each case once, as it is done."""
-    with TemporaryDirectory(prefix="meshwind-") as place:
-        state = _State(batches, Path(place), deque(range(len(batches))))
-        while (yield from _pool(state, processes)):
+def run_local(groups: list[CaseGroup], processes: int) -> Iterator[tuple[int, Done]]:
+    """Yield each case once, as it is done."""
+    with TemporaryDirectory(prefix="meshwind-") as folder:
+        queue = _Queue(groups, Path(folder), deque(range(len(groups))))
+        while (yield from _run_pool(queue, processes)):
             pass
 
 
-def _pool(state: _State, processes: int) -> Generator[tuple[int, Done], None, bool]:
-    """Work until all is done, or until a worker is killed; returns whether there is more to do.
+def _run_pool(queue: _Queue, processes: int) -> Generator[tuple[int, Done], None, bool]:
+    """Work until all is done or a worker is killed; returns whether jobs are left.
 
-    Which of the jobs at work killed it is not known: they are tried again one at a time, before all others.
+    A killed worker breaks the pool, and which of the running jobs was its is not known: they are tried again one at
+    a time, before all others.
     """
     running: dict[Future[Any], _Job] = {}
     with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
         try:
             while True:
-                suspects = bool(state.again) or any(state.killed[job] for job in running.values())
+                suspects = bool(queue.retries) or any(queue.kills[job] for job in running.values())
                 while len(running) < (1 if suspects else processes):
-                    job = state.next()
+                    job = queue.next()
                     if job is None:
                         break
                     try:
-                        future, told = _submitted(pool, state, job)
+                        future, refused = _submit(pool, queue, job)
                     except BrokenProcessPool:
-                        state.again.append(job)  # it has not even begun
+                        queue.retries.append(job)  # it has not started
                         raise
                     if future is None:
-                        yield from told
+                        yield from refused
                     else:
                         running[future] = job
-                    suspects = suspects or bool(state.killed[job])
+                    suspects = suspects or bool(queue.kills[job])
                 if not running:
                     return False
                 for future in wait(running, return_when=FIRST_COMPLETED).done:
-                    found = future.result()
+                    result = future.result()
                     job = running.pop(future)
-                    yield from _taken(state, job, found)
+                    yield from _finish(queue, job, result)
         except BrokenProcessPool:
-            yield from _mourned(state, list(running.values()))
+            yield from _requeue(queue, list(running.values()))
     return True
 
 
-def _submitted(
-    pool: ProcessPoolExecutor, state: _State, job: _Job
-) -> tuple[Future[Any] | None, list[tuple[int, Done]]]:
-    """Start a job; where its mesh cannot be read there is none, but its cases have their reason."""
-    batch = state.batches[job.batch]
+def _submit(pool: ProcessPoolExecutor, queue: _Queue, job: _Job) -> tuple[Future[Any] | None, list[tuple[int, Done]]]:
+    """Start a job; where its mesh cannot be read there is none, but its cases get the reason."""
+    group = queue.groups[job.group]
     if job.number is not None:
-        return pool.submit(_wound, str(state.file(job.batch)), batch.cases[job.number]), []
-    read = batch.read()
-    if isinstance(read, str):
-        return None, [(number, Done({}, {}, read)) for number in batch.cases]
-    return pool.submit(_fitted, str(state.file(job.batch)), *read), []
+        return pool.submit(_wind_stored, str(queue.file(job.group)), group.cases[job.number]), []
+    source = group.read()
+    if isinstance(source, str):
+        return None, [(number, Done({}, {}, source)) for number in group.cases]
+    return pool.submit(_fit_and_store, str(queue.file(job.group)), source, group.options), []
 
 
-def _taken(state: _State, job: _Job, found: Done | str) -> Iterator[tuple[int, Done]]:
-    """A job that is done: a fitted part sets its cases free, or none of them can be wound."""
-    batch = state.batches[job.batch]
-    if isinstance(found, Done):
+def _finish(queue: _Queue, job: _Job, result: Done | str) -> Iterator[tuple[int, Done]]:
+    """Take the result of a job: after a fitted part its cases can be wound, or all of them get its reason."""
+    group = queue.groups[job.group]
+    if isinstance(result, Done):
         if job.number is not None:
-            yield job.number, found
-    elif found:
-        yield from ((number, Done({}, {}, found)) for number in batch.cases)
+            yield job.number, result
+    elif result:
+        yield from ((number, Done({}, {}, result)) for number in group.cases)
     else:
-        state.winds.extend(_Job(job.batch, number) for number in batch.cases)
+        queue.winds.extend(_Job(job.group, number) for number in group.cases)
 
 
-def _mourned(state: _State, jobs: list[_Job]) -> Iterator[tuple[int, Done]]:
-    """Jobs whose worker was killed, or a neighbour's: tried again, or given up."""
+def _requeue(queue: _Queue, jobs: list[_Job]) -> Iterator[tuple[int, Done]]:
+    """Try again, or give up, the jobs that ran when a worker was killed."""
     for job in jobs:
-        # one job alone is to blame; several may be bystanders
-        state.killed[job] += 1 if len(jobs) > 1 else 2
-        if state.killed[job] <= 2 * (ATTEMPTS - 1):
-            state.again.append(job)
+        # a job that ran alone is to blame; of several any may be, and they count half
+        queue.kills[job] += 1 if len(jobs) > 1 else 2
+        if queue.kills[job] <= 2 * (MAX_ATTEMPTS - 1):
+            queue.retries.append(job)
             continue
-        numbers = state.batches[job.batch].cases if job.number is None else [job.number]
-        yield from ((number, Done({}, {}, LOST.format(ATTEMPTS), lost=True)) for number in numbers)
+        numbers = queue.groups[job.group].cases if job.number is None else [job.number]
+        yield from ((number, Done({}, {}, LOST, lost=True)) for number in numbers)
 
 
-def _fitted(file: str, mesh: Mesh, field: Scalars | None, options: Options) -> str:
-    """In a worker: fit a part and keep it in a file; returns "" or why there is none."""
-    part = fitted(mesh, field, options)
+def _fit_and_store(file: str, source: Source, options: Options) -> str:
+    """In a worker: fit a part and store it in a file; returns "" or the reason why there is none."""
+    part = fit_job(source, options)
     if isinstance(part, str):
         return part
     half = Path(f"{file}.half")
@@ -150,12 +147,12 @@ def _fitted(file: str, mesh: Mesh, field: Scalars | None, options: Options) -> s
     return ""
 
 
-def _wound(file: str, case: Case) -> Done:
-    """In a worker: wind a case on a part from its file."""
-    return wound(_part(file), case)
+def _wind_stored(file: str, case: Case) -> Done:
+    """In a worker: wind a case on a stored part."""
+    return wind_job(_stored_part(file), case)
 
 
 @lru_cache(maxsize=1)
-def _part(file: str) -> Part:
+def _stored_part(file: str) -> Part:
     part: Part = pickle.loads(Path(file).read_bytes())
     return part

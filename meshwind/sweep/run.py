@@ -1,4 +1,4 @@
-"""Run a study: what is done already stays, the rest is wound, and the table grows with each case."""
+"""Run a study: finished cases stay, the others are wound, and the table grows with each of them."""
 
 import os
 import shutil
@@ -10,20 +10,19 @@ from typing import Any
 
 from meshwind.core.errors import BadInputError
 from meshwind.sweep.charts import draw_tradeoffs
-from meshwind.sweep.jobs import batches
 from meshwind.sweep.store import CASES, PICTURE, Store
 from meshwind.sweep.study import Study, read_study
-from meshwind.sweep.work import Done
+from meshwind.sweep.work import Done, grouped
 
-Tell = Callable[[str, int, int], None]
-"""Called with a case that is done, how many are, and how many there are."""
+CaseProgress = Callable[[str, int, int], None]
+"""Called with the name of a finished case, how many are finished, and how many there are."""
 TABLE_SECONDS = 10.0
-"""So often at most the table is written while cases come in."""
+"""Least time between two writings of the table while cases come in."""
 
 
 @dataclass(frozen=True)
 class Swept:
-    """A study that was run: its rows, and how many of the cases were done anew."""
+    """A study that was run: its rows, and how many of the cases were wound this time."""
 
     study: Study
     rows: tuple[dict[str, Any], ...]
@@ -43,14 +42,14 @@ def sweep(
     processes: int | None = None,
     scheduler: str | None = None,
     overwrite: bool = False,
-    tell: Tell | None = None,
+    progress: CaseProgress | None = None,
 ) -> Swept:
     """Wind all cases of a study into `out`, each once, and write their table.
 
-    study: a TOML file or what was read of one; processes: on this machine, by default one a core; scheduler: address
-    of a Dask scheduler that takes the cases instead; overwrite: do anew what is done already.  A case that fails is
-    a row with its reason.  Interrupted, a study goes on where it was.  Raises BadInputError for a study that makes no
-    sense, or a folder that cannot be written.
+    study: a TOML file, or a study read from one; processes: number of them on this machine, by default one per core;
+    scheduler: address of a Dask scheduler that runs the cases instead; overwrite: wind finished cases again;
+    progress: called after each case.  A case that fails has a row with the reason.  An interrupted study goes on where
+    it stopped.  Raises BadInputError for a study that cannot be read, or a folder that cannot be written.
     """
     if processes is not None and (isinstance(processes, bool) or not isinstance(processes, int) or processes < 1):
         raise BadInputError(f"processes is {processes}; give a whole number from 1 up")
@@ -62,8 +61,8 @@ def sweep(
     before, written = len(store.rows), monotonic()
     for number, done in _run(store, processes, scheduler):
         row = store.keep(number, done)
-        if tell is not None:
-            tell(row["folder"], len(store.rows), len(plan))
+        if progress is not None:
+            progress(row["folder"], len(store.rows), len(plan))
         if monotonic() - written > TABLE_SECONDS:
             store.write_table()
             written = monotonic()
@@ -73,15 +72,15 @@ def sweep(
 
 
 def _run(store: Store, processes: int | None, scheduler: str | None) -> Iterator[tuple[int, Done]]:
-    """The runner at work on what is not done yet."""
-    todo = batches(store.open)
+    """Run the cases that are left, here or on a cluster."""
+    groups = grouped(store.open)
     if scheduler is not None:
         from meshwind.sweep.cluster import run_cluster
 
-        return run_cluster(todo, scheduler)
+        return run_cluster(groups, scheduler)
     from meshwind.sweep.local import run_local
 
-    return run_local(todo, min(processes or _cores(), max(len(store.open), 1)))
+    return run_local(groups, min(processes or _cores(), max(len(store.open), 1)))
 
 
 def _cores() -> int:

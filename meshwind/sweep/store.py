@@ -1,10 +1,11 @@
-"""The folder of a study: a folder a case, whole or not at all, and the table of all that are done.
+"""The folder of a study: a folder per case, whole or not at all, and the table of all finished cases.
 
     cases/NAME/case.json     the case, its row, and its results beside it
     results.csv, .parquet    the rows in the study's order
-    tradeoffs.png            the figures against what is swept
+    tradeoffs.png            the figures against the swept options
 
-A case's folder is made beside its place and renamed; what is there is done, and is not done again.
+A case's folder is written under another name and renamed when it is complete: a case that has one is finished and is
+not run again.
 """
 
 import csv
@@ -37,25 +38,25 @@ class Store:
         self.out, self.study = out, study
         self.rows: dict[int, Row] = {}
         for number, case in enumerate(study.cases):
-            row = _kept(out / CASES / case.folder / RECORD, case.key)
+            row = _stored_row(out / CASES / case.folder / RECORD, case.key)
             if row is not None:
                 self.rows[number] = row
 
     @property
     def open(self) -> dict[int, Case]:
-        """The cases that are yet to be done, by their numbers."""
+        """The cases that are left, by their numbers."""
         return {number: case for number, case in enumerate(self.study.cases) if number not in self.rows}
 
     def keep(self, number: int, done: Done) -> Row:
-        """Write a case that is done; one whose worker was lost is told in the table, and tried anew another time."""
+        """Write a finished case.  A lost one has a row but no folder, and is tried again the next time."""
         case = self.study.cases[number]
         row = _row(case, done)
         self.rows[number] = row
         if done.lost:
             return row
-        place = self.out / CASES / case.folder
-        place.parent.mkdir(parents=True, exist_ok=True)
-        with staged(place, lambda _: ()) as staging:
+        folder = self.out / CASES / case.folder
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        with staged(folder, lambda _: ()) as staging:
             for name, content in done.files.items():
                 file = staging / name
                 file.parent.mkdir(parents=True, exist_ok=True)
@@ -66,7 +67,7 @@ class Store:
 
     @property
     def table(self) -> list[Row]:
-        """The rows of all cases that are done, in the study's order, all with the same columns."""
+        """The rows of all finished cases, in the study's order, all with the same columns."""
         rows = [self.rows[number] for number in sorted(self.rows)]
         names = dict.fromkeys(name for row in rows for name in row)
         return [{name: row.get(name) for name in names} for row in rows]
@@ -79,19 +80,19 @@ class Store:
             _write_parquet(staging / PARQUET, self.table)
 
 
-def _kept(record: Path, key: str) -> Row | None:
-    """The row of a case that is done."""
+def _stored_row(record: Path, key: str) -> Row | None:
+    """The row of a finished case, None where there is none."""
     try:
-        told = json.loads(record.read_text(encoding="utf-8"))
+        stored = json.loads(record.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-    row = told.get("row") if isinstance(told, dict) and told.get("key") == key else None
+    row = stored.get("row") if isinstance(stored, dict) and stored.get("key") == key else None
     return row if isinstance(row, dict) else None
 
 
 def _row(case: Case, done: Done) -> Row:
-    """What was asked for, how it ended, and the figures."""
-    asked = {
+    """The options of a case, its status and its figures."""
+    given = {
         name: "auto" if name == "particles" and value is None else value for name, value in asdict(case.options).items()
     }
     pins = None if case.options.pins is None else Path(case.options.pins).name
@@ -102,7 +103,7 @@ def _row(case: Case, done: Done) -> Row:
     figures = {name: value for name, value in done.figures.items() if name != "why_not"}
     row: Row = plain(
         {"case": case.key, "folder": case.folder, "mesh": case.mesh.name, "status": status, "reason": reason}
-        | {name: asked[name] for name in asked if name != "paths"}
+        | {name: given[name] for name in given if name != "paths"}
         | {"paths_a_family": case.options.paths, "pins": pins}
         | figures
     )
@@ -126,6 +127,6 @@ def _write_parquet(path: Path, rows: Iterable[Mapping[str, Any]]) -> None:
     for name in table[0] if table else ():
         values = [row[name] for row in table]
         mixed = len({isinstance(value, str) for value in values if value is not None}) > 1
-        # a column has one type: what is a number here and "auto" there is text
+        # a column has one type: one that holds both numbers and "auto" is text
         columns[name] = [None if value is None else str(value) for value in values] if mixed else values
     parquet.write_table(arrow.table(columns), path)

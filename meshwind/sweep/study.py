@@ -13,7 +13,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import count, turns
 from meshwind.core.toml import nearest, read_toml
 from meshwind.core.version import version
-from meshwind.options import Options
+from meshwind.workflow.options import Options
 
 MOST = 100_000
 """Cases of one study; more are a slip in a list."""

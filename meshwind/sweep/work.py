@@ -1,6 +1,6 @@
-"""What a worker does: fit a part, wind one case of it.  Nothing here knows where it runs."""
+"""The jobs of a study: read a mesh, fit it, wind a case on the part.  Nothing here depends on where they run."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -9,18 +9,48 @@ import numba
 from threadpoolctl import threadpool_limits
 
 from meshwind.core.errors import BadInputError
-from meshwind.mesh import Mesh
-from meshwind.mesh.io.scalars import Scalars
-from meshwind.options import Options
-from meshwind.pipeline import Clock, Part, Result, fit_part, wind_part
+from meshwind.run.wind import Result
 from meshwind.sweep.study import Case
+from meshwind.workflow.clock import Clock
+from meshwind.workflow.options import Options
+from meshwind.workflow.part import Part, Source, fit_part, read_source
+from meshwind.workflow.winding import wind_part
+
+
+@dataclass(frozen=True)
+class CaseGroup:
+    """Cases that share a part, by their numbers in the study."""
+
+    cases: dict[int, Case]
+
+    @property
+    def options(self) -> Options:
+        """Those of its first case: the options that the part depends on are the same for all."""
+        return next(iter(self.cases.values())).options
+
+    def read(self) -> Source | str:
+        """The mesh that the part is fitted to, or why it cannot be read."""
+        case = next(iter(self.cases.values()))
+        try:
+            # without its path, so that the files of a case do not depend on where the mesh is kept
+            return replace(read_source(case.mesh, case.options), file=None)
+        except BadInputError as error:
+            return str(error)
+
+
+def grouped(cases: dict[int, Case]) -> list[CaseGroup]:
+    """The cases by the part that they share."""
+    by_part: dict[tuple[object, ...], dict[int, Case]] = {}
+    for number, case in cases.items():
+        by_part.setdefault(case.shared, {})[number] = case
+    return [CaseGroup(group) for group in by_part.values()]
 
 
 @dataclass(frozen=True)
 class Done:
-    """What came of a case: the figures for its row, the files of its folder by name, and why there are none.
+    """A finished case: the figures for its row and the files of its folder by name, or the reason why there are none.
 
-    Where reason is not "", the case was refused, or lost with its worker, and has neither figures nor files.
+    reason: "" for a case that was wound; otherwise why it was refused or, where `lost`, that its workers were killed.
     """
 
     figures: dict[str, Any]
@@ -29,35 +59,35 @@ class Done:
     lost: bool = False
 
 
-def alone() -> None:
-    """Keep this process to one thread: as many processes run as there are cores."""
-    numba.set_num_threads(1)
-    threadpool_limits(1)
-
-
-def fitted(mesh: Mesh, field: Scalars | None, options: Options) -> Part | str:
-    """The part that all cases with these options share, or why there is none."""
-    alone()
+def fit_job(source: Source, options: Options) -> Part | str:
+    """In a worker: the part that all cases with these options share, or why it cannot be fitted."""
+    _use_one_thread()
     try:
-        return fit_part(mesh, options, Clock(None), field)
+        return fit_part(source, options, Clock())
     except BadInputError as error:
         return str(error)
 
 
-def wound(part: Part | str, case: Case) -> Done:
-    """Wind one case on its part."""
+def wind_job(part: Part | str, case: Case) -> Done:
+    """In a worker: wind one case on its part."""
     if isinstance(part, str):
         return Done({}, {}, part)
-    alone()
+    _use_one_thread()
     try:
-        result = wind_part(part, case.options, "", Clock(None))
-        with TemporaryDirectory() as place:
-            out = Path(place) / "case"
+        result = Result.of(wind_part(part, case.options, "", Clock()))
+        with TemporaryDirectory() as folder:
+            out = Path(folder) / "case"
             result.write(out, render=case.render)
             files = {path.relative_to(out).as_posix(): path.read_bytes() for path in out.rglob("*") if path.is_file()}
     except BadInputError as error:
         return Done({}, {}, str(error))
     return Done(_figures(result), files)
+
+
+def _use_one_thread() -> None:
+    """Keep this process to one thread: as many processes run as there are cores."""
+    numba.set_num_threads(1)
+    threadpool_limits(1)
 
 
 def _figures(result: Result) -> dict[str, Any]:

@@ -9,17 +9,17 @@ from meshwind.core.version import version
 from meshwind.editing.redesign import Redesign
 from meshwind.export.edited_files import redesign_report, write_edited
 from meshwind.layup.layup import assess
-from meshwind.notes import Note
 from meshwind.pictures import driver
 from meshwind.pictures.page import Page
 from meshwind.pictures.redesign_scene import redesign_scene
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
-from meshwind.pipeline import Clock
 from meshwind.results import folder
 from meshwind.results.config_file import NAME as CONFIG
 from meshwind.results.config_file import write_config
 from meshwind.results.report import write_report
+from meshwind.workflow.clock import Clock
+from meshwind.workflow.notes import Note
 
 
 def write_redesign(
@@ -41,7 +41,7 @@ def write_redesign(
     Returns the report, with a note where there are no pictures for want of an OpenGL driver.  Raises BadInputError
     where `out` cannot be written or, without `overwrite`, holds results.
     """
-    clock, notes = Clock(None), list[str]()
+    clock, notes = Clock(), list[str]()
     with folder.writing(Path(out), overwrite) as staging:
         with clock.stage("write"):
             write_edited(staging, edited, units)

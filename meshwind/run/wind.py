@@ -1,25 +1,15 @@
-"""The main job, mesh in and paths out.  Each stage is a library call; this file only strings them together."""
+"""Wind a mesh and write the results with their pictures into a folder."""
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, fields, replace
 from os import PathLike, fsencode, fspath
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from time import perf_counter
 from typing import Any
 
-from meshwind.chart import Chart, flatten
 from meshwind.core.errors import BadInputError
-from meshwind.core.parsing import AUTO
 from meshwind.core.version import version
-from meshwind.layup.layup import Layup, assess
-from meshwind.mesh import Mesh, annulus, read
-from meshwind.mesh.io.scalars import Scalars, read_scalars
-from meshwind.notes import FIT_ERROR, Note, about_choice, about_fit, about_layup, about_paths, about_spacing
-from meshwind.options import FIELD, Options
-from meshwind.path import Paths, Status, solve
-from meshwind.path.friction import Friction, friction_from
+from meshwind.mesh import Mesh
+from meshwind.path import Paths, Status
 from meshwind.pictures import driver
 from meshwind.pictures.fit_scene import fit_scene
 from meshwind.pictures.kinds import SHEET, scenes_of
@@ -28,23 +18,21 @@ from meshwind.pictures.render import placed
 from meshwind.pictures.revolutions_picture import draw_revolutions
 from meshwind.pictures.sheet import write_sheet
 from meshwind.pictures.subject import subject_in
-from meshwind.planning.families import Families, families
-from meshwind.planning.pins import read_pins
-from meshwind.planning.revolutions import Revolutions, choose_revolutions
-from meshwind.planning.spacing import Spaced, space_out
 from meshwind.results import folder
 from meshwind.results.config_file import NAME as CONFIG
 from meshwind.results.config_file import write_config
 from meshwind.results.report import report, write_report
 from meshwind.results.write import write_files
-from meshwind.surface import Surface, fit
-
-Tell = Callable[[str], None]
-"""Called with a stage's name as it starts."""
+from meshwind.surface import Surface
+from meshwind.workflow.clock import Clock, Progress
+from meshwind.workflow.notes import FIT_ERROR, Note
+from meshwind.workflow.options import Options
+from meshwind.workflow.part import fit_part, read_source
+from meshwind.workflow.winding import Winding, wind_part
 
 
 @dataclass(frozen=True, repr=False)
-class Result:
+class Result(Winding):
     """A wound part: what every stage made, and what the run cost.
 
     options are those it was wound with; seconds holds each stage's wall time; notes say what the user should
@@ -52,16 +40,10 @@ class Result:
     source: the mesh's file, if it came from one.
     """
 
-    mesh: Mesh
-    chart: Chart
-    layup: Layup
-    options: Options
-    command: str
-    seconds: dict[str, float]
-    notes: tuple[Note, ...] = ()
-    chosen: Revolutions | None = None
-    spaced: Spaced | None = None
-    source: Path | None = None
+    @classmethod
+    def of(cls, winding: Winding) -> "Result":
+        """The result whose winding is given."""
+        return cls(**{each.name: getattr(winding, each.name) for each in fields(winding)})
 
     def __repr__(self) -> str:
         at_rest = int((self.paths.status == Status.CONVERGED).sum())
@@ -112,24 +94,7 @@ class Result:
         is no OpenGL driver for the pictures, a note that says what to install.  fit_error.png is drawn where a note
         warns of the fit.
         """
-        return _write(self, _folder(out), render, overwrite, Clock(None))
-
-
-class Clock:
-    """Tells each stage as it starts and adds up what it took."""
-
-    def __init__(self, tell: Tell | None) -> None:
-        self.tell = tell
-        self.seconds: dict[str, float] = {}
-
-    @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
-        """Time what is done within it."""
-        if self.tell is not None:
-            self.tell(name)
-        start = perf_counter()
-        yield
-        self.seconds[name] = self.seconds.get(name, 0.0) + perf_counter() - start
+        return _write(self, _folder(out), render, overwrite, Clock())
 
 
 def wind(
@@ -153,7 +118,7 @@ def wind(
     overwrite: bool = False,
     render: bool = True,
     command: str = "",
-    progress: Tell | None = None,
+    progress: Progress | None = None,
 ) -> Result:
     """Lay two families of taut paths on a triangle mesh.
 
@@ -181,85 +146,10 @@ def wind(
         folder.prepare(target, overwrite)
         if render:
             driver.start_probe()
-    result = wind_part(fit_part(mesh, options, clock), options, command, clock)
-    return result if target is None else _write(result, target, render, overwrite, clock)
-
-
-@dataclass(frozen=True)
-class Part:
-    """A mesh with all that its windings share: the scalars of its friction field, chart, surface, and its file."""
-
-    mesh: Mesh
-    field: Scalars | None
-    chart: Chart
-    surface: Surface
-    source: Path | None = None
-
-
-def fit_part(mesh: str | PathLike[str] | Mesh, options: Options, clock: Clock, field: Scalars | None = None) -> Part:
-    """Read, open, flatten and fit; field: of a mesh that is no file."""
     with clock.stage("read"):
-        part = mesh if isinstance(mesh, Mesh) else read(mesh, options.component)
-    held = _field(mesh, options.friction) if field is None else field
-    with clock.stage("ends"):
-        opened = annulus(part, ends=options.ends, opening=options.opening)
-    with clock.stage("flatten"):
-        chart = flatten(opened)
-    with clock.stage("fit"):
-        surface = fit(chart, options.tolerance)
-    return Part(part, held, chart, surface, None if isinstance(mesh, Mesh) else Path(mesh))
-
-
-def wind_part(part: Part, options: Options, command: str, clock: Clock) -> Result:
-    """Lay the paths on a part that was fitted with the same options, and assess them."""
-    surface = part.surface
-    with clock.stage("fit"):
-        notes = about_fit(surface, part.chart, options.tolerance, options.worst_fit, options.units)
-        rough: float | Friction = 0.0
-        if isinstance(options.friction, float):
-            rough = options.friction
-        elif part.field is not None:
-            rough = friction_from(surface, part.field.points, part.field.values)
-    chosen = _chosen(surface, options, rough, clock)
-    turns = float(options.revolutions) if chosen is None else chosen.choice
-    with clock.stage("wind"):
-        rims = _rims(surface, options, turns)
-        laid = solve(
-            surface, rims.start, rims.end, family=rims.family, particles=options.particles, friction=rough
-        )  # fmt: skip
-        spaced = None if options.spacing is None else space_out(laid, turns, options.spacing, rough)
-        laid = laid if spaced is None else spaced.paths
-        notes = (*notes, *about_paths(laid), *about_choice(chosen), *about_spacing(spaced, options.units))
-    with clock.stage("assess"):
-        layup = assess(laid, options.band_width)
-        notes = (*notes, *about_layup(layup))
-    return Result(
-        part.mesh, part.chart, layup, options, command, clock.seconds, notes, chosen, spaced, part.source
-    )  # fmt: skip
-
-
-def _rims(surface: Surface, options: Options, turns: float) -> Families:
-    """Where the paths end: on the user's pins, or spread evenly over the rims."""
-    if options.pins is not None:
-        return read_pins(options.pins, surface, turns)
-    return families(surface, options.paths, turns)
-
-
-def _chosen(surface: Surface, options: Options, friction: float | Friction, clock: "Clock") -> Revolutions | None:
-    """The revolutions, where they are to be chosen."""
-    if options.revolutions != AUTO:
-        return None
-    with clock.stage("choose"):
-        return choose_revolutions(surface, paths=options.paths, particles=options.particles, friction=friction)
-
-
-def _field(mesh: str | PathLike[str] | Mesh, friction: float | str) -> Scalars | None:
-    """The friction field of the mesh's file, if one is asked for."""
-    if not isinstance(friction, str):
-        return None
-    if isinstance(mesh, Mesh):
-        raise BadInputError(f"friction is {friction!r} but the mesh is no file; solve(..., friction=...) takes a table")
-    return read_scalars(fspath(mesh), friction.removeprefix(FIELD).strip())
+        source = read_source(mesh, options)
+    result = Result.of(wind_part(fit_part(source, options, clock), options, command, clock))
+    return result if target is None else _write(result, target, render, overwrite, clock)
 
 
 def _folder(out: str | PathLike[str]) -> Path:
@@ -287,12 +177,12 @@ def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: Cloc
             notes = (*notes, Note(missing, warning=True)) if missing else notes
         notes = tuple(note.shown((staging / note.picture).is_file()) for note in notes)
         result = replace(result, seconds=result.seconds | clock.seconds, notes=notes)
-        write_config(staging / CONFIG, out, _told(result, out, render), version())
+        write_config(staging / CONFIG, out, _used(result, out, render), version())
         write_report(staging / "report.json", result.report())
     return result
 
 
-def _told(result: Result, out: Path, render: bool) -> dict[str, object]:
+def _used(result: Result, out: Path, render: bool) -> dict[str, object]:
     """All options as used, for another run like this one."""
     options = asdict(result.options)
     pins = None if result.options.pins is None else Path(result.options.pins)

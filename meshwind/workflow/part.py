@@ -1,0 +1,62 @@
+"""A mesh made ready for winding: read, opened at its ends, flattened and fitted with a surface."""
+
+from dataclasses import dataclass
+from os import PathLike, fspath
+from pathlib import Path
+
+from meshwind.chart import Chart, flatten
+from meshwind.core.errors import BadInputError
+from meshwind.mesh import Mesh, annulus, read
+from meshwind.mesh.io.scalars import Scalars, read_scalars
+from meshwind.surface import Surface, fit
+from meshwind.workflow.clock import Clock
+from meshwind.workflow.options import FIELD, Options
+
+MeshLike = str | PathLike[str] | Mesh
+"""A mesh, or the path of its file."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """A mesh as it was read, the scalars of its friction field if one is used, and its file if it came from one."""
+
+    mesh: Mesh
+    scalars: Scalars | None = None
+    file: Path | None = None
+
+
+@dataclass(frozen=True)
+class Part:
+    """A source with its chart and its surface: what all windings of it share."""
+
+    source: Source
+    chart: Chart
+    surface: Surface
+
+
+def read_source(mesh: MeshLike, options: Options) -> Source:
+    """Read a mesh and, where the friction is a field, its scalars; raises BadInputError where one cannot be read."""
+    file = None if isinstance(mesh, Mesh) else Path(mesh)
+    taken = mesh if isinstance(mesh, Mesh) else read(mesh, options.component)
+    if not isinstance(options.friction, str):
+        return Source(taken, None, file)
+    name = options.friction.removeprefix(FIELD).strip()
+    return Source(taken, read_field(mesh, name, "solve(..., friction=...) takes a table"), file)
+
+
+def read_field(mesh: MeshLike, name: str, instead: str) -> Scalars:
+    """Read a scalar of the mesh's file; raises BadInputError where there is none, with what to give instead."""
+    if isinstance(mesh, Mesh):
+        raise BadInputError(f"{FIELD}{name} is a scalar of a mesh file, but the mesh is no file; {instead}")
+    return read_scalars(fspath(mesh), name)
+
+
+def fit_part(source: Source, options: Options, clock: Clock) -> Part:
+    """Open the mesh at its ends, flatten it and fit its surface."""
+    with clock.stage("ends"):
+        opened = annulus(source.mesh, ends=options.ends, opening=options.opening)
+    with clock.stage("flatten"):
+        chart = flatten(opened)
+    with clock.stage("fit"):
+        surface = fit(chart, options.tolerance)
+    return Part(source, chart, surface)

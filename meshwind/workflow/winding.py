@@ -1,0 +1,86 @@
+"""Wind a fitted part and assess what was laid."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from meshwind.chart import Chart
+from meshwind.core.parsing import AUTO
+from meshwind.layup.layup import Layup, assess
+from meshwind.mesh import Mesh
+from meshwind.path import Paths, solve
+from meshwind.path.friction import Friction, friction_from
+from meshwind.planning.families import Families, families
+from meshwind.planning.pins import read_pins
+from meshwind.planning.revolutions import Revolutions, choose_revolutions
+from meshwind.planning.spacing import Spaced, space_out
+from meshwind.surface import Surface
+from meshwind.workflow.clock import Clock
+from meshwind.workflow.notes import Note, about_choice, about_fit, about_layup, about_paths, about_spacing
+from meshwind.workflow.options import Options
+from meshwind.workflow.part import Part
+
+
+@dataclass(frozen=True, repr=False)
+class Winding:
+    """What every stage made of a part, and what the stages cost: see `meshwind.Result`, which is one with its files."""
+
+    mesh: Mesh
+    chart: Chart
+    layup: Layup
+    options: Options
+    command: str
+    seconds: dict[str, float]
+    notes: tuple[Note, ...] = ()
+    chosen: Revolutions | None = None
+    spaced: Spaced | None = None
+    source: Path | None = None
+
+
+def wind_part(part: Part, options: Options, command: str, clock: Clock) -> Winding:
+    """Lay the paths on a part that was fitted with the same options, and assess them."""
+    surface = part.surface
+    with clock.stage("fit"):
+        notes = about_fit(surface, part.chart, options.tolerance, options.worst_fit, options.units)
+        friction = _friction(part, options)
+    chosen = _chosen(surface, options, friction, clock)
+    revolutions = float(options.revolutions) if chosen is None else chosen.choice
+    with clock.stage("wind"):
+        laid = lay(surface, options, revolutions, friction)
+        spaced = None if options.spacing is None else space_out(laid, revolutions, options.spacing, friction)
+        laid = laid if spaced is None else spaced.paths
+        notes = (*notes, *about_paths(laid), *about_choice(chosen), *about_spacing(spaced, options.units))
+    with clock.stage("assess"):
+        layup = assess(laid, options.band_width)
+        notes = (*notes, *about_layup(layup))
+    source = part.source
+    return Winding(
+        source.mesh, part.chart, layup, options, command, clock.seconds, notes, chosen, spaced, source.file
+    )  # fmt: skip
+
+
+def lay(surface: Surface, options: Options, revolutions: float, friction: float | Friction = 0.0) -> Paths:
+    """Lay the paths between their ends: the user's pins, or points spread evenly over the rims."""
+    ends = _ends(surface, options, revolutions)
+    return solve(surface, ends.start, ends.end, family=ends.family, particles=options.particles, friction=friction)
+
+
+def _ends(surface: Surface, options: Options, revolutions: float) -> Families:
+    if options.pins is not None:
+        return read_pins(options.pins, surface, revolutions)
+    return families(surface, options.paths, revolutions)
+
+
+def _friction(part: Part, options: Options) -> float | Friction:
+    """The coefficient, or the field on the surface."""
+    if isinstance(options.friction, float):
+        return options.friction
+    scalars = part.source.scalars
+    return 0.0 if scalars is None else friction_from(part.surface, scalars.points, scalars.values)
+
+
+def _chosen(surface: Surface, options: Options, friction: float | Friction, clock: Clock) -> Revolutions | None:
+    """The choice of the revolutions, where they are to be chosen."""
+    if options.revolutions != AUTO:
+        return None
+    with clock.stage("choose"):
+        return choose_revolutions(surface, paths=options.paths, particles=options.particles, friction=friction)
