@@ -8,12 +8,27 @@ from meshwind.mesh.geometry.annulus import Annulus
 
 @dataclass(frozen=True)
 class Chart(Kept):
-    """A one-to-one map of an annulus to the periodic rectangle, u in turns (period 1), v in [0, 1].
+    """One-to-one map of an annulus to the periodic rectangle.
 
-    uv (n, 2) is one representative of each vertex; corner_uv (m, 3, 2) holds the corners of each triangle
-    unwrapped, so that a triangle across the seam is whole; flipped counts triangles with area <= 0 (always 0
-    in a chart that `flatten` returns); stretch (m,) is the area scale of each triangle, part to rectangle,
-    divided by its mean.
+    Attributes
+    ----------
+    annulus : Annulus
+        Mesh with two rims that was flattened.
+    uv : ndarray of float, shape (n, 2)
+        One representative of each vertex: u in turns, with period 1, and v in [0, 1].
+    corner_uv : ndarray of float, shape (m, 3, 2)
+        Corners of each triangle with u unwrapped, so that a triangle across the seam is whole.
+    flipped : int
+        Number of triangles without positive area in the rectangle; 0 in a chart from `flatten`.
+    stretch : ndarray of float, shape (m,)
+        Area of each triangle on the part over that in the rectangle, divided by its mean.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> chart = mw.flatten(mw.annulus(mw.read("data/elbow.obj")))
+    >>> chart.flipped
+    0
     """
 
     annulus: Annulus

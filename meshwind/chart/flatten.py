@@ -29,16 +29,47 @@ LEAST_WEIGHT = 1e-2
 
 
 def flatten(annulus: Annulus) -> Chart:
-    """Map the annulus one to one to u in turns and v in [0, 1], v = 0 on the start rim and 1 on the end rim.
+    """Map an annulus one to one to the periodic rectangle.
 
-    v is harmonic between the rims; u is harmonic with natural conditions at the rims and gains one turn across
-    the cut, so the twist between the ends comes out by itself and the cut leaves no trace.  Weights are
-    cotangents where these give an embedding, positive ones otherwise, which always do: the annulus mirrored
-    into a torus is then a discrete one-form embedding (Gortler, Gotsman and Thurston 2006).  Where the map
-    squeezes parts of the surface, weights are divided by the stretch and the systems solved again (Yoshizawa,
-    Belyaev and Seidel 2004), which keeps them positive.  At last v is re-spaced to a constant mean speed and u
-    turned to a canonical place.  Raises BadInputError if a triangle still flips, which only degenerate triangles
-    can bring about.
+    Both coordinates solve a sparse Laplace equation on the mesh.  v is 0 on the start rim and 1 on the end rim; u has
+    natural conditions at the rims and gains one turn across a cut, so that the twist between the ends comes out by
+    itself and the cut leaves no trace.  At last v is spaced to a constant mean speed, and u turned to a canonical
+    position.
+
+    Parameters
+    ----------
+    annulus : Annulus
+        Mesh with two rims, from `annulus`.
+
+    Returns
+    -------
+    Chart
+        Positions of all vertices in the rectangle, without flipped triangles.
+
+    Raises
+    ------
+    BadInputError
+        If a triangle still flips, which only degenerate triangles can bring about.
+
+    Notes
+    -----
+    Weights are cotangents where these give an embedding and positive ones otherwise, which always do: the annulus
+    mirrored into a torus is a discrete one-form embedding [1]_.  Where the map squeezes parts of the surface, weights
+    are divided by the stretch and the systems solved again [2]_, which keeps them positive.
+
+    References
+    ----------
+    .. [1] S. J. Gortler, C. Gotsman, D. Thurston, "Discrete one-forms on meshes and applications to 3D mesh
+       parameterization", Computer Aided Geometric Design 23, 2006.
+    .. [2] S. Yoshizawa, A. Belyaev, H.-P. Seidel, "A fast and simple stretch-minimizing mesh parameterization", Shape
+       Modeling International, 2004.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> chart = mw.flatten(mw.annulus(mw.read("data/elbow.obj")))
+    >>> float(chart.uv[:, 1].min()), float(chart.uv[:, 1].max())
+    (0.0, 1.0)
     """
     if not isinstance(annulus, Annulus):
         raise BadInputError(f"flatten takes an Annulus, not {type(annulus).__name__}; make one with annulus(mesh)")

@@ -67,11 +67,40 @@ class Patch:
 
 
 def read_cad(path: str | PathLike[str], tolerance: float = 1e-7) -> tuple[Surface, ...]:
-    """Read the faces of a STEP or IGES file that close in one direction, in mm, the largest first.
+    """Read surfaces from a STEP or IGES file.
 
-    Each becomes a uniform bicubic surface, periodic in u and with s_u x s_v outward, that lies within `tolerance`
-    times its size of the patch; `error` says how far it is off.  Raises BadInputError where no face is such, with what
-    keeps each from it.
+    Faces that close in one direction are read; each becomes a uniform bicubic surface.  It needs the extra
+    ``meshwind[cad]``.
+
+    Parameters
+    ----------
+    path : str or PathLike
+        File to read.
+    tolerance : float, default 1e-7
+        Largest distance of a surface from its patch, over the size of the surface.
+
+    Returns
+    -------
+    tuple of Surface
+        Surfaces in mm, periodic in u and oriented outwards, the largest first.  `Surface.error` holds how far each is
+        off.
+
+    Raises
+    ------
+    BadInputError
+        If the file cannot be read, or if no face closes in one direction; the message says what keeps each from it.
+
+    Examples
+    --------
+    >>> import subprocess
+    >>> import sys
+    >>> import meshwind as mw
+    >>> result = mw.wind("data/elbow.obj", paths=3, particles=51, units="mm", out="out", render=False)
+    >>> command = [sys.executable, "-m", "meshwind", "export", "out", "--to", "step", "--quiet"]
+    >>> done = subprocess.run(command, check=True)
+    >>> (surface,) = mw.read_cad("out/surface.step")
+    >>> surface.periodic
+    True
     """
     need()
     name = Path(path)

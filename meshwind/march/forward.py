@@ -32,7 +32,31 @@ FINEST, COARSEST = 1e-14, 1e-2
 
 
 class Stop(IntEnum):
-    """Why a march ended; 0 is the full length, anything else comes with advice."""
+    """Why a march ended.
+
+    0 is the full length; every other value has advice on what to do about it.
+
+    Attributes
+    ----------
+    LENGTH : int
+        0: the fibre has the length that was asked for.
+    RIM_START : int
+        1: it reached the start rim, v=0.
+    RIM_END : int
+        2: it reached the end rim, v=1.
+    EDGE : int
+        3: it reached an edge in u of a surface that does not close.
+    LIFTS_OFF : int
+        4: the surface curves away under it, and it would bridge from there.
+    STEP_LIMIT : int
+        5: the march took too many steps.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> mw.Stop.LENGTH.advice
+    'the full length'
+    """
 
     LENGTH = 0
     RIM_START = 1
@@ -43,7 +67,7 @@ class Stop(IntEnum):
 
     @property
     def advice(self) -> str:
-        """What the stop means and what to do about it."""
+        """What the stop means and what to do about it, in one line."""
         return _ADVICE[self]
 
 
@@ -61,12 +85,42 @@ _ADVICE = {
 
 @dataclass(frozen=True)
 class Trace:
-    """A fibre marched forward over a surface: n points, from the start to where it stopped.
+    """Fibre that was marched over a surface, with n points from the start to where it stopped.
 
-    points (n, 3); uv (n, 2), u unwrapped; uv_rate (n, 2) = d(u, v)/ds, the p and q of (3.22); tangent (n, 3) and
-    normal (n, 3), unit, the normal outward; arc_length (n,) from the start; normal_curvature (n,), positive where
-    the surface presses; geodesic_curvature (n,), positive where the fibre turns to its left as seen from outside;
-    stop says why it ended; evaluations counts the surface evaluations.
+    Attributes
+    ----------
+    surface : Surface
+        Surface that the fibre lies on.
+    points : ndarray of float, shape (n, 3)
+        Positions, in the surface's unit.
+    uv : ndarray of float, shape (n, 2)
+        Parametric positions, u in turns and unwrapped.
+    uv_rate : ndarray of float, shape (n, 2)
+        Derivatives of u and v by arc length: p and q of (3.22).
+    tangent : ndarray of float, shape (n, 3)
+        Unit tangents.
+    normal : ndarray of float, shape (n, 3)
+        Outward unit normals of the surface.
+    arc_length : ndarray of float, shape (n,)
+        Length from the start, in the surface's unit.
+    normal_curvature : ndarray of float, shape (n,)
+        Normal curvature of the fibre, one over a length, positive where it presses on the surface.
+    geodesic_curvature : ndarray of float, shape (n,)
+        Geodesic curvature of the fibre, one over a length, positive where it turns to its left as seen from outside.
+    slip : float
+        Ratio of geodesic to normal curvature that was asked for.
+    stop : Stop
+        Why the march ended.
+    evaluations : int
+        Number of surface evaluations.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> import numpy as np
+    >>> helix = mw.trace(mw.shapes.cylinder(1.0, 3.0), start=(0.0, 0.0), direction=0.25 * np.pi, length=2.0)
+    >>> np.allclose(helix.normal_curvature, 0.5, atol=1e-3)
+    True
     """
 
     surface: Surface
@@ -98,7 +152,43 @@ def trace(
     tolerance: float = 1e-12,
     press: Press = "stop",
 ) -> Trace:
-    """March one fibre from start (u, v) over `length`, in the surface's units; see `traces` for the arguments."""
+    """March one fibre from a start in a given direction.
+
+    Parameters
+    ----------
+    surface : Surface
+        Surface to march over.
+    start : array_like of float, shape (2,)
+        Parametric start, u in turns and v in [0, 1].
+    direction : float or array_like of float, shape (2,)
+        Angle from the direction of v, in radians and positive towards +u, or a tangent (du, dv) of any length.
+    length : float
+        Length of the fibre, in the surface's unit.
+    slip, method, step, tolerance, press : optional
+        As for `traces`.
+
+    Returns
+    -------
+    Trace
+        The fibre, up to where it stopped.
+
+    Raises
+    ------
+    BadInputError
+        As for `traces`.
+
+    See Also
+    --------
+    traces : March a batch of fibres.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> sphere = mw.shapes.sphere_band(1.0, polar0=0.5, polar1=2.5)
+    >>> fibre = mw.trace(sphere, start=(0.0, 0.5), direction=1.2, length=1.0)
+    >>> round(float(fibre.arc_length[-1]), 9), fibre.stop.name
+    (1.0, 'LENGTH')
+    """
     point, heading = floats(start, "start", 2), np.atleast_1d(np.asarray(direction, dtype=np.float64))
     if heading.shape not in ((1,), (2,)):
         raise BadInputError(f"direction has shape {heading.shape}; give an angle in radians or a tangent (du, dv)")
@@ -120,18 +210,58 @@ def traces(
     tolerance: float = 1e-12,
     press: Press = "stop",
 ) -> tuple[Trace, ...]:
-    """March a batch of p fibres forward, over all cores; the answers do not depend on the number of threads.
+    """March a batch of fibres from their starts in given directions.
 
-    start (p, 2): u in turns, v in [0, 1].  direction (p,): angle from the direction of v in radians, positive
-    towards +u, or (p, 2): tangents (du, dv) of any length.  length: one, or (p,).  slip: one, or (p,): the fibre's
-    geodesic curvature over its normal curvature, positive to the left as seen from outside; 0 is the geodesic, and
-    where the surface does not press it has no effect.
+    The fibres are spread over all cores; the results do not depend on the number of threads.
 
-    method "adaptive" is of order 8 and keeps each step's local error below tolerance: of the position over the
-    part's size and of the direction in radians.  Its points are its steps or, with `step`, every multiple of it.
-    method "rk4" is the source's, of fixed `step` (the part's size / 1000 by default).  press "stop" ends the path
-    where the surface no longer presses (normal curvature below 0) and it would bridge; "ignore" keeps it on.
-    Rims, edges and the point of lift-off are met to round-off.
+    Parameters
+    ----------
+    surface : Surface
+        Surface to march over.
+    start : array_like of float, shape (p, 2)
+        Parametric starts, u in turns and v in [0, 1].
+    direction : array_like of float, shape (p,) or (p, 2)
+        Angles from the direction of v, in radians and positive towards +u, or tangents (du, dv) of any length.
+    length : float or array_like of float, shape (p,)
+        Lengths of the fibres, in the surface's unit.
+    slip : float or array_like of float, shape (p,), default 0
+        Ratio of geodesic to normal curvature, positive to the left as seen from outside: |slip| is the required
+        friction. 0 gives geodesics.  It has no effect where the surface does not press.
+    method : {"adaptive", "rk4"}, default "adaptive"
+        "adaptive" is of order 8 and controls the error of every step; "rk4" is the classical Runge-Kutta method of
+        fixed steps.
+    step : float, optional
+        With "adaptive" the distance of the points, by default those of its steps; with "rk4" the length of a step, by
+        default the size of the surface over 1000.
+    tolerance : float, default 1e-12
+        Largest error of a step of "adaptive": of the position over the size of the surface, and of the direction in
+        radians.
+    press : {"stop", "ignore"}, default "stop"
+        "stop" ends a fibre where it no longer presses on the surface and would bridge; "ignore" keeps it on the
+        surface.
+
+    Returns
+    -------
+    tuple of Trace
+        The fibres.  They meet rims, edges and the point of lift-off to round-off.
+
+    Raises
+    ------
+    BadInputError
+        If shapes do not belong together, a start lies off the surface or has no tangent plane, or a value is out of
+        range.
+
+    See Also
+    --------
+    solve : Paths between two given ends.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> tube = mw.shapes.cylinder(radius=1.0, length=3.0)
+    >>> fibres = mw.traces(tube, start=[(0.0, 0.0), (0.5, 0.0)], direction=[0.3, 0.6], length=9.0)
+    >>> [fibre.stop.name for fibre in fibres]
+    ['RIM_END', 'RIM_END']
     """
     _check(method, press, step, tolerance)
     at = floats(start, "start", -1, 2)

@@ -47,11 +47,54 @@ def drag(
     tolerance: float = TOLERANCE,
     iterations: int = ITERATIONS,
 ) -> Paths:
-    """Drag one fibre by its ends along start and end (f, 2), parametric; returns one path a frame (f of them).
+    """Drag one fibre by its ends over the surface.
 
-    initial (k, 2): the curve on which it lies before the first frame, straight in (u, v) by default.  bridging:
-    whether the fibre can leave the surface, and so jump over what is lower than it.  The rest as for `solve`.  A frame
-    in which the fibre cannot come to rest has a status other than CONVERGED, and the next starts where that one ended.
+    The ends move slowly, so that the fibre is in equilibrium in every frame.  With friction each frame starts from
+    where the fibre lay in the one before.
+
+    Parameters
+    ----------
+    surface : Surface
+        Surface to drag the fibre over.
+    start, end : array_like of float, shape (f, 2)
+        Parametric positions of both ends in each frame, u in turns and unwrapped, v in [0, 1].
+    particles : int, default 201
+        Number of particles of the path, at least 3.
+    friction : float, Friction, array_like of float or callable, default 0
+        Coefficient of friction, as for `solve`.
+    initial : array_like of float, shape (k, 2), optional
+        Curve in the parametric plane on which the fibre lies before the first frame.  By default a straight line.
+    bridging : bool, default True
+        Whether the fibre can leave the surface, and so jump over what is lower than it.
+    tolerance : float, default 1e-10
+        Largest unbalanced tangential force in equilibrium, over the tension.
+    iterations : int, default 1000
+        Maximum number of iterations per step.
+
+    Returns
+    -------
+    Paths
+        One path per frame.  A frame without equilibrium has a status other than CONVERGED, and the next one starts
+        from where that one ended.
+
+    Raises
+    ------
+    BadInputError
+        If there are not as many positions of the start as of the end, or an argument is out of range.
+
+    See Also
+    --------
+    solve : Paths between fixed ends.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> import numpy as np
+    >>> tube = mw.shapes.cylinder(radius=1.0, length=2.0)
+    >>> turn = np.linspace(0.0, 0.1, 3)
+    >>> frames = mw.drag(tube, start=[(0.0, 0.0)] * 3, end=np.stack([turn, np.ones(3)], axis=1), particles=51)
+    >>> frames.length.round(4)
+    array([2.    , 2.0245, 2.0964])
     """
     first, last = floats(start, "start", -1, 2), floats(end, "end", -1, 2)
     if len(first) != len(last) or not len(first):

@@ -18,9 +18,26 @@ LARGEST = 10.0
 
 @dataclass(frozen=True)
 class Friction:
-    """Coefficients on an even grid, table (rows, columns) over u and v; (1, 1) where the same all over.
+    """Coefficients of friction over a surface.
 
-    Rows run once around a surface that closes in u, without repeating the first; otherwise from edge to edge.
+    Parameters
+    ----------
+    table : ndarray of float, shape (rows, columns)
+        Coefficients on an even grid over u (rows) and v (columns), bilinear in between; (1, 1) where the coefficient
+        is the same everywhere.  Rows run once around a surface that closes in u, without repeating the first one, and
+        otherwise from edge to edge.
+
+    See Also
+    --------
+    friction_from : Friction from scattered values.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> import numpy as np
+    >>> rough = mw.Friction(np.array([[0.1, 0.3], [0.2, 0.4]]))
+    >>> rough.smallest, rough.largest
+    (0.1, 0.4)
     """
 
     table: Floats
@@ -32,17 +49,49 @@ class Friction:
 
     @cached_property
     def largest(self) -> float:
-        """The largest coefficient anywhere."""
+        """The largest coefficient."""
         return float(self.table.max())
 
     @property
     def smallest(self) -> float:
-        """The smallest coefficient anywhere."""
+        """The smallest coefficient."""
         return float(self.table.min())
 
 
 def friction_from(surface: Surface, points: Floats, values: Floats, grid: int = ROWS) -> Friction:
-    """Friction from values (n,) at points (n, 3) on or near the part: weighted by distance among the nearest four."""
+    """Make friction from values at scattered points.
+
+    Between the points, the nearest four are weighted by their inverse distance.
+
+    Parameters
+    ----------
+    surface : Surface
+        Surface that the friction is for.
+    points : array_like of float, shape (n, 3)
+        Points on or near the surface, in its unit.
+    values : array_like of float, shape (n,)
+        Coefficients of friction there, from 0 to 10.
+    grid : int, default 256
+        Number of rows and columns of the table over u and v.
+
+    Returns
+    -------
+    Friction
+        Friction for `solve`, `drag` and others.
+
+    Raises
+    ------
+    BadInputError
+        If shapes do not belong together or a coefficient is not from 0 to 10.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> tube = mw.shapes.cylinder(radius=1.0, length=2.0)
+    >>> rough = mw.friction_from(tube, points=[(1, 0, 0), (1, 0, 2)], values=[0.1, 0.3], grid=16)
+    >>> rough.table.shape, round(rough.largest, 3)
+    ((16, 16), 0.3)
+    """
     from scipy.spatial import cKDTree
 
     tree = cKDTree(floats(points, "points", -1, 3))

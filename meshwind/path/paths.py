@@ -12,7 +12,33 @@ from meshwind.surface.surface import Surface
 
 
 class Status(IntEnum):
-    """How a path ended; 0 is a taut equilibrium, anything else comes with advice."""
+    """How a path ended.
+
+    0 is a taut equilibrium; every other value has advice on what to do about it.
+
+    Attributes
+    ----------
+    CONVERGED : int
+        0: the path is in equilibrium.
+    SLID_OFF_START : int
+        1: the fibre slides off the start rim, v=0.
+    SLID_OFF_END : int
+        2: the fibre slides off the end rim, v=1.
+    UNSTABLE : int
+        3: there is no stable path; the fibre is balanced on a ridge and leaves it to either side.
+    STALLED : int
+        4: the solver stopped before the fibre was in equilibrium.
+    LEFT_CHART : int
+        5: the fibre slides off an open edge of a surface that does not close in u.
+    TOO_COARSE : int
+        6: in equilibrium, but the fibre turns over an edge that is sharper than its particles can follow.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> mw.Status(0).name, mw.Status.CONVERGED.advice
+    ('CONVERGED', 'taut equilibrium')
+    """
 
     CONVERGED = 0
     SLID_OFF_START = 1
@@ -24,7 +50,7 @@ class Status(IntEnum):
 
     @property
     def advice(self) -> str:
-        """What the status means and what to do about it."""
+        """What the status means and what to do about it, in one line."""
         return _ADVICE[self]
 
 
@@ -58,14 +84,50 @@ class Counters:
 
 @dataclass(frozen=True)
 class Paths:
-    """A batch of p taut paths of n particles each on one surface.
+    """Taut paths on one surface: p paths of n particles each.
 
-    points (p, n, 3); uv (p, n, 2) parametric position of the particle or of its foot, u unwrapped;
-    on_surface (p, n); gap (p, n) distance to the surface, 0 where on it; normal (p, n, 3) outward at the
-    particle or its foot; slip (p, n) = |kg| / kn, NaN off the surface and at the two ends; family (p,) +1 or
-    -1; status (p,) of `Status`; residual (p,) largest unbalanced tangential force over the tension, the
-    certificate of equilibrium; friction: the largest coefficient; holding_turns, holding_friction (p,): the turns
-    and the friction that would hold a path that is not at rest, 0 where none was found.
+    Attributes
+    ----------
+    surface : Surface
+        Surface that the paths lie on.
+    points : ndarray of float, shape (p, n, 3)
+        Positions of the particles, in the surface's unit.
+    uv : ndarray of float, shape (p, n, 2)
+        Parametric positions of the particles or of their feet, u in turns and unwrapped.
+    on_surface : ndarray of bool, shape (p, n)
+        Whether a particle touches the surface.
+    gap : ndarray of float, shape (p, n)
+        Distance from the surface, 0 where the particle touches it.
+    normal : ndarray of float, shape (p, n, 3)
+        Outward unit normal at the particle or its foot.
+    slip : ndarray of float, shape (p, n)
+        Required friction |kg|/kn, geodesic over normal curvature: the coefficient of friction that the fibre needs to
+        stay where it is.  NaN off the surface and at the two ends.
+    family : ndarray of int, shape (p,)
+        +1 or -1, the sense of turning.
+    status : ndarray of int, shape (p,)
+        How each path ended, as `Status`.
+    residual : ndarray of float, shape (p,)
+        Largest unbalanced tangential force over the tension, beyond what friction holds: an angle in radians.
+    friction : float
+        Largest coefficient of friction on the surface.
+    counters : Counters
+        Surface evaluations, foot points, block solves and iterations of the whole batch.
+    holding_turns : ndarray of float, shape (p,)
+        For a path that is not in equilibrium: revolutions at which it would be, 0 where none were found.
+    holding_friction : ndarray of float, shape (p,)
+        For a path that is not in equilibrium: friction with which it would be, 0 where none was found.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> import numpy as np
+    >>> cylinder = mw.shapes.cylinder(radius=1.0, length=3.0)
+    >>> paths = mw.solve(cylinder, start=[(0.0, 0.0)], end=[(0.5, 1.0)], particles=101)
+    >>> paths.points.shape
+    (1, 101, 3)
+    >>> np.allclose(paths.length, np.hypot(np.pi, 3.0))  # a helix
+    True
     """
 
     surface: Surface
@@ -88,22 +150,41 @@ class Paths:
 
     @cached_property
     def length(self) -> Floats:
-        """Length (p,) of each fibre, in the surface's units: fourth order in the particles' distance where it touches.
+        """Length (p,) of each fibre, in the surface's unit, of fourth order in the distance of the particles.
 
-        The polyline through its particles is shorter by the chords' share, h^2 k^2 / 24 at distance h and curvature k.
+        The polyline through the particles is shorter, by h^2 k^2 / 24 of itself where particles are h apart on a fibre
+        of curvature k.
         """
         return frozen(fibre_lengths(self.surface, self.points, self.uv, self.on_surface))
 
     @property
     def sharpest_turn(self) -> Floats:
-        """Largest angle (p,), in radians, that the surface turns within one segment of a path.
+        """Largest angle (p,), in radians, by which the surface turns within one segment of each path.
 
-        Above EDGE the segment cuts an edge, and the path is right to the particles' spacing only.
+        Above 1.2 the segment cuts an edge, and the path is right to the distance of its particles only.
         """
         return sharpest_turn(self.normal, self.on_surface)
 
     def advice(self, path: int) -> str:
-        """What became of a path and, where it does not hold, what would hold it."""
+        """Say what became of a path and, where it is not in equilibrium, what would help.
+
+        Parameters
+        ----------
+        path : int
+            Number of the path, counted from 0.
+
+        Returns
+        -------
+        str
+            One line.
+
+        Examples
+        --------
+        >>> import meshwind as mw
+        >>> barrel = mw.shapes.revolution(lambda z: 1 - 0.3 * (z - 1) ** 2, 0.0, 2.0)
+        >>> mw.solve(barrel, start=[(0.0, 0.0)], end=[(0.3, 1.0)], particles=51).advice(0)
+        'taut equilibrium'
+        """
         status = Status(int(self.status[path]))
         ways = []
         if status in (Status.CONVERGED, Status.TOO_COARSE):

@@ -67,14 +67,69 @@ def solve(
     tolerance: float = TOLERANCE,
     iterations: int = ITERATIONS,
 ) -> Paths:
-    """Lay taut paths between fixed ends, bridging hollows where the fibre lifts off.
+    """Lay taut paths between fixed ends.
 
-    start, end (p, 2): parametric end points, u unwrapped: its change is the number of revolutions (6.1).
-    particles: of each path; None for as many as bring the lengths' relative error to `accuracy`, by its estimate.
-    friction: a coefficient, a table of them over u and v, or a function of points (n, 3); it holds to the starting
-    curves.  initial (p, k, 2): starting curves, straight lines in (u, v) by default (6.2).  bridging: whether the
-    fibre can leave the surface.  tolerance: largest unbalanced tangential force over the tension.  iterations: most
-    steps a path at any number of particles.  Returns `Paths`, each with its status and residual.
+    The fibre touches the surface where it presses on it and bridges hollows in a straight line.
+
+    Parameters
+    ----------
+    surface : Surface
+        Surface to lay the paths on.
+    start, end : array_like of float, shape (p, 2)
+        Parametric end points, u in turns and unwrapped: u of the end minus u of the start is the number of
+        revolutions.  v is in [0, 1].
+    particles : int or None, default 401
+        Number of particles per path, at least 3.  None takes as many as the lengths need for `accuracy`.
+    family : array_like of int, shape (p,), optional
+        +1 or -1 for each path.  By default the sense of turning.
+    friction : float, Friction, array_like of float or callable, default 0
+        Coefficient of friction: one number, a table over u and v, or a function from points (n, 3) to coefficients
+        (n,). Friction acts from the starting curves: a particle that never slips stays on its starting curve.
+    initial : array_like of float, shape (p, k, 2), optional
+        Starting curves in the parametric plane.  By default straight lines from start to end.
+    bridging : bool, default True
+        Whether the fibre can leave the surface.
+    accuracy : float, default 1e-5
+        Relative error of the lengths for which particles are chosen where `particles` is None.
+    tolerance : float, default 1e-10
+        Largest unbalanced tangential force in equilibrium, over the tension.
+    iterations : int, default 1000
+        Maximum number of iterations per path, at any number of particles.
+
+    Returns
+    -------
+    Paths
+        The paths, each with its status and residual.
+
+    Raises
+    ------
+    BadInputError
+        If shapes do not belong together, an end point lies outside of v in [0, 1], a path has no length, or a number
+        is out of range.
+
+    See Also
+    --------
+    families : End points that are spread evenly over the rims.
+    drag : A path whose ends move.
+    trace : A path from one end in a given direction.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> import numpy as np
+    >>> barrel = mw.shapes.revolution(lambda z: 1 - 0.3 * (z - 1) ** 2, 0.0, 2.0)
+    >>> paths = mw.solve(barrel, start=[(0.0, 0.0)], end=[(0.25, 1.0)], particles=101)
+    >>> bool(paths.residual[0] <= 1e-10)
+    True
+
+    A fibre that starts on a wavy curve is held there, in part, by friction:
+
+    >>> t = np.linspace(0.0, 1.0, 101)
+    >>> wavy = np.stack([0.2 * t, t + 0.03 * np.sin(2 * np.pi * t)], axis=1)
+    >>> tube = mw.shapes.cylinder(radius=1.0, length=4.0)
+    >>> held = mw.solve(tube, [(0.0, 0.0)], [(0.2, 1.0)], initial=[wavy], particles=101, friction=0.2)
+    >>> bool(np.nanmax(held.slip) <= 0.2 + 1e-6)
+    True
     """
     if particles is not None:
         check_count(particles, "particles", 3)

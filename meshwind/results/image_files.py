@@ -47,11 +47,39 @@ def write_image(path: Path, image: ArrayLike, units: str = "") -> None:
 
 
 def read_image(path: str | Path) -> Surface:
-    """The surface of an image file that `write_image` or `write_chart_image` wrote.
+    """Read the surface from an image file of a run.
 
     A PNG holds each coordinate to 1/131070 of the part's range: enough to show and to exchange a shape, but its
-    curvature is rough.  Wind from an NPZ, which holds the numbers in full.  Raises BadInputError for a file that
-    cannot be read or is no such image.
+    curvature is rough.  Wind from an NPZ file, which holds the numbers in full.
+
+    Parameters
+    ----------
+    path : str or Path
+        File `chart.png` of a run, or an .npz file that holds the same image as array `image`.
+
+    Returns
+    -------
+    Surface
+        Surface, periodic in u, in the unit of the run's mesh.
+
+    Raises
+    ------
+    BadInputError
+        If the file cannot be read or holds no such image.
+
+    See Also
+    --------
+    from_image : The same from an array.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> import numpy as np
+    >>> result = mw.wind("data/elbow.obj", paths=3, particles=51, out="out", render=False)
+    >>> surface = mw.read_image("out/chart.png")
+    >>> uv = [(0.1, 0.2), (0.6, 0.7)]
+    >>> np.allclose(surface.points(uv), result.surface.points(uv), atol=1e-3 * surface.size)
+    True
     """
     path = Path(path)
     if not path.is_file():

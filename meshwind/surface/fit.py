@@ -51,11 +51,36 @@ class _Fitted:
 
 
 def fit(chart: Chart, tolerance: float = 1e-5) -> Surface:
-    """Fit a bicubic surface with the coarsest control net that meets `tolerance` or that the mesh supports.
+    """Fit a bicubic surface to a flattened mesh.
 
-    tolerance: largest distance of a vertex to the surface over the diagonal of the mesh.  The vertices are
-    fitted, not samples of the facets: vertices lie on the true part, facets do not.  The surface carries its
-    error both ways in `Surface.error`, in the mesh's units.
+    The control net is the coarsest one that meets the tolerance or that the mesh supports.  The vertices are fitted,
+    not samples of the facets: vertices lie on the true part, facets do not.
+
+    Parameters
+    ----------
+    chart : Chart
+        Flattened mesh, from `flatten`.
+    tolerance : float, default 1e-5
+        Largest distance of a vertex from the surface, over the diagonal of the mesh's bounding box.
+
+    Returns
+    -------
+    Surface
+        Surface in the mesh's unit, periodic in u, with the error of the fit in both directions as `Surface.error`.  It
+        may miss the tolerance where the mesh does not support a finer net.
+
+    Raises
+    ------
+    BadInputError
+        If `chart` is not a Chart or `tolerance` is not above 0.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> chart = mw.flatten(mw.annulus(mw.read("data/elbow.obj")))
+    >>> surface = mw.fit(chart, tolerance=1e-4)
+    >>> surface.error.to_surface_max <= 1e-4 * surface.error.diagonal
+    True
     """
     if not isinstance(chart, Chart):
         raise BadInputError(f"fit takes a Chart, not {type(chart).__name__}; make one with flatten(annulus)")

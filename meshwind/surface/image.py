@@ -14,11 +14,37 @@ LEAST = 4
 
 
 def surface_image(surface: Surface, width: int, height: int) -> Floats:
-    """Sample a surface as an image (height, width, 3) in its own units.
+    """Sample a surface as an image, whose red, green and blue are x, y and z.
 
-    Column c is u = c / width, so that the image repeats from its right edge to its left one; row r is
-    v = r / (height - 1), so that the first row is one end and the last row the other.  Raises BadInputError for
-    fewer than 4 pixels in either direction or a surface that does not close in u.
+    Column c holds u = c / width, so that the right edge continues at the left one; row r holds v = r / (height - 1),
+    so that the first row is the start rim and the last row the end rim.
+
+    Parameters
+    ----------
+    surface : Surface
+        Surface that closes in u.
+    width, height : int
+        Number of pixels, at least 4 each.
+
+    Returns
+    -------
+    ndarray of float, shape (height, width, 3)
+        Positions, in the surface's unit.
+
+    Raises
+    ------
+    BadInputError
+        If the surface does not close in u or there are fewer than 4 pixels in either direction.
+
+    See Also
+    --------
+    from_image : The inverse.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> mw.surface_image(mw.shapes.cylinder(1.0, 3.0), width=64, height=32).shape
+    (32, 64, 3)
     """
     if not surface.periodic:
         raise BadInputError("an image wraps in u and this surface does not close; give one that is periodic in u")
@@ -30,10 +56,39 @@ def surface_image(surface: Surface, width: int, height: int) -> Floats:
 
 
 def from_image(image: ArrayLike) -> Surface:
-    """The bicubic surface through the pixels of an image (height, width, 3), laid out as by `surface_image`.
+    """Interpolate the pixels of an image by a bicubic surface.
 
-    It has one span a pixel in u and one between two rows in v; the error falls with the fourth power of the pixels.
-    Raises BadInputError for another shape, fewer than 4 pixels in either direction, or values that are not finite.
+    The surface has one span a pixel in u and one between two rows in v; its error falls with the fourth power of the
+    number of pixels.
+
+    Parameters
+    ----------
+    image : array_like of float, shape (height, width, 3)
+        Positions laid out as by `surface_image`, at least 4 x 4.
+
+    Returns
+    -------
+    Surface
+        Surface through all pixels, periodic in u, in the unit of the image.
+
+    Raises
+    ------
+    BadInputError
+        If the image has another shape, too few pixels, or values that are not finite.
+
+    See Also
+    --------
+    surface_image : The inverse.
+    read_image : Read an image file that a run has written.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> import numpy as np
+    >>> cone = mw.shapes.cone(2.0, 1.0, 3.0)
+    >>> again = mw.from_image(mw.surface_image(cone, 128, 9))
+    >>> np.allclose(again.points([(0.1, 0.2)]), cone.points([(0.1, 0.2)]), atol=1e-6)
+    True
     """
     pixels = floats(image, "image", -1, -1, 3)
     height, width = pixels.shape[:2]

@@ -18,10 +18,24 @@ DEGREE = 3
 
 @dataclass(frozen=True)
 class FitError:
-    """How far a fitted surface and its mesh lie apart, in the mesh's units.
+    """Distances between a fitted surface and its mesh.
 
-    to_surface: distances of the mesh's own vertices to the surface; to_mesh: distances of a dense sample of
-    the surface to the mesh's facets.  relative_max is the larger maximum over the mesh's diagonal.
+    Attributes
+    ----------
+    to_surface_rms, to_surface_max : float
+        Root mean square and maximum of the distances from the mesh's own vertices to the surface, in the mesh's unit.
+    to_mesh_rms, to_mesh_max : float
+        Root mean square and maximum of the distances from a dense sample of the surface to the mesh's facets, in the
+        mesh's unit.
+    diagonal : float
+        Diagonal of the mesh's bounding box, in the mesh's unit.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> surface = mw.fit(mw.flatten(mw.annulus(mw.read("data/elbow.obj"))))
+    >>> surface.error.relative_max < 1e-3
+    True
     """
 
     to_surface_rms: float
@@ -32,26 +46,54 @@ class FitError:
 
     @property
     def rms(self) -> float:
-        """The larger of the two root mean squares."""
+        """The larger of the two root mean squares, in the mesh's unit."""
         return max(self.to_surface_rms, self.to_mesh_rms)
 
     @property
     def max(self) -> float:
-        """The larger of the two maxima."""
+        """The larger of the two maxima, in the mesh's unit."""
         return max(self.to_surface_max, self.to_mesh_max)
 
     @property
     def relative_max(self) -> float:
-        """`max` over the diagonal of the mesh's bounding box."""
+        """The larger of the two maxima, over the diagonal of the mesh's bounding box."""
         return self.max / self.diagonal
 
 
 @dataclass(frozen=True)
 class Surface(Kept):
-    """A uniform bicubic B-spline surface s(u, v) with u in turns and v in [0, 1] from end to end.
+    """Uniform bicubic B-spline surface s(u, v), with u in turns and v in [0, 1] from end to end.
 
-    control_points (nu, nv, 3); with `periodic` u has nu spans over [0, 1), otherwise nu - 3; v has nv - 3.
-    s_u x s_v points outward.  `error` is the fit's certificate, None for an analytic shape.
+    All surfaces are of this type: those that `fit` makes from a mesh, the analytic ones of `shapes`, and those read
+    from images and CAD files.  It is immutable.
+
+    Parameters
+    ----------
+    control_points : array_like of float, shape (nu, nv, 3)
+        Control net, in the unit of the part, at least 4 x 4.  s_u x s_v must point out of the part.
+    periodic : bool, default True
+        Whether the surface closes in u.  It has nu spans over u in [0, 1) if so, otherwise nu - 3; v has nv - 3.
+    error : FitError, optional
+        Error of the fit.  None, the default, for a surface that was not fitted to a mesh.
+
+    Raises
+    ------
+    BadInputError
+        If the control net has another shape, is too small, or holds values that are not finite.
+
+    See Also
+    --------
+    fit : Fit a surface to a flattened mesh.
+    shapes : Analytic surfaces.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> surface = mw.shapes.cylinder(radius=1.0, length=3.0)
+    >>> surface.spans
+    (128, 8)
+    >>> surface.points([(0.25, 0.5)]).round(6) + 0.0
+    array([[0. , 1. , 1.5]])
     """
 
     control_points: Floats
@@ -72,7 +114,7 @@ class Surface(Kept):
 
     @cached_property
     def net(self) -> Floats:
-        """Control points as the kernels want them: wrapped by three rows in u where periodic."""
+        """Control points as the kernels take them: extended by three rows in u where the surface is periodic."""
         points = self.control_points
         return frozen(np.concatenate([points, points[:DEGREE]]) if self.periodic else points)
 
@@ -80,7 +122,8 @@ class Surface(Kept):
     def knots(self) -> tuple[Floats, Floats]:
         """Knot vectors of u and v, uniform; the basis is that of `scipy.interpolate.BSpline`.
 
-        In u the net is `net`, that is the control points with the first three repeated where periodic.
+        In u the control points that go with them are `net`: the first three are repeated where the surface is
+        periodic.
         """
         return tuple(frozen(np.arange(-DEGREE, n + DEGREE + 1) / n) for n in self.spans)  # type: ignore[return-value]
 
@@ -91,7 +134,7 @@ class Surface(Kept):
 
     @cached_property
     def tree(self) -> SearchTree:
-        """The search tree for foot points; built on first use."""
+        """Search tree for foot points, built on first use."""
         return SearchTree(*map(frozen, tree.build(self.spline)))
 
     @property
@@ -101,37 +144,88 @@ class Surface(Kept):
 
     @property
     def untreed(self) -> Body:
-        """The body without its search tree, for paths that do not leave the surface."""
+        """The surface as the contact kernels take it, without a search tree: for paths that cannot leave it."""
         return Body(self.spline, NO_TREE, self.size)
 
     @cached_property
     def middle(self) -> Floats:
-        """Mean of the control points (3,)."""
+        """Mean (3,) of the control points, in the surface's unit."""
         return frozen(self.control_points.reshape(-1, 3).mean(axis=0))
 
     @cached_property
     def centred(self) -> "Surface":
-        """The surface about its own middle: kernels that work there lose no digits far from the origin."""
+        """The surface moved to its own middle, where kernels lose no digits far from the origin."""
         return Surface(self.control_points - self.middle, self.periodic)
 
     @cached_property
     def size(self) -> float:
-        """Diagonal of the control net's bounding box: the length that tolerances are relative to."""
+        """Diagonal of the control net's bounding box, the length that tolerances are relative to."""
         return float(np.linalg.norm(np.ptp(self.control_points.reshape(-1, 3), axis=0)))
 
     def frames(self, uv: ArrayLike) -> Floats:
-        """Position and derivatives (n, 6, 3) in the order s, s_u, s_v, s_uu, s_uv, s_vv at uv (n, 2)."""
+        """Evaluate position and derivatives.
+
+        Parameters
+        ----------
+        uv : array_like of float, shape (n, 2)
+            Parametric points: u in turns, wrapped where the surface is periodic, and v in [0, 1].
+
+        Returns
+        -------
+        ndarray of float, shape (n, 6, 3)
+            Rows s, s_u, s_v, s_uu, s_uv, s_vv of each point, in the surface's unit (u and v have none).
+
+        Examples
+        --------
+        >>> import meshwind as mw
+        >>> mw.shapes.cylinder(1.0, 3.0).frames([(0.25, 0.5)])[0, 2].round(6) + 0.0  # s_v
+        array([0., 0., 3.])
+        """
         where = floats(uv, "uv", -1, 2)
         out = np.empty((len(where), 6, 3))
         spread(evaluate.frames, len(where), 2000, self.spline, where, out)
         return out
 
     def points(self, uv: ArrayLike) -> Floats:
-        """Positions (n, 3) at uv (n, 2), in the surface's units."""
+        """Evaluate positions.
+
+        Parameters
+        ----------
+        uv : array_like of float, shape (n, 2)
+            Parametric points, as for `frames`.
+
+        Returns
+        -------
+        ndarray of float, shape (n, 3)
+            Positions, in the surface's unit.
+
+        Examples
+        --------
+        >>> import meshwind as mw
+        >>> mw.shapes.cylinder(1.0, 3.0).points([(0.5, 1.0)]).round(6) + 0.0
+        array([[-1.,  0.,  3.]])
+        """
         return self.frames(uv)[:, 0]
 
     def normals(self, uv: ArrayLike) -> Floats:
-        """Outward unit normals (n, 3) at uv (n, 2)."""
+        """Evaluate unit normals.
+
+        Parameters
+        ----------
+        uv : array_like of float, shape (n, 2)
+            Parametric points, as for `frames`.
+
+        Returns
+        -------
+        ndarray of float, shape (n, 3)
+            Unit normals that point outwards; zero where the surface has no tangent plane.
+
+        Examples
+        --------
+        >>> import meshwind as mw
+        >>> mw.shapes.cylinder(1.0, 3.0).normals([(0.25, 0.5)]).round(6) + 0.0
+        array([[0., 1., 0.]])
+        """
         frames = self.frames(uv)
         normal = np.cross(frames[:, 1], frames[:, 2])
         size = np.linalg.norm(normal, axis=1, keepdims=True)

@@ -8,13 +8,30 @@ from meshwind.mesh.geometry.mesh import Mesh
 
 @dataclass(frozen=True)
 class Annulus(Kept):
-    """A mesh of genus 0 with exactly two boundary loops, outward oriented.
+    """Mesh of genus 0 with exactly two boundary loops, its rims, oriented outwards.
 
-    vertices (n, 3) and faces (m, 3) are the trimmed mesh; rims are the two loops of vertex indices, the start
-    (v=0) and the end (v=1), both ordered in the sense of growing u (counterclockwise as seen along the axis
-    from the end towards the start, so that s_u x s_v points outward); trusted (n,) bool is False at vertices
-    that trimming made, which lie on the flat facets rather than on the part; ends says in words how the ends
-    were chosen.
+    Attributes
+    ----------
+    mesh : Mesh
+        Mesh that was opened.
+    vertices : ndarray of float, shape (n, 3)
+        Positions, in the mesh's unit.
+    faces : ndarray of int, shape (m, 3)
+        Vertices of each triangle.
+    rims : tuple of two ndarray of int
+        Vertices of the start rim (v=0) and of the end rim (v=1), in the sense of growing u: counterclockwise as seen
+        along the axis from the end towards the start, so that s_u x s_v points outwards.
+    trusted : ndarray of bool, shape (n,)
+        False for vertices that trimming has made, which lie on the flat facets rather than on the part.
+    ends : str
+        How the ends were chosen, in words.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> opened = mw.annulus(mw.read("data/elbow.obj"))
+    >>> len(opened.rims)
+    2
     """
 
     mesh: Mesh

@@ -9,10 +9,29 @@ from meshwind.core.cast import Floats, Ints, Kept
 
 @dataclass(frozen=True)
 class Mesh(Kept):
-    """A triangle mesh, repaired: manifold, one component, one orientation, outward.
+    """Triangle mesh of a part: manifold, in one piece, oriented outwards.
 
-    vertices (n, 3) in the units of the file; faces (m, 3) indices from 0; repairs says in words what was
-    changed; read_vertices and read_faces count what the file held.
+    `read` makes one and repairs it.  A mesh that is built from arrays must be sound already.
+
+    Parameters
+    ----------
+    vertices : ndarray of float, shape (n, 3)
+        Positions, in the unit of the file.
+    faces : ndarray of int, shape (m, 3)
+        Vertices of each triangle, counted from 0, counterclockwise as seen from outside.
+    name : str, default "mesh"
+        Name for titles and messages.
+    repairs : tuple of str, optional
+        What was changed, in words.
+    read_vertices, read_faces : int, default 0
+        What the file held before it was repaired.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> mesh = mw.read("data/elbow.obj")
+    >>> mesh.vertices.shape[1], mesh.faces.shape[1], mesh.name
+    (3, 3, 'elbow.obj')
     """
 
     vertices: Floats
@@ -24,5 +43,5 @@ class Mesh(Kept):
 
     @property
     def diagonal(self) -> float:
-        """Length of the bounding box's diagonal, in the mesh's units."""
+        """Diagonal of the bounding box, in the mesh's unit."""
         return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))

@@ -19,19 +19,40 @@ _FLAT = 1e-6  # volume over area^(3/2): 0.094 for a ball, 6e-3 for a rod a thous
 
 
 def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Annulus:
-    """Choose the two ends of a repaired mesh and trim it to them.
+    """Open a mesh at its two ends.
 
-    ends: 'auto', a model axis 'x', 'y' or 'z', two points 'x,y,z x,y,z' in the mesh's units, or two open rims
-    'loops i j' by their numbers, 0 the longest.  opening: the radius of the hole cut about each pole, in the
-    mesh's units; by default 0.4 of the part's mean radius.  Open rims are ends as they are.
+    With ends="auto" the ends are the two largest open rims, the longer one first.  Where there is only one, it comes
+    first, and the pole across from it second.  A closed part gets two poles on its axis, the fuller end of the part
+    first.  With an axis the start is the end with the lower coordinate, with two points it is the first one.  An end
+    that is hollow like a cup is cut at its lip, and its lining is dropped.
 
-    With 'auto' the ends are the two largest open rims, the longer one first; where there is but one, it comes
-    first and the pole across it second; a closed part gets poles on its axis, the fuller end of the part
-    first.  With an axis the start is the end with the lower coordinate, with points the first one.  An end
-    that is hollow like a cup is cut at its lip, and its lining dropped.
+    Parameters
+    ----------
+    mesh : Mesh
+        Repaired mesh of a part like a tube or a closed body.
+    ends : str, default "auto"
+        Where the ends are: "auto", a model axis "x", "y" or "z", two points "x,y,z x,y,z" in the mesh's unit, or two
+        open rims "loops i j" by their numbers, 0 being the longest.
+    opening : float, optional
+        Radius of the hole that is cut about each pole, in the mesh's unit.  By default 0.4 of the part's mean radius.
+        Open rims are ends as they are.
 
-    Raises BadInputError where the part is no tube and no blob, where an end cannot be opened, or where `ends`
-    or `opening` cannot be used.
+    Returns
+    -------
+    Annulus
+        Mesh with exactly two rims.
+
+    Raises
+    ------
+    BadInputError
+        If the part is flat or has handles, if an end cannot be opened, or if `ends` or `opening` cannot be used.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> opened = mw.annulus(mw.read("data/tank.ply"), opening=15.0)
+    >>> [len(rim) > 3 for rim in opened.rims]
+    [True, True]
     """
     if not isinstance(mesh, Mesh):
         raise BadInputError(f"mesh is of type {type(mesh).__name__}: give a Mesh, as read('part.stl') returns it")
