@@ -13,7 +13,7 @@ from scipy.optimize import root
 from comparison.attempt import Attempt, Outcome
 from comparison.problem import Problem
 from meshwind.core.cast import Floats
-from meshwind.march.forward import Stop, trace
+from meshwind.march import Stop, trace
 from meshwind.march.geodesic_equation import rates
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV
 from meshwind.surface.surface import Surface

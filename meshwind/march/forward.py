@@ -5,8 +5,6 @@ where they touch, and a planner's tool of its own: with a constant slip, kg = sl
 geodesic by as much as a friction of |slip| can hold (3.12).
 """
 
-from dataclasses import dataclass
-from enum import IntEnum
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -16,6 +14,7 @@ from meshwind.core.cast import Floats, Ints, floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.threads import spread
 from meshwind.march.march import EVALUATIONS, ROWS, RUNNING, STOP, march_all
+from meshwind.march.traced import Stop, Trace
 from meshwind.surface.evaluate import Spline
 from meshwind.surface.surface import Surface
 
@@ -29,115 +28,6 @@ LIMIT = 1_000_000
 RK4_STEP = 1e-3
 """The fixed step over the part's size, where none is given."""
 FINEST, COARSEST = 1e-14, 1e-2
-
-
-class Stop(IntEnum):
-    """Why a march ended.
-
-    0 is the full length; every other value has advice on what to do about it.
-
-    Attributes
-    ----------
-    LENGTH : int
-        0: the fibre has the length that was asked for.
-    RIM_START : int
-        1: it reached the start rim, v=0.
-    RIM_END : int
-        2: it reached the end rim, v=1.
-    EDGE : int
-        3: it reached an edge in u of a surface that does not close.
-    LIFTS_OFF : int
-        4: the surface curves away under it, and it would bridge from there.
-    STEP_LIMIT : int
-        5: the march took too many steps.
-
-    Examples
-    --------
-    >>> import meshwind as mw
-    >>> mw.Stop.LENGTH.advice
-    'the full length'
-    """
-
-    LENGTH = 0
-    RIM_START = 1
-    RIM_END = 2
-    EDGE = 3
-    LIFTS_OFF = 4
-    STEP_LIMIT = 5
-
-    @property
-    def advice(self) -> str:
-        """What the stop means and what to do about it, in one line."""
-        return _ADVICE[self]
-
-
-_ADVICE = {
-    Stop.LENGTH: "the full length",
-    Stop.RIM_START: "the fibre reached the start rim (v=0): to stay on the part, start at a larger angle from the axis",
-    Stop.RIM_END: "the fibre reached the end rim (v=1): to stay on the part, start at a larger angle from the axis",
-    Stop.EDGE: "the fibre reached an edge in u (u=0 or u=1): start further inside, or in another direction",
-    Stop.LIFTS_OFF: "the surface curves away under the fibre, which would bridge from here: change the direction, or "
-    'march on regardless with press="ignore"',
-    Stop.STEP_LIMIT: "too many steps, or none short enough: ask for a shorter length or a larger tolerance or step, "
-    "and keep away from poles, where the surface has no tangent plane",
-}
-
-
-@dataclass(frozen=True)
-class Trace:
-    """Fibre that was marched over a surface, with n points from the start to where it stopped.
-
-    Attributes
-    ----------
-    surface : Surface
-        Surface that the fibre lies on.
-    points : ndarray of float, shape (n, 3)
-        Positions, in the surface's unit.
-    uv : ndarray of float, shape (n, 2)
-        Parametric positions, u in turns and unwrapped.
-    uv_rate : ndarray of float, shape (n, 2)
-        Derivatives of u and v by arc length: p and q of (3.22).
-    tangent : ndarray of float, shape (n, 3)
-        Unit tangents.
-    normal : ndarray of float, shape (n, 3)
-        Outward unit normals of the surface.
-    arc_length : ndarray of float, shape (n,)
-        Length from the start, in the surface's unit.
-    normal_curvature : ndarray of float, shape (n,)
-        Normal curvature of the fibre, one over a length, positive where it presses on the surface.
-    geodesic_curvature : ndarray of float, shape (n,)
-        Geodesic curvature of the fibre, one over a length, positive where it turns to its left as seen from outside.
-    slip : float
-        Ratio of geodesic to normal curvature that was asked for.
-    stop : Stop
-        Why the march ended.
-    evaluations : int
-        Number of surface evaluations.
-
-    Examples
-    --------
-    >>> import meshwind as mw
-    >>> import numpy as np
-    >>> helix = mw.trace(mw.shapes.cylinder(1.0, 3.0), start=(0.0, 0.0), direction=0.25 * np.pi, length=2.0)
-    >>> np.allclose(helix.normal_curvature, 0.5, atol=1e-3)
-    True
-    """
-
-    surface: Surface
-    points: Floats
-    uv: Floats
-    uv_rate: Floats
-    tangent: Floats
-    normal: Floats
-    arc_length: Floats
-    normal_curvature: Floats
-    geodesic_curvature: Floats
-    slip: float
-    stop: Stop
-    evaluations: int
-
-    def __len__(self) -> int:
-        return len(self.points)
 
 
 def trace(
