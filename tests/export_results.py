@@ -8,10 +8,10 @@ from layup_shapes import bridged, cylinder, helices
 from meshwind.layup.layup import assess
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.path.paths import Paths
-from meshwind.results.maps import grid
 from meshwind.results.reading import Results, read_results
 from meshwind.results.report import report, write_report
 from meshwind.results.write import write_files
+from meshwind.surface.grid import grid
 
 
 def leave(folder: Path, paths: Paths, units: str = "mm") -> Results:

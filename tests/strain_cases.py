@@ -15,8 +15,10 @@ import meshwind as mw
 from meshwind.layup.layup import assess
 from meshwind.mesh import mesh_from
 from meshwind.path import Paths
-from meshwind.results.maps import distance_to_mesh, grid, maps
+from meshwind.results.maps import maps
 from meshwind.surface import Surface, shapes
+from meshwind.surface.deviation import Triangles
+from meshwind.surface.grid import grid
 
 Figures = list[float]
 
@@ -45,7 +47,7 @@ def laid(surface: Surface, friction: float = 0.0, turns: tuple[float, ...] = (0.
 def fitted() -> Figures:
     vertices, faces = tube(lambda z: 1.0 + 0.2 * np.sin(z), around=10, along=8)
     surface = mw.fit(mw.flatten(mw.annulus(mesh_from(vertices, faces))))
-    off = distance_to_mesh(surface.points([(0.1, 0.5), (0.7, 0.2)]), vertices, faces)
+    off = Triangles(vertices, faces).distances(surface.points([(0.1, 0.5), (0.7, 0.2)]))
     assert surface.error is not None
     return [surface.error.relative_max, *off.tolist()]
 

@@ -14,8 +14,8 @@ from meshwind.export.elements import on_crossings, regular
 from meshwind.export.fibers import FILES, write_fibers
 from meshwind.export.plies import plies
 from meshwind.layup.coverage import coverage
-from meshwind.results.maps import grid
-from meshwind.results.winding_angle import winding_angle
+from meshwind.layup.direction import winding_angle
+from meshwind.surface.grid import grid
 
 
 @pytest.mark.parametrize("name", FILES)

@@ -14,9 +14,9 @@ from scipy.interpolate import BSpline
 from meshwind.layup.layup import Layup, assess
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.path.lengths import bridges, lengths
-from meshwind.results.maps import grid
 from meshwind.results.report import plain, report, write_report
 from meshwind.results.write import write_files
+from meshwind.surface.grid import grid
 
 LAID = {
     "bridged": assess(bridged()),

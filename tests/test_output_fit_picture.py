@@ -20,8 +20,8 @@ from meshwind.pictures import driver
 from meshwind.pictures.fit_scene import fit_scene
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
-from meshwind.results.apart import Apart, apart
 from meshwind.surface import shapes
+from meshwind.surface.deviation import Deviation, deviation
 from meshwind.workflow.notes import FIT_ERROR, Note
 
 AROUND, ALONG, HEIGHT = 48, 40, 4.0
@@ -51,9 +51,9 @@ def outward(turn: float) -> Floats:
 def test_regions_are_found_from_the_worst_on_with_their_distances() -> None:
     bumps = {row(0.1, 1.0): 0.3, row(0.5, 2.0): 0.5, row(0.8, 3.0): 0.2, row(0.3, 3.0): 0.1}
     surface, opened = bumped(bumps)
-    found = apart(surface, opened)
-    assert [one.away for one in found.places] == pytest.approx([0.5, 0.3, 0.2], abs=1e-5)
-    for one, (turn, z, out) in zip(found.places, [(0.5, 2.0, 0.5), (0.1, 1.0, 0.3), (0.8, 3.0, 0.2)], strict=True):
+    found = deviation(surface, opened)
+    assert [one.distance for one in found.regions] == pytest.approx([0.5, 0.3, 0.2], abs=1e-5)
+    for one, (turn, z, out) in zip(found.regions, [(0.5, 2.0, 0.5), (0.1, 1.0, 0.3), (0.8, 3.0, 0.2)], strict=True):
         axis = round(turn * AROUND) / AROUND
         assert one.on_mesh == pytest.approx((1.0 + out) * outward(axis) + [0.0, 0.0, z], abs=1e-9)
         assert one.on_surface == pytest.approx(outward(axis) + [0.0, 0.0, z], abs=1e-4)
@@ -67,13 +67,13 @@ def test_a_bulge_of_the_surface_between_vertices_is_found_too() -> None:
     surface, opened = bumped({})
     net = surface.control_points.copy()
     net[10, 9] += 0.9 * net[10, 9] * [1.0, 1.0, 0.0]
-    found = apart(mw.Surface(net), opened)
-    assert len(found.places) == 1
+    found = deviation(mw.Surface(net), opened)
+    assert len(found.regions) == 1
     spans = surface.spans
     peak = mw.Surface(net).points([[9 / spans[0], 8 / spans[1]]])[0]
-    assert found.places[0].on_surface == pytest.approx(peak, abs=0.02)
-    assert np.linalg.norm(found.places[0].on_mesh[:2]) == pytest.approx(1.0, abs=0.01)
-    assert found.places[0].away == pytest.approx(0.9 * (2 / 3) ** 2, rel=0.02)
+    assert found.regions[0].on_surface == pytest.approx(peak, abs=0.02)
+    assert np.linalg.norm(found.regions[0].on_mesh[:2]) == pytest.approx(1.0, abs=0.01)
+    assert found.regions[0].distance == pytest.approx(0.9 * (2 / 3) ** 2, rel=0.02)
 
 
 def test_what_trimming_made_is_no_place() -> None:
@@ -81,13 +81,13 @@ def test_what_trimming_made_is_no_place() -> None:
     trusted = np.ones(len(opened.vertices), dtype=bool)
     trusted[row(0.5, 2.0)] = False
     known = mw.Annulus(opened.mesh, opened.vertices, opened.faces, opened.rims, frozen(trusted), opened.ends)
-    assert apart(surface, known).places[0].away == pytest.approx(0.3, abs=1e-5)
+    assert deviation(surface, known).regions[0].distance == pytest.approx(0.3, abs=1e-5)
 
 
 def test_distances_do_not_stop_at_the_facets_of_a_sample() -> None:
     """Vertices that lie on the surface are told so to round-off, on whatever grid it is drawn."""
     surface, opened = bumped({})
-    assert apart(surface, opened).to_surface.max() < 2e-6
+    assert deviation(surface, opened).to_surface.max() < 2e-6
 
 
 @pytest.mark.parametrize("turn", [0.0, 0.2, 0.45, 0.7, 0.9])
@@ -192,7 +192,7 @@ def test_a_run_that_warns_of_the_fit_draws_it_and_says_so(tmp_path: Path) -> Non
     (line,) = [line for line in described(result.report()) if "does not resolve" in line]
     assert line.endswith("; see fit_error.png") == drawn
     assert ("see fit_error.png" in (tmp_path / "report.json").read_text()) == drawn
-    worst = apart(result.surface, result.chart.annulus).places[0]
+    worst = deviation(result.surface, result.chart.annulus).regions[0]
     assert place(worst.on_surface, result.mesh.diagonal) in line
     again = result.write(tmp_path, render=False, overwrite=True)
     assert not (tmp_path / FIT_ERROR).exists()  # a picture of an earlier run does not stay
@@ -207,8 +207,8 @@ def test_a_good_fit_is_not_drawn(tmp_path: Path) -> None:
 
 def test_measures_have_the_shapes_that_they_say() -> None:
     surface, opened = bumped({row(0.5, 2.0): 0.5})
-    found = apart(surface, opened)
-    assert isinstance(found, Apart)
+    found = deviation(surface, opened)
+    assert isinstance(found, Deviation)
     assert found.to_surface.shape == (len(opened.vertices),)
     assert found.to_mesh.shape == (len(found.surface.points),) == (found.grid.shape[0] * found.grid.shape[1],)
     assert not found.to_mesh.flags.writeable

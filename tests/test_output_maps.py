@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
-from layup_shapes import HEIGHT, cylinder, helices, revolved, waisted
+from layup_shapes import HEIGHT, cylinder, drawn, helices, revolved, waisted
 
 from meshwind.core.cast import Floats
+from meshwind.layup.direction import directions, winding_angle
 from meshwind.layup.layup import assess
 from meshwind.layup.windability import of_frames
-from meshwind.results.maps import grid, maps
-from meshwind.results.winding_angle import winding_angle
+from meshwind.results.maps import maps
+from meshwind.surface.grid import grid
 from meshwind.surface.surface import Surface
 
 
@@ -70,6 +71,21 @@ def test_winding_angle_of_helices(revolutions: float) -> None:
 def test_winding_angle_of_one_family_alone_is_finite() -> None:
     paths = helices(1, 0.5, 21, cylinder())
     assert np.isfinite(winding_angle(paths, 9, 7)).all()
+
+
+def test_winding_angle_does_not_cross_an_open_edge() -> None:
+    """From the outermost fibre on the angle stays, as `directions` has it: what lies beyond the other edge is far."""
+    surface = Surface(np.ascontiguousarray(cylinder(64).control_points[:40]), periodic=False)
+    v = np.linspace(0.0, 1.0, 41)
+    uv = np.stack([np.stack([0.1 + 0.0 * v, v], axis=1), np.stack([0.8 + 0.1 * v, v], axis=1)])
+    paths = drawn(surface, uv, [1, 1])
+    angle = winding_angle(paths, 11, 5)
+    steep = angle[9, -1]
+    assert steep > 0.05
+    assert angle[0] == pytest.approx(np.zeros(5), abs=1e-6)
+    assert angle[-1] == pytest.approx(np.full(5, steep), abs=1e-3)
+    edges = np.array([[0.0, 0.5], [1.0, 0.5]])
+    assert angle[[0, -1], 2] == pytest.approx(directions(paths, edges)[1], abs=1e-6)
 
 
 @pytest.mark.parametrize(("spans", "shape"), [((256, 5), (200, 21)), ((32, 5), (128, 21))])

@@ -14,9 +14,9 @@ import meshwind as mw
 from meshwind.layup.layup import assess
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.results.folder import RESULTS
-from meshwind.results.maps import grid
 from meshwind.results.write import write_files
 from meshwind.surface import shapes
+from meshwind.surface.grid import grid
 
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 

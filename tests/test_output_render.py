@@ -18,9 +18,9 @@ from meshwind.path.lengths import bridges
 from meshwind.pictures import driver
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import lifts, winding_scene
-from meshwind.results.maps import grid
 from meshwind.results.report import report
 from meshwind.surface import shapes
+from meshwind.surface.grid import grid
 
 
 def share(image: np.ndarray, colour: tuple[int, int, int], reach: float) -> float:

@@ -28,9 +28,9 @@ from meshwind.pictures.slip_picture import runs
 from meshwind.pictures.slip_scene import slip_scene
 from meshwind.pictures.subject import subject_of
 from meshwind.pictures.winding_scene import winding_scene
-from meshwind.results.maps import grid
 from meshwind.results.reading import read_results
 from meshwind.results.write import write_files
+from meshwind.surface.grid import grid
 
 SMALL = Page(480, 360)
 

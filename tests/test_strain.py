@@ -21,8 +21,9 @@ from meshwind.core.cast import Floats
 from meshwind.layup.layup import assess
 from meshwind.mesh import mesh_from
 from meshwind.path.lengths import bridges, lengths
-from meshwind.results.maps import grid, maps
+from meshwind.results.maps import maps
 from meshwind.surface import Surface, shapes
+from meshwind.surface.grid import grid
 
 NAN_BY_CONTRACT = {"slip"}
 """Off the surface and at the ends it is not defined; the README says so."""

@@ -10,6 +10,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.layup.quads import edge_counts
 from meshwind.results.reading import Results
 from meshwind.results.vtk_reading import read_faces
+from meshwind.surface.grid import grid_quads
 from meshwind.surface.surface import Surface
 
 _FEWEST = 12, 4
@@ -68,11 +69,8 @@ def regular(surface: Surface, count: int) -> Elements:
     columns = nu if surface.periodic else nu + 1
     u, v = np.arange(columns) / nu, np.linspace(0.0, 1.0, nv + 1)
     uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2)
-    number = np.arange(len(uv)).reshape(columns, nv + 1)
-    if surface.periodic:
-        number = np.concatenate([number, number[:1]])
-    corners = [number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]]
-    return _elements(surface, uv, np.stack(corners, axis=2).reshape(-1, 4), np.zeros((0, 3), dtype=np.int64))
+    quads = grid_quads(columns, nv + 1, surface.periodic)
+    return _elements(surface, uv, quads, np.zeros((0, 3), dtype=np.int64))
 
 
 def on_crossings(results: Results) -> Elements:

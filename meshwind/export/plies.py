@@ -6,9 +6,9 @@ import numpy as np
 
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
-from meshwind.export.direction import axes, directions, laid
 from meshwind.export.elements import Elements
 from meshwind.layup.coverage import coverage
+from meshwind.layup.direction import axes, directions, fibres_of
 from meshwind.results.reading import Results
 
 LAYER = 1e-3
@@ -65,7 +65,7 @@ def _length(name: str, value: float | None) -> float:
 
 
 def _ply(results: Results, elements: Elements, family: int, layer: float, width: float) -> Ply:
-    paths = laid(results.paths, family)
+    paths = fibres_of(results.paths, family)
     direction, angle = directions(paths, elements.centre)
     layers = coverage(paths, width).at(elements.centre)
     return Ply(family, *map(frozen, (direction, angle, layers, layer * layers)))

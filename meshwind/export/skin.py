@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from meshwind.core.errors import BadInputError
-from meshwind.results.maps import grid
 from meshwind.results.vtk_reading import Faces, read_faces
+from meshwind.surface.grid import grid
 from meshwind.surface.surface import Surface
 
 FILE = "surface.vtu"

@@ -1,8 +1,9 @@
 """Taut paths, each with its certificate."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from enum import IntEnum
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -156,6 +157,14 @@ class Paths:
         of curvature k.
         """
         return frozen(fibre_lengths(self.surface, self.points, self.uv, self.on_surface))
+
+    def subset(self, chosen: Bools) -> "Paths":
+        """Those paths alone, chosen (p,)."""
+        arrays = {field.name: getattr(self, field.name) for field in fields(self)}
+        kept: dict[str, Any] = {
+            name: frozen(value[chosen]) for name, value in arrays.items() if isinstance(value, np.ndarray)
+        }
+        return replace(self, **kept)
 
     @property
     def sharpest_turn(self) -> Floats:

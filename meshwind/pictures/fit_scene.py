@@ -9,7 +9,7 @@ from meshwind.appearance.words import quantity
 from meshwind.core.cast import Bools, Floats
 from meshwind.mesh.geometry.annulus import Annulus
 from meshwind.mesh.geometry.measure import edge_lengths
-from meshwind.results.apart import Apart, Body, Place, apart
+from meshwind.surface.deviation import Deviation, Region, Triangles, deviation
 from meshwind.surface.surface import Surface
 
 _EYES = 240
@@ -23,12 +23,12 @@ _CLOSE_UP = 8.0, 0.05, 0.15
 
 def fit_scene(surface: Surface, annulus: Annulus, name: str, units: str = "") -> dict[str, Any]:
     """All that the renderer needs: mesh and surface with their distances, the worst places, the view, the words."""
-    found = apart(surface, annulus)
+    found = deviation(surface, annulus)
     diagonal = annulus.mesh.diagonal
     eyes = around(_EYES)
     view = place_view(found.mesh.points, found.mesh.faces, eyes, _merit(found, eyes, _SKIP * diagonal))
     towards = view.eye[None]
-    worst = found.places[0]
+    worst = found.regions[0]
     size, least, most = _CLOSE_UP
     return {
         "kind": "fit",
@@ -43,11 +43,11 @@ def fit_scene(surface: Surface, annulus: Annulus, name: str, units: str = "") ->
         "surface_points": found.surface.points,
         "surface_faces": found.surface.faces,
         "surface_away": found.to_mesh,
-        "most": max(worst.away, _EXACT * diagonal),
-        "places": np.array([[place.on_mesh, place.on_surface] for place in found.places]),
-        "seen": np.array([_seen(found, place, towards, _SKIP * diagonal)[:, 0] for place in found.places]),
-        "away": np.array([place.away for place in found.places]),
-        "close_up": float(np.clip(size * worst.away, least * diagonal, most * diagonal)),
+        "most": max(worst.distance, _EXACT * diagonal),
+        "places": np.array([[region.on_mesh, region.on_surface] for region in found.regions]),
+        "seen": np.array([_seen(found, region, towards, _SKIP * diagonal)[:, 0] for region in found.regions]),
+        "away": np.array([region.distance for region in found.regions]),
+        "close_up": float(np.clip(size * worst.distance, least * diagonal, most * diagonal)),
         "right": view.right,
         "up": view.up,
         "eye": view.eye,
@@ -56,9 +56,9 @@ def fit_scene(surface: Surface, annulus: Annulus, name: str, units: str = "") ->
     }
 
 
-def _merit(found: Apart, eyes: Floats, skip: float) -> Floats:
+def _merit(found: Deviation, eyes: Floats, skip: float) -> Floats:
     """How well each direction (k, 3) shows the worst place: in sight on both bodies, and the gap from its side."""
-    worst = found.places[0]
+    worst = found.regions[0]
     gap = worst.on_surface - worst.on_mesh
     gap = gap / max(float(np.linalg.norm(gap)), 1e-300)
     in_sight = _seen(found, worst, eyes, skip)
@@ -67,14 +67,14 @@ def _merit(found: Apart, eyes: Floats, skip: float) -> Floats:
     return np.asarray(2.0 * in_sight[0] + in_sight[1] + 0.5 * facing + 0.5 * sidewise - 1e-3 * eyes[:, 1])
 
 
-def _seen(found: Apart, place: Place, eyes: Floats, skip: float) -> Bools:
+def _seen(found: Deviation, region: Region, eyes: Floats, skip: float) -> Bools:
     """Whether a place is in sight (2, k) from each direction (k, 3): on the mesh alone and on the surface alone."""
-    pairs: list[tuple[Body, Floats]] = [(found.mesh, place.on_mesh), (found.surface, place.on_surface)]
+    pairs: list[tuple[Triangles, Floats]] = [(found.mesh, region.on_mesh), (found.surface, region.on_surface)]
     return np.stack([body.clear(point, eyes, skip) for body, point in pairs])
 
 
-def _subtitle(found: Apart, diagonal: float, units: str) -> str:
-    worst = found.places[0].away
+def _subtitle(found: Deviation, diagonal: float, units: str) -> str:
+    worst = found.regions[0].distance
     nu, nv = found.grid.surface.control_points.shape[:2]
     return (
         f"distance between the two up to {quantity(worst, units, 2)}, {100.0 * worst / diagonal:.2g} % of the part"

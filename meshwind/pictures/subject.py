@@ -16,8 +16,8 @@ from meshwind.layup.layup import Layup
 from meshwind.path.lengths import lengths
 from meshwind.path.paths import Paths, Status
 from meshwind.results.figures import PathFigures, path_figures
-from meshwind.results.maps import grid
 from meshwind.results.reading import Results
+from meshwind.surface.grid import grid
 
 _MOST_POINTS, _FEWEST_POINTS, _ALL_POINTS = 250, 40, 60_000
 """Points of a path that are drawn, as more do not show; of many paths fewer each, as tubes take 7 kB a point."""

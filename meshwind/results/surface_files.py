@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from meshwind.core.cast import Floats
-from meshwind.results.maps import Grid
 from meshwind.results.vtk_files import write_faces
+from meshwind.surface.grid import Grid
 from meshwind.surface.surface import DEGREE, Surface
 
 

@@ -12,8 +12,8 @@ from meshwind.mesh.opening.ends import place
 from meshwind.path.paths import EDGE, Paths, Status
 from meshwind.planning.revolutions import FRICTION, WIDER, Revolutions
 from meshwind.planning.spacing import Spaced
-from meshwind.results.apart import apart
 from meshwind.surface import FitError, Surface
+from meshwind.surface.deviation import deviation
 
 MISSED = 10.0
 """A vertex error of so many times the tolerance is worth a warning, ..."""
@@ -143,7 +143,7 @@ def _unresolved(surface: Surface, chart: Chart, error: FitError, units: str) -> 
 
 def _places(surface: Surface, chart: Chart) -> str:
     """Where the surface and the mesh lie furthest apart, looked at from both, region by region."""
-    found = apart(surface, chart.annulus).places
+    found = deviation(surface, chart.annulus).regions
     diagonal = chart.annulus.mesh.diagonal
     told = [place(where.on_surface, diagonal) for where in found]
     rest = len(told) - _TOLD

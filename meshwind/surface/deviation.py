@@ -1,4 +1,4 @@
-"""Where a fitted surface and its mesh lie apart, looked at from both."""
+"""How far a fitted surface and its mesh lie apart, measured from both, and where."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,15 +13,14 @@ from scipy.sparse.csgraph import connected_components
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.threads import spread
 from meshwind.mesh.geometry.annulus import Annulus
-from meshwind.results.maps import Grid, grid
+from meshwind.surface.grid import Grid, grid
 from meshwind.surface.surface import Surface
-from meshwind.surface.tree import Body as SurfaceBody
-from meshwind.surface.tree import nearest_foot
+from meshwind.surface.tree import Body, nearest_foot
 
 _FINE = 8, 320
-"""Samples of the surface a span and, at most, in each direction."""
+"""Samples of the surface per span and, at most, in each direction."""
 _REGION = 1.0 / 3.0
-"""What is further off than this part of the worst is a region to be named, ..."""
+"""What deviates by more than this part of the worst is a region to be reported, ..."""
 _CLOSE = 0.05
 """... unless it lies this close, over the diagonal, to a worse one; ..."""
 _MOST = 5
@@ -29,8 +28,11 @@ _MOST = 5
 
 
 @dataclass(frozen=True)
-class Body:
-    """Triangles (m, 3) between points (n, 3), with a search tree."""
+class Triangles:
+    """Triangles (m, 3) between points (n, 3), with libigl's search tree.
+
+    The tree of `mesh.geometry` is faster, but its distances differ from libigl's in the last bits, which files hold.
+    """
 
     points: Floats
     faces: Ints
@@ -41,8 +43,12 @@ class Body:
         tree.init(self.points, self.faces)
         return tree
 
+    def distances(self, points: Floats) -> Floats:
+        """Distances (k,) of points (k, 3) to the nearest triangle."""
+        return self.nearest(points)[0]
+
     def nearest(self, points: Floats) -> tuple[Floats, Ints, Floats]:
-        """Distance (k,) of points (k, 3) to the body, the face (k,) and the point (k, 3) of it that is nearest."""
+        """Distance (k,) of points (k, 3) to the triangles, the nearest face (k,) and the nearest point (k, 3) on it."""
         squared, face, foot = self._tree.squared_distance(self.points, self.faces, np.ascontiguousarray(points))
         return np.sqrt(squared), np.asarray(face), np.asarray(foot)
 
@@ -53,68 +59,67 @@ class Body:
         return np.asarray(across / max(float(np.linalg.norm(across)), 1e-300))
 
     def clear(self, point: Floats, directions: Floats, skip: float) -> Bools:
-        """Whether nothing of the body lies before a point (3,) in each direction (k, 3), past a length to skip."""
+        """Whether no triangle lies before a point (3,) in each direction (k, 3), past a length to skip."""
         origins = point + skip * directions
         hit, _, _ = self._tree.intersect_ray_first(self.points, self.faces, origins, np.ascontiguousarray(directions))
         return np.asarray(hit < 0)
 
 
 @dataclass(frozen=True)
-class Place:
-    """The worst of a region: a point (3,) of the mesh, one of the surface (3,), and how far they lie apart."""
+class Region:
+    """A region where surface and mesh lie apart, by its worst pair: a point (3,) on each, and their distance."""
 
-    away: float
+    distance: float
     on_mesh: Floats
     on_surface: Floats
 
 
 @dataclass(frozen=True)
-class Apart:
-    """A surface and its mesh as triangles, the distances of the points of each to the other, the worst places.
+class Deviation:
+    """A surface and its mesh as triangles, the distances of the points of each to the other, and the worst regions.
 
-    to_surface (n,) is of the mesh's vertices, to_mesh (k,) of the grid's points; places begins with the worst and
-    has one a region: a patch of the mesh that lies off by more than a third of that, or that such a part of the
-    surface is nearest to.
+    to_surface (n,) is of the mesh's vertices, to_mesh (k,) of the grid's points.  A region is a patch of the mesh that
+    lies off by more than a third of the worst, or that such a part of the surface is nearest to; the worst is first.
     """
 
     grid: Grid
-    surface: Body
-    mesh: Body
+    surface: Triangles
+    mesh: Triangles
     to_surface: Floats
     to_mesh: Floats
-    places: tuple[Place, ...]
+    regions: tuple[Region, ...]
 
 
-def apart(surface: Surface, annulus: Annulus) -> Apart:
-    """Measure a surface against the mesh that it was fitted to, both ways, and find the regions that it lost.
+def deviation(surface: Surface, annulus: Annulus) -> Deviation:
+    """Measure a surface against the mesh that it was fitted to, both ways, and find the regions where it misses it.
 
-    Vertices that trimming made have a distance but are no place, as they do not lie on the part.
+    Vertices that trimming made have a distance but make no region, as they do not lie on the part.
     """
     on = grid(surface, *_FINE)
-    skin = Body(on.points, np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]]))
-    mesh = Body(np.ascontiguousarray(annulus.vertices), np.ascontiguousarray(annulus.faces))
-    to_surface, on_surface = _feet(on, skin, annulus.vertices)
+    facets = Triangles(on.points, np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]]))
+    mesh = Triangles(np.ascontiguousarray(annulus.vertices), np.ascontiguousarray(annulus.faces))
+    to_surface, on_surface = _feet(on, facets, annulus.vertices)
     to_mesh, face, on_mesh = mesh.nearest(on.points)
-    # both sides in one list: what lies apart, and the corners of the mesh that it lies at
-    away = np.concatenate([np.where(annulus.trusted, to_surface, 0.0), to_mesh])
+    # both sides in one list: the pairs of points, and the corners of the mesh that they lie at
+    distance = np.concatenate([np.where(annulus.trusted, to_surface, 0.0), to_mesh])
     pairs = np.concatenate([np.stack([annulus.vertices, on_surface], 1), np.stack([on_mesh, on.points], 1)])
     corners = np.concatenate([np.repeat(np.arange(len(to_surface))[:, None], 3, axis=1), annulus.faces[face]])
-    worst = _worst(away, pairs, corners, annulus)
-    places = tuple(Place(float(away[k]), frozen(pairs[k, 0]), frozen(pairs[k, 1])) for k in worst)
-    return Apart(on, skin, mesh, frozen(to_surface), frozen(to_mesh), places)
+    worst = _worst(distance, pairs, corners, annulus)
+    regions = tuple(Region(float(distance[k]), frozen(pairs[k, 0]), frozen(pairs[k, 1])) for k in worst)
+    return Deviation(on, facets, mesh, frozen(to_surface), frozen(to_mesh), regions)
 
 
-def _feet(on: Grid, skin: Body, points: Floats) -> tuple[Floats, Floats]:
-    """Distances (n,) of points (n, 3) to the surface and their feet (n, 3): closer than the grid's facets tell."""
+def _feet(on: Grid, facets: Triangles, points: Floats) -> tuple[Floats, Floats]:
+    """Distances (n,) of points (n, 3) to the surface itself and their feet (n, 3), found from the grid's facets."""
     surface, points = on.surface, np.ascontiguousarray(points)
-    guess = on.uv[on.quads[skin.nearest(points)[1] % len(on.quads), 0]]
+    guess = on.uv[on.quads[facets.nearest(points)[1] % len(on.quads), 0]]
     feet = np.empty_like(points)
     spread(_nearest_feet, len(points), 500, surface.body, points, guess, feet)
     return np.asarray(np.linalg.norm(points - feet, axis=1)), feet
 
 
 @njit(nogil=True, cache=True)
-def _nearest_feet(first: int, last: int, body: SurfaceBody, points: Floats, guesses: Floats, feet: Floats) -> None:
+def _nearest_feet(first: int, last: int, body: Body, points: Floats, guesses: Floats, feet: Floats) -> None:
     """Write the feet (n, 3) of points (n, 3) first to last, each found from its guess (n, 2)."""
     frame = np.empty((6, 3))
     for i in range(first, last):
@@ -122,10 +127,10 @@ def _nearest_feet(first: int, last: int, body: SurfaceBody, points: Floats, gues
         feet[i] = frame[0]
 
 
-def _worst(away: Floats, pairs: Floats, corners: Ints, annulus: Annulus) -> list[int]:
-    """Rows of the worst of each region, the worst of all first."""
-    order = np.argsort(-away, kind="stable")
-    order = order[: max(int((away > _REGION * away[order[0]]).sum()), 1)]
+def _worst(distance: Floats, pairs: Floats, corners: Ints, annulus: Annulus) -> list[int]:
+    """Rows of the worst pair of each region, the worst of all first."""
+    order = np.argsort(-distance, kind="stable")
+    order = order[: max(int((distance > _REGION * distance[order[0]]).sum()), 1)]
     off = np.zeros(len(annulus.vertices), dtype=bool)
     off[corners[order]] = True
     a, b = annulus.faces.ravel(), np.roll(annulus.faces, -1, axis=1).ravel()

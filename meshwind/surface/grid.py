@@ -1,0 +1,51 @@
+"""A surface sampled on a grid of quads, for files, pictures and measurements."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.surface.surface import Surface
+
+PER_SPAN, MOST = 4, 200
+"""Samples per span of the spline, and at most in each direction, of the grid that files and pictures have."""
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Samples of a surface: uv (k, 2), points (k, 3), frames (k, 6, 3), and outward quads (q, 4).
+
+    u varies slowest: k = nu nv, `shape` = (nu, nv).  Around a closed part the last column joins the first.
+    """
+
+    surface: Surface
+    shape: tuple[int, int]
+    uv: Floats
+    frames: Floats
+    quads: Ints
+
+    @property
+    def points(self) -> Floats:
+        """Positions (k, 3)."""
+        return np.ascontiguousarray(self.frames[:, 0])
+
+
+def grid(surface: Surface, per_span: int = PER_SPAN, most: int = MOST) -> Grid:
+    """Sample a surface `per_span` times per span, at most `most` x `most` times."""
+    around, along = surface.spans
+    nu = min(per_span * around + (not surface.periodic), most)
+    nv = min(per_span * along + 1, most)
+    u = np.arange(nu) / (nu if surface.periodic else nu - 1)
+    v = np.linspace(0.0, 1.0, nv)
+    uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2)
+    quads = grid_quads(nu, nv, surface.periodic)
+    return Grid(surface, (nu, nv), frozen(uv), frozen(surface.frames(uv)), frozen(quads))
+
+
+def grid_quads(nu: int, nv: int, closed: bool) -> Ints:
+    """Quads (q, 4) between the points of a grid, number i nv + j; `closed`: the last column joins the first."""
+    number = np.arange(nu * nv).reshape(nu, nv)
+    if closed:
+        number = np.concatenate([number, number[:1]])
+    corners = [number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]]
+    return np.stack(corners, axis=2).reshape(-1, 4)
