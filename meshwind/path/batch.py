@@ -119,7 +119,7 @@ class Setting:
         if "tree" in vars(surface):
             self._lay(batch, surface.body)
             return
-        self._lay(batch, surface.untreed)
+        self._lay(batch, surface.body_without_tree)
         lifted = np.flatnonzero(batch.status == LIFTED)
         if len(lifted):
             part = fresh(batch.starts[lifted], batch.X.shape[1])  # counted as if the tree had been there
@@ -157,7 +157,7 @@ class Setting:
             None if tree else (part.X.copy(), part.uv.copy(), part.touching.copy(), part.place.copy(), part.mode.copy())
         )
         general = (
-            surface.body if tree else surface.untreed,
+            surface.body if tree else surface.body_without_tree,
             self._pull_off,
             self.tolerance,
             self.iterations,

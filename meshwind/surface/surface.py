@@ -143,7 +143,7 @@ class Surface(Kept):
         return Body(self.spline, self.tree, self.size)
 
     @property
-    def untreed(self) -> Body:
+    def body_without_tree(self) -> Body:
         """The surface as the contact kernels take it, without a search tree: for paths that cannot leave it."""
         return Body(self.spline, NO_TREE, self.size)
 
