@@ -35,14 +35,39 @@ LEAST_LEFT = 0.02
 
 @dataclass(frozen=True, repr=False)
 class Redesign:
-    """A part that was edited until its fibres no longer bridge, or as far as that went.
+    """Part that was edited until its fibres no longer bridge, or as far as that went.
 
-    stages: figures of each round, for each of the fitted surfaces that were edited; before, after: the mesh that was
-    read and the edited one, each fitted and wound as `wind` does it; mesh: the edited mesh, vertices and faces in the
-    order of `part`, the one that was read; displacement (n, 3) of its vertices; outcome: how it ended, with its
-    advice; revolutions: of the winding; chosen: how they were found, where they were; volume, volume_change: of the
-    mesh before, open rims capped, and by the edit, in its units cubed; turned_over: faces that the edit turned by more
-    than a right angle, 0 in a sound one.
+    Attributes
+    ----------
+    part : Mesh
+        Mesh that was read.
+    mesh : Mesh
+        Edited mesh, with the vertices and faces of `part` in their order.
+    displacement : ndarray of float, shape (n, 3)
+        Displacements of the vertices, in the mesh's unit.
+    before, after : Wound
+        Chart, surface and paths of `part` and of `mesh`, each fitted and wound as by `wind`.
+    stages : tuple of tuple of Round
+        Figures of each round, for each of the fitted surfaces that were edited.
+    outcome : Outcome
+        How the redesign ended, with advice.
+    revolutions : float
+        Revolutions of the windings.
+    chosen : Revolutions or None
+        How the revolutions were chosen, where they were.
+    volume : float
+        Volume of `part`, open rims capped, in its unit cubed.
+    volume_change : float
+        Change of the volume by the edit.
+    turned_over : int
+        Number of faces that the edit turned by more than a right angle, 0 in a sound one.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> tube = mw.redesign("data/tank.ply", revolutions=0.3, paths=3, particles=51)
+    >>> tube.windable, tube.rounds
+    (True, ())
     """
 
     part: Mesh
@@ -68,17 +93,17 @@ class Redesign:
 
     @property
     def paths(self) -> Paths:
-        """The paths on the edited mesh."""
+        """Paths on the edited mesh."""
         return self.after.paths
 
     @property
     def windable(self) -> bool:
-        """Whether nothing bridges any more."""
+        """Whether no path bridges any more."""
         return self.outcome == Outcome.WINDABLE
 
     @property
     def settled(self) -> bool:
-        """Whether every path came to rest: a part without bridges may still let fibres slide off its ends."""
+        """Whether every path is in equilibrium: without bridges, fibres may still slide off the ends."""
         return bool((self.paths.status == Status.CONVERGED).all())
 
     @property
@@ -106,17 +131,65 @@ def redesign(
     tolerance: float = 1e-5,
     progress: Tell | None = None,
 ) -> Redesign:
-    """Move the surface of a part as little as possible until no path of two families bridges.
+    """Change a part as little as possible until no path of two families bridges.
 
-    mesh: a file or a `Mesh`.  revolutions: of the winding, or "auto" to have them chosen; paths, particles: as in
-    `wind`; rounds: at most so many; frozen: what must not move, as ranges such as "v<0.1, z>20" or "field:NAME" for a
-    scalar of the file, or a mask (nu, nv) of control points, or a function from their places (m, 3) to a mask (m,);
-    bound: largest displacement, in the mesh's units; symmetry: order of rotation about u that is kept, a divisor of
-    the control net's points around; fairness: wave length over the part's size at which bending a change costs as
-    much as its size, 0 for the thesis's objective alone; pressing: least normal curvature along the fibres times
-    the part's size; threshold: gap that counts as none, by default the largest distance of a vertex to the surface.
-    component, ends, opening, tolerance: as in `wind`.  progress is called with a line before each stage and round.
-    Raises BadInputError, in one line, for whatever the caller can mend; that no solution exists is an outcome.
+    The control points of the fitted surface are moved by a quadratic program per round, and the part is wound again.
+    The edited mesh is then fitted and wound as by `wind`; only where nothing bridges on that, the part is windable.
+
+    Parameters
+    ----------
+    mesh : str, PathLike or Mesh
+        Mesh, or the path of its file.
+    revolutions : float or str
+        Revolutions of the winding, or "auto" to have them chosen.
+    paths : int, default 12
+        Number of paths per family.
+    particles : int, default 401
+        Number of particles per path.
+    rounds : int, default 10
+        Maximum number of rounds.
+    frozen : str, ndarray of bool or callable, optional
+        What must not move: ranges such as "v<0.1, z>20" of u, v, x, y and z, or "field:NAME" for a scalar of the mesh
+        file, where it is above 0; a mask (nu, nv) of control points; or a function from their positions (m, 3) to a
+        mask (m,).
+    bound : float, optional
+        Largest displacement, in the mesh's unit.  By default there is none.
+    symmetry : int, default 1
+        Order of rotation about the part that is kept, a divisor of the number of control points around it.
+    fairness : float, default 0.4
+        Wave length, over the size of the part, at which bending a change costs as much as the change itself.  0 for
+        the objective of (6.12) alone.
+    pressing : float, default 0.2
+        Least normal curvature along the fibres, times the size of the part.
+    threshold : float, optional
+        Ignore gaps up to this, in the mesh's unit.  By default the largest distance of a vertex from the fitted
+        surface.
+    component, ends, opening, tolerance : optional
+        As for `wind`.
+    progress : callable, optional
+        Called with one line before each stage and round.
+
+    Returns
+    -------
+    Redesign
+        Edited mesh, windings before and after, and how it ended.  That there is no solution is an outcome, not an
+        error.
+
+    Raises
+    ------
+    BadInputError
+        If an argument cannot be used.
+
+    See Also
+    --------
+    write_redesign : Write the results into a folder.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> edited = mw.redesign("data/vase.stl", revolutions=0.8, paths=3, particles=101, bound=5.0)
+    >>> edited.outcome.advice
+    'no fibre bridges any more'
     """
     if not isinstance(mesh, str | PathLike | Mesh):
         raise BadInputError(f"mesh is of type {type(mesh).__name__}; give the path of a mesh file or a meshwind.Mesh")

@@ -22,10 +22,32 @@ _FEWEST = 3
 
 @dataclass(frozen=True)
 class Layup:
-    """Paths with their crossings, the quad mesh on them and the coverage of the surface.
+    """Paths with their crossings, the quad mesh on these and the coverage of the surface.
 
-    crossed: the paths that crossings and quads are of; where too few come to rest for a mesh they are the windings as
-    asked for.  What else can be told of them is worked out when it is first asked for.
+    Further figures are worked out when they are first asked for.
+
+    Attributes
+    ----------
+    paths : Paths
+        All paths.
+    crossings : Crossings
+        Crossings of paths of one family with those of the other.
+    quads : QuadMesh
+        Quad mesh whose vertices are the crossings and the ends on the rims.
+    coverage : Coverage
+        Layers of fibre over the surface.
+    crossed : Paths
+        Paths that crossings and quads are of: those in equilibrium or, where too few are for a mesh, the initial
+        paths.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> tube = mw.shapes.cylinder(radius=1.0, length=3.0)
+    >>> ends = mw.families(tube, paths=4, revolutions=0.5)
+    >>> layup = mw.assess(mw.solve(tube, ends.start, ends.end, family=ends.family, particles=51))
+    >>> len(layup.crossings)
+    12
     """
 
     paths: Paths
@@ -36,22 +58,22 @@ class Layup:
 
     @property
     def as_asked(self) -> bool:
-        """Whether crossings and quads are of windings that do not hold, as they were asked for."""
+        """Whether crossings and quads are of the initial paths, because too few paths are in equilibrium."""
         return self.crossed is not self.paths
 
     @cached_property
     def bands(self) -> Bands:
-        """Bands of the coverage's width laid on the surface."""
+        """Bands of the coverage's width, laid on the surface along all paths."""
         return bands(self.paths, self.coverage.width)
 
     @cached_property
     def neighbours(self) -> Neighbours:
-        """How far neighbours of a family lie apart."""
+        """Distances between neighbouring paths of a family, in the mesh's unit."""
         return neighbours(self.paths)
 
     @cached_property
     def sides(self) -> CellSides:
-        """Lengths of fibre between crossings."""
+        """Lengths of fibre between neighbouring crossings, in the mesh's unit."""
         return cell_sides(self.crossed, self.crossings)
 
     @cached_property
@@ -61,20 +83,47 @@ class Layup:
 
     @cached_property
     def quality(self) -> QuadQuality:
-        """How well shaped the quads are."""
+        """Shape of the quads: scaled Jacobian, aspect and planarity."""
         return quad_quality(self.quads)
 
     @cached_property
     def windability(self) -> Windability:
-        """Where and in which directions a fibre presses on the surface."""
+        """Where and in which directions a taut fibre presses on the surface."""
         return windability(self.paths.surface)
 
 
 def assess(paths: Paths, width: float | None = None) -> Layup:
-    """Cross, mesh and cover: `width` of the band in mesh units, by default one layer a family on average.
+    """Find the crossings of paths, the quad mesh on them, and the coverage of the surface.
 
-    Crossings and quads are those of the converged paths, or of all where a family has fewer than three such; and where
-    these give no mesh, because paths have slid off, of the windings as asked for.
+    Crossings and quads are those of the converged paths, or of all where a family has fewer than three of these; and
+    where they give no mesh, because paths have slid off, of the initial paths.
+
+    Parameters
+    ----------
+    paths : Paths
+        Paths of two families.
+    width : float, optional
+        Width of the band of fibre, in the mesh's unit.  By default the width that gives one layer per family on
+        average.
+
+    Returns
+    -------
+    Layup
+        Crossings, quads and coverage.
+
+    Raises
+    ------
+    BadInputError
+        If `paths` is not Paths or the width is not above 0.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> tube = mw.shapes.cylinder(radius=1.0, length=3.0)
+    >>> ends = mw.families(tube, paths=4, revolutions=0.5)
+    >>> layup = mw.assess(mw.solve(tube, ends.start, ends.end, family=ends.family, particles=51))
+    >>> len(layup.crossings), len(layup.quads.quads) > 0, round(layup.coverage.median, 2)
+    (12, True, 2.0)
     """
     if not isinstance(paths, Paths):
         raise BadInputError(f"assess takes Paths, not {type(paths).__name__}; make them with solve(...)")

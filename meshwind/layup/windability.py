@@ -54,7 +54,32 @@ class Windability:
 
 
 def windability(surface: Surface, uv: Floats | None = None) -> Windability:
-    """Look at the points uv (k, 2), or at the middles of a fine grid's cells."""
+    """Find where, and in which directions, a taut fibre presses on a surface.
+
+    Only the curvature of the surface counts: a fibre presses where its normal curvature is positive.
+
+    Parameters
+    ----------
+    surface : Surface
+        Surface to look at.
+    uv : ndarray of float, shape (k, 2), optional
+        Parametric points.  By default the middles of the cells of a fine grid.
+
+    Returns
+    -------
+    Windability
+        Principal curvatures, the direction in which a fibre presses hardest, and the share of the directions in which
+        it presses, at each point.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> import numpy as np
+    >>> elbow = mw.shapes.elbow(major=3.0, minor=1.0)
+    >>> found = mw.windability(elbow, np.array([(0.0, 0.5), (0.5, 0.5)]))  # outside and inside of the bend
+    >>> found.kind, found.share.round(2)
+    (array([1, 0]), array([1.  , 0.61]))
+    """
     if uv is None:
         nu, nv = (int(np.clip(2 * spans, 16, 200)) for spans in surface.spans)
         u, v = (np.arange(nu) + 0.5) / nu, (np.arange(nv) + 0.5) / nv

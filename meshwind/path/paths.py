@@ -159,7 +159,27 @@ class Paths:
         return frozen(fibre_lengths(self.surface, self.points, self.uv, self.on_surface))
 
     def subset(self, chosen: Bools) -> "Paths":
-        """Those paths alone, chosen (p,)."""
+        """Select paths.
+
+        Parameters
+        ----------
+        chosen : ndarray of bool, shape (p,)
+            Which paths to keep.
+
+        Returns
+        -------
+        Paths
+            The chosen paths, in their order; counters are those of the whole batch.
+
+        Examples
+        --------
+        >>> import meshwind as mw
+        >>> tube = mw.shapes.cylinder(radius=1.0, length=3.0)
+        >>> ends = mw.families(tube, paths=3, revolutions=0.5)
+        >>> paths = mw.solve(tube, ends.start, ends.end, family=ends.family, particles=51)
+        >>> len(paths.subset(paths.family == 1))
+        3
+        """
         arrays = {field.name: getattr(self, field.name) for field in fields(self)}
         kept: dict[str, Any] = {
             name: frozen(value[chosen]) for name, value in arrays.items() if isinstance(value, np.ndarray)

@@ -15,11 +15,33 @@ DESIGNED = 1600, 1200
 
 @dataclass(frozen=True)
 class Page:
-    """How pictures are drawn: width and height in pixels, with or without paper, in parallel or in perspective.
+    """Size of a picture and how it is drawn.
 
-    view: "auto" for the part's best side, or one of `view.NAMED`.  scale_bar: None for one with parallel projection
-    only, as lengths in perspective are true at the middle of the part alone.
-    Raises BadInputError for a size that cannot be drawn.
+    Parameters
+    ----------
+    width, height : int, default 1600 and 1200
+        Size in pixels, from 240 to 8192.
+    transparent : bool, default False
+        Whether to leave out the background.
+    perspective : bool, default False
+        Whether to draw in perspective rather than in parallel projection.
+    scale_bar : bool, optional
+        Whether to draw a scale bar.  By default with parallel projection only: in perspective it is true at the middle
+        of the part alone.
+    view : str, default "auto"
+        Direction from which the part is seen: "x", "-x", "y", "-y", "z", "-z", "iso", or "auto" for the long side that
+        shows most of the bridges.
+
+    Raises
+    ------
+    BadInputError
+        If a size is out of range.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> mw.Page(800, 600, perspective=True).ruled
+    False
     """
 
     width: int = DESIGNED[0]
@@ -35,7 +57,7 @@ class Page:
 
     @property
     def unit(self) -> float:
-        """Pixels for one of the page of 1600 x 1200."""
+        """Pixels for one pixel of a page of 1600 x 1200."""
         return min(self.width / DESIGNED[0], self.height / DESIGNED[1])
 
     @property
@@ -45,7 +67,7 @@ class Page:
 
     @property
     def told(self) -> dict[str, Any]:
-        """What the process that draws has to know, as arrays."""
+        """The page as arrays, for the process that draws."""
         return {"page": np.array([self.width, self.height, self.transparent, self.perspective, self.ruled])}
 
 

@@ -31,10 +31,46 @@ def draw_redesign(
     units: str = "",
     page: Page | None = None,
 ) -> str:
-    """Draw a mesh before and after a redesign into a .png; return "" or one line that says why there is no picture.
+    """Draw a mesh before and after a redesign.
 
-    before (n, 3): the vertices as they were; moves (n, 3): how far each is moved; faces (m, 3), outward; lengths in
-    the mesh's units, which are named for the legend.  Raises BadInputError where the arrays do not belong together.
+    Parameters
+    ----------
+    picture : str or PathLike
+        PNG file to write.
+    before : ndarray of float, shape (n, 3)
+        Vertices before the redesign, in the mesh's unit.
+    moves : ndarray of float, shape (n, 3)
+        Displacements of the vertices.
+    faces : ndarray of int, shape (m, 3)
+        Vertices of each triangle, oriented outwards.
+    name : str
+        Name of the part, for the title.
+    units : str, default ""
+        Name of the mesh's unit, for the legend.
+    page : Page, optional
+        Size and style.
+
+    Returns
+    -------
+    str
+        Empty, or one line that says why there is no picture.
+
+    Raises
+    ------
+    BadInputError
+        If the arrays do not belong together.
+
+    See Also
+    --------
+    write_redesign : Write all files of a redesign.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> mesh = mw.read("data/elbow.obj")
+    >>> moves = 0.02 * mesh.vertices
+    >>> mw.draw_redesign("moved.png", mesh.vertices, moves, mesh.faces, "elbow", page=mw.Page(400, 300))
+    ''
     """
     return driver.paint({Path(picture): redesign_scene(before, moves, faces, name, units)}, page)
 

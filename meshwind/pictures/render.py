@@ -42,11 +42,45 @@ def render(
     out: str | PathLike[str] | None = None,
     tell: Tell | None = None,
 ) -> Rendered:
-    """Draw what a run or a redesign left in a folder, into `out`, by default the folder itself.
+    """Draw pictures and movies of a results folder.
 
-    only: names of `PICTURES`, "redesign" or "sheet"; without them all there are, or none where there is a movie to
-    draw.  animate: "gif", "mp4"; seconds: how long the fibres take to be laid in it.  All files appear, or none.
-    Raises BadInputError for what is not known, for a folder without results, and where this machine cannot draw.
+    All that is needed is read from the folder; nothing is wound again.  All files appear, or none.
+
+    Parameters
+    ----------
+    folder : str or PathLike
+        Folder of a run or a redesign.
+    only : sequence of str, optional
+        Pictures to draw: "winding", "crossings", "coverage", "windability", "slip", "fit", "unrolled", "quads",
+        "redesign" or "sheet".  By default all, or none where there is a movie to draw.
+    page : Page, optional
+        Size and style.  By default 1600 x 1200 pixels, and 960 x 720 for movies.
+    animate : sequence of str, optional
+        Movies to draw: "gif", "mp4".
+    seconds : float, default 5
+        How long the fibres take to be laid in a movie.
+    out : str or PathLike, optional
+        Folder for the files.  By default the folder itself.
+    tell : callable, optional
+        Called with the name of each picture, how many pictures and frames are done, and how many there are.
+
+    Returns
+    -------
+    Rendered
+        The paths of the files that were drawn, as `files`.
+
+    Raises
+    ------
+    BadInputError
+        If a name is not known, the folder holds no results, or this machine cannot draw.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> result = mw.wind("data/elbow.obj", paths=3, particles=51, out="out", render=False)
+    >>> drawn = mw.render("out", only=["coverage"], page=mw.Page(400, 300))
+    >>> [file.name for file in drawn.files]
+    ['coverage.png']
     """
     paper = page or Page()
     _check(only, animate, paper)

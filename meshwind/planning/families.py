@@ -15,7 +15,24 @@ SAMPLES = 16
 
 @dataclass(frozen=True)
 class Families:
-    """End points of 2 n paths: start, end (2 n, 2) parametric, u unwrapped; family (2 n,) +1, then -1."""
+    """End points of two families of paths.
+
+    Parameters
+    ----------
+    start, end : ndarray of float, shape (p, 2)
+        Parametric end points, u in turns and unwrapped, v in [0, 1].
+    family : ndarray of int, shape (p,)
+        +1 or -1, the sense of turning; paths of family +1 come first.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> ends = mw.families(mw.shapes.cylinder(1.0, 3.0), paths=2, revolutions=0.5)
+    >>> ends.family
+    array([ 1,  1, -1, -1])
+    >>> (ends.end - ends.start)[:, 0]  # turns
+    array([ 0.5,  0.5, -0.5, -0.5])
+    """
 
     start: Floats
     end: Floats
@@ -23,10 +40,43 @@ class Families:
 
 
 def families(surface: Surface, paths: int, revolutions: float) -> Families:
-    """Spread `paths` starts a family evenly by arc length on the start rim, their ends likewise on the end rim.
+    """Spread the end points of two families evenly over the rims.
 
-    revolutions: turns of u from end to end (6.1), +revolutions for family +1 and -revolutions for -1.  Where a
-    rim's arc length is not even in u, the ends keep the mean turn of the whole rim.
+    The starts are spread by arc length over the start rim and the ends likewise over the end rim, for both families
+    the same. Where a rim's arc length is not even in u, the ends keep the mean turn of the whole rim.
+
+    Parameters
+    ----------
+    surface : Surface
+        Surface that closes in u.
+    paths : int
+        Number of paths per family, at least 1.
+    revolutions : float
+        Turns of u from end to end, at least 0: +revolutions for family +1 and -revolutions for family -1.
+
+    Returns
+    -------
+    Families
+        End points of 2 * paths paths.
+
+    Raises
+    ------
+    BadInputError
+        If the surface does not close in u, or `paths` or `revolutions` is out of range.
+
+    See Also
+    --------
+    read_pins : End points from a file.
+    choose_revolutions : Choose the number of revolutions.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> tube = mw.shapes.cylinder(radius=1.0, length=3.0)
+    >>> ends = mw.families(tube, paths=3, revolutions=0.5)
+    >>> paths = mw.solve(tube, ends.start, ends.end, family=ends.family, particles=51)
+    >>> len(paths)
+    6
     """
     if not surface.periodic:
         raise BadInputError("families need a surface that closes in u; give end points to `solve` instead")

@@ -22,12 +22,39 @@ _SEEDS = (64, 65)
 
 
 def read_pins(path: str | Path, surface: Surface, revolutions: float) -> Families:
-    """Read a path's two pins from each row of a CSV file whose first row names its columns.
+    r"""Read the end points of paths from a CSV file.
 
-    Either u0,v0,u1,v1: parametric, u in turns and unwrapped, so that its change is the number of revolutions; or
-    x0,y0,z0,x1,y1,z1: points in the mesh's units, which are moved to the nearest point of the surface.  Their paths
-    turn by about what a column `revolutions` says, negative for the other sense, or by `revolutions`, once in each
-    sense, so that both families start from every pin.  Raises BadInputError, which names the row.
+    The first row names the columns, and every other row holds the two pins of a path.  Columns u0, v0, u1, v1 are
+    parametric, u in turns and unwrapped, so that its change is the number of revolutions.  Columns x0, y0, z0, x1, y1,
+    z1 are points in the mesh's unit, which are moved to the nearest points of the surface; their paths turn by about
+    what a column revolutions says, negative for the other sense, or else by `revolutions`, once in each sense.
+
+    Parameters
+    ----------
+    path : str or Path
+        CSV file.
+    surface : Surface
+        Surface that the pins are on.
+    revolutions : float
+        Turns for pins in space without a column of their own.
+
+    Returns
+    -------
+    Families
+        End points, family +1 first.
+
+    Raises
+    ------
+    BadInputError
+        If the file cannot be read or a row cannot be used; the message names the row.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> import meshwind as mw
+    >>> lines = Path("pins.csv").write_text("u0,v0,u1,v1\n0,0,0.5,1\n0.25,0,-0.25,1\n")
+    >>> mw.read_pins("pins.csv", mw.shapes.cylinder(1.0, 3.0), revolutions=0.5).family
+    array([ 1, -1])
     """
     path = Path(path)
     names, rows = _table(path)

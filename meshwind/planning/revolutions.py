@@ -84,13 +84,44 @@ def choose_revolutions(
     most: float | None = None,
     further: bool = True,
 ) -> Revolutions:
-    """Choose the number of revolutions for `surface`, at most `most` (by default those of a hoop winding, and no more
-    than `particles` can follow).
+    """Choose the number of revolutions.
 
-    Inside the interval that holds, a number is taken that bridges least, in the interval(s) where most of the surface
-    presses if one of those is as good, and of these the one whose families cross closest to a right angle; with
-    `paths` a family of `particles` it is wound once in earnest.  With `further`, what a larger friction and wider
-    openings would allow is found as well.
+    Only feasible revolutions are considered: those at which no fibre slides off an end.  Of these a number with the
+    least bridging is taken; among numbers that are alike in that, one at which most of the surface presses, and then
+    the one whose families cross closest to a right angle.
+
+    Parameters
+    ----------
+    surface : Surface
+        Surface that closes in u.
+    paths : int, default 8
+        Number of paths per family for which the choice is wound at full resolution.
+    particles : int or None, default 401
+        Number of particles per path there, as for `solve`.
+    friction : float or Friction, default 0
+        Coefficient of friction.
+    most : float, optional
+        Largest number of revolutions.  By default that of a hoop winding, and no more than `particles` can follow.
+    further : bool, default True
+        Whether to find what more friction and wider openings would allow as well.
+
+    Returns
+    -------
+    Revolutions
+        The choice as `choice`, a line on it as `why`, the winding as `chosen`, and what the choice rests on.
+
+    Raises
+    ------
+    BadInputError
+        If the surface does not close in u, or `paths` or `most` is out of range.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> barrel = mw.shapes.revolution(lambda z: 1 - 0.3 * (z - 1) ** 2, 0.0, 2.0, spans=(32, 16))
+    >>> found = mw.choose_revolutions(barrel, paths=4, particles=51, further=False)
+    >>> 0.0 < found.choice < 0.6
+    True
     """
     if not surface.periodic:
         raise BadInputError("revolutions need a surface that closes in u; give end points to `solve` instead")

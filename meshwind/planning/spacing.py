@@ -81,9 +81,40 @@ class _Ring:
 
 
 def space_out(paths: Paths, revolutions: float, spacing: float, friction: float | Friction = 0.0) -> Spaced:
-    """Add paths to those that `families` spread evenly over the rims, wound by `revolutions`.
+    """Add paths until neighbours of a family lie no further apart than a given distance.
 
-    spacing: largest distance between neighbours of a family, in the mesh's units; friction as in `solve`.
+    Where no fibre rests between two neighbours, because they part around a boss, the gap stays and is reported.
+
+    Parameters
+    ----------
+    paths : Paths
+        Paths whose ends are spread evenly over the rims, as by `families`.
+    revolutions : float
+        Revolutions that they were wound by.
+    spacing : float
+        Largest distance between neighbours, in the mesh's unit.
+    friction : float or Friction, default 0
+        Coefficient of friction, as for `solve`.
+
+    Returns
+    -------
+    Spaced
+        All paths as `paths`, and the pairs of neighbours between which the gap stays as `partings`.
+
+    Raises
+    ------
+    BadInputError
+        If `revolutions` or `spacing` is out of range, or the spacing would take more than 4000 paths.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> tube = mw.shapes.cylinder(radius=1.0, length=3.0)
+    >>> ends = mw.families(tube, paths=3, revolutions=0.5)
+    >>> paths = mw.solve(tube, ends.start, ends.end, family=ends.family, particles=51)
+    >>> spaced = mw.space_out(paths, revolutions=0.5, spacing=1.0)
+    >>> len(spaced.paths) > len(paths), spaced.gap <= 1.0
+    (True, True)
     """
     if not np.isfinite(revolutions):
         raise BadInputError(f"revolutions is {revolutions}; give the number that the paths were wound by")

@@ -33,13 +33,48 @@ def write_redesign(
     seconds: dict[str, float] | None = None,
     options: Mapping[str, object] | None = None,
 ) -> dict[str, Any]:
-    """Write edited.ply, edited.vtu, report.json and, with `render`, the pictures into the folder `out`.
+    """Write the results of a redesign into a folder.
 
-    before.png and after.png show the windings of the mesh that was read and of the edited one, redesign.png what was
-    moved.  units: name of the mesh's; overwrite: replace the results that `out` holds; seconds: of the stages before;
-    options: what was asked for by the names of the command line, which meshwind.toml then holds.
-    Returns the report, with a note where there are no pictures for want of an OpenGL driver.  Raises BadInputError
-    where `out` cannot be written or, without `overwrite`, holds results.
+    The folder gets `edited.ply`, `edited.vtu`, `report.json`, with `options` also `meshwind.toml`, and with `render`
+    the pictures `before.png` and `after.png` of the windings and `redesign.png` of what was moved.  All files appear,
+    or none.
+
+    Parameters
+    ----------
+    edited : Redesign
+        Result of `redesign`.
+    out : str or PathLike
+        Folder for the files.
+    units : str, default ""
+        Name of the mesh's unit.
+    render : bool, default True
+        Whether to draw the pictures.
+    overwrite : bool, default False
+        Whether to replace results that the folder holds already.
+    command : str, default ""
+        Command line, for the report.
+    seconds : dict of str to float, optional
+        Wall times of earlier stages, for the report.
+    options : mapping of str to object, optional
+        Options by their names on the command line, for `meshwind.toml`.
+
+    Returns
+    -------
+    dict
+        Contents of `report.json`, with a note where pictures could not be drawn.
+
+    Raises
+    ------
+    BadInputError
+        If the folder cannot be written or, without `overwrite`, holds results.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> edited = mw.redesign("data/tank.ply", revolutions=0.3, paths=3, particles=51)
+    >>> report = mw.write_redesign(edited, "out", units="mm", render=False)
+    >>> report["redesign"]["windable"]
+    True
     """
     clock, notes = Clock(), list[str]()
     with folder.writing(Path(out), overwrite) as staging:

@@ -33,11 +33,40 @@ from meshwind.workflow.winding import Winding, wind_part
 
 @dataclass(frozen=True, repr=False)
 class Result(Winding):
-    """A wound part: what every stage made, and what the run cost.
+    """A wound part: the results of all stages.
 
-    options are those it was wound with; seconds holds each stage's wall time; notes say what the user should
-    know beside the figures; chosen and spaced: how revolutions and spacing were found, where that was asked for;
-    source: the mesh's file, if it came from one.
+    Attributes
+    ----------
+    mesh : Mesh
+        Repaired mesh.
+    chart : Chart
+        Flattened mesh.
+    layup : Layup
+        Paths with crossings, quads and coverage.
+    options : Options
+        Options that the part was wound with.
+    command : str
+        Command line, for the report.
+    seconds : dict of str to float
+        Wall time of each stage.
+    notes : tuple of Note
+        What a user should know beside the figures; warnings say that the results may not be what was wanted.
+    chosen : Revolutions or None
+        How the revolutions were chosen, with revolutions="auto".
+    spaced : Spaced or None
+        How paths were added, with `spacing`.
+    source : Path or None
+        File of the mesh, if it came from one.
+
+    See Also
+    --------
+    wind : Wind a part.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> mw.wind("data/tank.ply", paths=4, revolutions=0.3, particles=51)
+    <meshwind Result: tank.ply, 8 of 8 paths at rest>
     """
 
     @classmethod
@@ -61,16 +90,29 @@ class Result(Winding):
 
     @property
     def settled(self) -> bool:
-        """Whether every path came to rest."""
+        """Whether every path is in equilibrium."""
         return bool((self.paths.status == Status.CONVERGED).all())
 
     @property
     def revolutions(self) -> float:
-        """Turns from end to end: as asked for or, with "auto", as chosen."""
+        """Revolutions from end to end, as chosen where they were "auto"."""
         return float(self.options.revolutions) if self.chosen is None else self.chosen.choice
 
     def report(self) -> dict[str, Any]:
-        """The figures that report.json holds; lengths in the mesh's units, angles in degrees."""
+        """Collect the figures of the run.
+
+        Returns
+        -------
+        dict
+            Contents of `report.json`: lengths in the mesh's unit, angles in degrees.
+
+        Examples
+        --------
+        >>> import meshwind as mw
+        >>> report = mw.wind("data/tank.ply", paths=4, revolutions=0.3, particles=51).report()
+        >>> report["paths"]["converged"], report["winding"]["paths_per_family"]
+        (8, 4)
+        """
         return report(
             self.layup,
             self.mesh,
@@ -87,12 +129,37 @@ class Result(Winding):
         )
 
     def write(self, out: str | PathLike[str], render: bool = True, overwrite: bool = False) -> "Result":
-        """Write all files of the run into the folder `out`, whole or not at all.
+        """Write all files of the run into a folder; all appear, or none.
 
-        overwrite: whether results of an earlier run there are replaced, or removed where this one has none; without
-        it they raise BadInputError.  Returns the result with the time that writing and drawing took and, where there
-        is no OpenGL driver for the pictures, a note that says what to install.  fit_error.png is drawn where a note
-        warns of the fit.
+        `fit_error.png` is drawn where a note warns of the fit.
+
+        Parameters
+        ----------
+        out : str or PathLike
+            Folder for the files.
+        render : bool, default True
+            Whether to draw the pictures.
+        overwrite : bool, default False
+            Whether to replace results that the folder holds already.
+
+        Returns
+        -------
+        Result
+            The result, with the wall time of writing and, where pictures could not be drawn, a note on what to
+            install.
+
+        Raises
+        ------
+        BadInputError
+            If the folder cannot be written or, without `overwrite`, holds results.
+
+        Examples
+        --------
+        >>> from pathlib import Path
+        >>> import meshwind as mw
+        >>> result = mw.wind("data/tank.ply", paths=4, revolutions=0.3, particles=51).write("out", render=False)
+        >>> Path("out/paths.vtp").is_file()
+        True
         """
         return _write(self, _folder(out), render, overwrite, Clock())
 
@@ -120,18 +187,76 @@ def wind(
     command: str = "",
     progress: Progress | None = None,
 ) -> Result:
-    """Lay two families of taut paths on a triangle mesh.
+    """Wind a part: lay two families of taut paths on a triangle mesh.
 
-    mesh: a file or a `Mesh`; paths: a family; revolutions: turns from end to end, or "auto"; friction: coefficient, or
-    "field:NAME" for a scalar of the mesh file; component: which piece of a file, by its rank of area; ends: "auto",
-    "x", "y", "z", two points "x,y,z x,y,z" or two rims "loops 0 1"; opening: radius at a closed end in the mesh's
-    units; tolerance: largest distance of a vertex from the surface over the mesh's diagonal; worst_fit: largest
-    distance between surface and mesh, over the diagonal, that is wound at all; units: the name of the mesh's unit
-    (mm, cm, m, um, in, ft), "" if unknown; particles: a path, None for as many as lengths right to 1e-5 need;
-    spacing: paths are added until neighbours lie no further apart; band_width: of the fibre, by default one layer a
-    family; linear_density: its mass over its length; pins: a CSV file of the paths' ends (`read_pins`); out: folder
-    for the files; overwrite: replace the results that it holds; render: draw the pictures as well.  Raises
-    BadInputError, in one line, for whatever the caller can mend.
+    The mesh is read and repaired, opened at its two ends, flattened to the periodic rectangle and fitted with a
+    B-spline surface; the paths are laid on the surface and assessed.
+
+    Parameters
+    ----------
+    mesh : str, PathLike or Mesh
+        Mesh, or the path of its file.
+    paths : int, default 12
+        Number of paths per family; the two families turn in opposite senses.
+    revolutions : float or str, default 0.5
+        Revolutions of a path from end to end, or "auto", which picks the value with stable paths and least bridging.
+    friction : float or str, default 0
+        Coefficient of friction of the fibre on the part, or "field:NAME" for a scalar of the mesh file.
+    component : int, default 0
+        Which piece of the mesh file to wind, by its rank of area: 0 is the largest.
+    ends : str, default "auto"
+        Where the ends are: "auto", "x", "y", "z", two points "x,y,z x,y,z", or two open rims "loops 0 1"; see
+        `annulus`.
+    opening : float, optional
+        Radius of the opening at a closed end, in the mesh's unit.  By default it follows from the part.
+    tolerance : float, default 1e-5
+        Largest distance of a vertex from the surface, over the diagonal of the mesh.
+    worst_fit : float, default 0.1
+        Largest distance between surface and mesh, over the diagonal, up to which the part is wound at all.
+    units : str, default ""
+        Name of the mesh's unit, "mm", "cm", "m", "um", "in" or "ft"; "" if it is not known.  Nothing is converted.
+    particles : int or None, default 401
+        Number of particles per path.  None takes as many as give lengths to a relative error of 1e-5.
+    spacing : float, optional
+        Add paths until neighbours of a family lie no further apart than this, in the mesh's unit.
+    band_width : float, optional
+        Width of the fibre, in the mesh's unit, for the coverage.  By default it gives one layer per family.
+    linear_density : float, optional
+        Mass of the fibre over its length, per unit of the mesh, for its mass.
+    pins : str or PathLike, optional
+        CSV file of the paths' ends, see `read_pins`.  By default they are spread evenly over the rims.
+    out : str or PathLike, optional
+        Folder for the results.  By default nothing is written.
+    overwrite : bool, default False
+        Whether to replace results that the folder holds already.
+    render : bool, default True
+        Whether to draw pictures into the folder as well.
+    command : str, default ""
+        Command line, for the report.
+    progress : callable, optional
+        Called with the name of each stage as it starts.
+
+    Returns
+    -------
+    Result
+        Paths, layup and figures.
+
+    Raises
+    ------
+    BadInputError
+        If the mesh cannot be wound, an argument cannot be used, or, without `overwrite`, the folder holds results.
+
+    See Also
+    --------
+    solve : Lay paths between given ends on any surface.
+    redesign : Change a part so that no path bridges.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> result = mw.wind("data/tank.ply", paths=4, revolutions=0.3, particles=51)
+    >>> result.settled, result.paths.points.shape
+    (True, (8, 51, 3))
     """
     pinned = fspath(pins) if isinstance(pins, PathLike) else pins
     options = Options(
