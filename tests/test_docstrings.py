@@ -6,14 +6,20 @@ import inspect
 import re
 from collections.abc import Iterator
 from functools import cached_property
+from importlib import import_module
 from pathlib import Path
+from pkgutil import iter_modules
 from typing import Any
 
 import pytest
+from docutils.frontend import get_default_settings
+from docutils.parsers.rst import Parser
+from docutils.utils import new_document
 from numpydoc.docscrape import get_doc_object
 from numpydoc.validate import validate
 
 import meshwind as mw
+import meshwind.theory
 
 DATA = Path(__file__).parents[1] / "data"
 SPARED = {
@@ -74,6 +80,18 @@ def test_a_docstring_follows_numpydoc(name: str) -> None:
             assert attributes == fields
     faults = [fault for fault in validate(get_doc_object(shown))["errors"] if fault[0] not in spared]
     assert faults == []
+
+
+@pytest.mark.parametrize("page", ["meshwind", "meshwind.theory", *(
+    f"meshwind.theory.{page.name}" for page in iter_modules(meshwind.theory.__path__)
+)])  # fmt: skip
+def test_glossary_and_theory_can_be_rendered(page: str) -> None:
+    """As reStructuredText, without a warning, which docutils would raise."""
+    text = inspect.getdoc(import_module(page)) or ""
+    parser = Parser()
+    settings = get_default_settings(parser)
+    settings.halt_level, settings.report_level = 2, 5
+    parser.parse(text, new_document(page, settings))
 
 
 @pytest.mark.parametrize("name", WHOLE)

@@ -22,16 +22,17 @@ against the functions that implement them.
 
 Notation
 --------
-A dot between two vectors is the scalar product, x the vector product, ^T a transpose, |.| a Euclidean norm.  Angles
+A dot between two vectors is the scalar product, x the vector product, ^T a transpose, ``|.|`` a Euclidean norm.  Angles
 are in radians, lengths in the unit of the mesh.  Symbols that the source writes in other ways are given in brackets.
 
-================== =================================================================================================
+================== =====================================================================================================
 symbol             meaning
-================== =================================================================================================
+================== =====================================================================================================
 s(u, v)            the surface; u in turns with period 1 [T_u], v in [0, 1] from the start rim to the end rim
 s_u ... s_vv       its partial derivatives
-a_uu, a_uv, a_vv   first fundamental form: s_u . s_u, s_u . s_v, s_v . s_v; W^2 = a_uu a_vv - a_uv^2 = |s_u x s_v|^2
-n                  outward unit normal, s_u x s_v / |s_u x s_v| [n_s, pointing outwards]
+a_uu, a_uv, a_vv   first fundamental form: s_u . s_u, s_u . s_v, s_v . s_v
+W                  area element: W^2 = a_uu a_vv - a_uv^2, ``W = |s_u x s_v|``
+n                  outward unit normal, s_u x s_v / W [n_s]
 r(l)               the fibre as a curve, by arc length l [t]; ' is its derivative by l
 t, b               its unit tangent r', and b = n x t, which points to the fibre's left as seen from outside
 kn, kg             normal curvature -r'' . n, positive where the fibre presses, and geodesic curvature r'' . b
@@ -44,11 +45,11 @@ V_i, w_i           velocities in space and in the parametric plane [V with a bar
 A_i                acceleration in space
 J_i = (s_u, s_v)   Jacobian (3 x 2) at x_i; J the block diagonal matrix of all of them
 K, m, beta         constant of a spring, mass of a particle, coefficient of damping
-k = K/m, c = beta/m  what of these counts: only ratios enter the motion
+k, c               K/m and beta/m, which are all that counts in the motion
 L                  matrix of the springs, with rows (I, -2 I, I), so that the springs' force is K L P [K/m L: bold K]
 h                  time step; x+, w+, J+ are x, w, J after the step, and without a sign they are those before it
-E                  energy of the chain over K, 1/2 sum over i of |P_(i+1) - P_i|^2
-================== =================================================================================================
+E                  energy of the chain over K, ``1/2 sum over i of |P_(i+1) - P_i|^2``
+================== =====================================================================================================
 
 Figures, tables and algorithms that the code refers to are described where they belong: figures 1.3 and 6.3 and
 section 6.3 in `layups`, figures 4.2 and 4.3 in `geodesics`, algorithms 1 and 2 in `bridging`, figures 7.1, 7.2, 7.6 and

@@ -6,11 +6,11 @@ A particle is pulled off the surface where the curve bends outwards::
 
     n . n_r > 0                                                                                                   (5.1)
 
-*Touching* particles are on the surface, *lifted* ones are not.  Let i_- and i_+ be the touching particles nearest
-before and after the touching particle i, and P_- and P_+ their positions.
+*Touching* particles are on the surface, *lifted* ones are not.  Let ``i_-`` and ``i_+`` be the touching particles
+nearest before and after the touching particle i, and ``P_-`` and ``P_+`` their positions.
 
-Algorithm 1: mark particle i as lifted where (P_- - 2 P_i + P_+) . n_i > 0, put it on the line between P_- and P_+, and
-repeat until no particle is marked in a whole sweep.  The ends always touch.
+Algorithm 1: mark particle i as lifted where ``(P_- - 2 P_i + P_+) . n_i > 0``, put it on the line between ``P_-`` and
+``P_+``, and repeat until no particle is marked in a whole sweep.  The ends always touch.
 
 Springs across a bridge (section 5.2)
 -------------------------------------
@@ -28,9 +28,9 @@ As an example, of six particles 3 and 4 are lifted; the rows of particles 2 and 
 
     (1, -4/3, 1/3, 0),    (0, 1/3, -4/3, 1)                                                               (5.3) context
 
-Departure in meshwind: Algorithm 1 is applied with this force F in place of P_- - 2 P_i + P_+.  Where i - i_- and
-i_+ - i differ, the unweighted sum can point outwards although the springs pull inwards; then a particle beside a
-bridge is lifted and lands in turn, for ever.  `meshwind.methods.run` has both, by its argument `weighted`.
+Departure in meshwind: Algorithm 1 is applied with this force F in place of ``P_- - 2 P_i + P_+``.  Where ``i - i_-``
+and ``i_+ - i`` differ, the unweighted sum can point outwards although the springs pull inwards; then a particle beside
+a bridge is lifted and lands in turn, for ever.  `meshwind.methods.run` has both, by its argument `weighted`.
 
 Landing (section 5.3)
 ---------------------

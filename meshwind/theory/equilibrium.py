@@ -14,12 +14,12 @@ The tension is taken as constant along the fibre, as the machine sets it::
     T t' + N n + f = 0                                                                                            (3.4)
 
 As t is a unit vector, t' = r'' is square to it.  With its principal normal n_r, a unit vector along r'',
-t' = |r''| n_r, and in the surface's own directions r'' = kg b - kn n.  So (3.4) says, component by component::
+``t' = |r''| n_r``, and in the surface's own directions r'' = kg b - kn n.  So (3.4) says, component by component::
 
     N = T kn,    f = -T kg b
 
 Friction therefore acts across the fibre only: along it there is nothing to balance while the tension is constant.
-Written with n_r, and with T |r''| squared::
+Written with n_r, and with ``T |r''|`` squared::
 
     t' = |r''| n_r                                                                             (3.5) corrected, context
     -T |r''| n_r = N n + f                                                                     (3.6) corrected, context
@@ -39,8 +39,8 @@ In curvatures (3.12) is simply ::
 
     kn > 0  and  |kg| / kn <= mu
 
-|kg| / kn is the *required friction*: the least coefficient that holds the fibre where it lies.  The file field `slip`
-and the attribute `Paths.slip` hold it.  A fibre that carries no load, N = 0, is straight there and needs none::
+``|kg| / kn`` is the *required friction*: the least coefficient that holds the fibre where it lies.  The file field
+`slip` and the attribute `Paths.slip` hold it.  A fibre that carries no load, N = 0, is straight there and needs none::
 
     N = 0:  r'' = 0,  and (3.12) is taken as met                                                         (3.13) context
 
@@ -49,7 +49,7 @@ Without friction n = -n_r: the fibre is a geodesic, kg = 0, where it presses::
     n = -n_r                                                                                             (3.14) context
 
 A curve that is confined to the surface follows hollows as well, where n_r points outwards.  There the sign of n_r is
-the one that makes the angle acute, that is, |kg| / |kn| takes the place of |kg| / kn::
+the one that makes the angle acute, that is, ``|kg| / |kn|`` takes the place of ``|kg| / kn``::
 
     angle(n, +n_r or -n_r) <= arctan(mu)                                                                         (3.15)
     n = +n_r or -n_r                                                                                     (3.16) context
@@ -78,7 +78,7 @@ Both components of r'' along the surface vanish for a geodesic::
     u'' + Gu_uu u'^2 + 2 Gu_uv u' v' + Gu_vv v'^2 = 0
     v'' + Gv_uu u'^2 + 2 Gv_uv u' v' + Gv_vv v'^2 = 0                                                    (3.20) context
 
-where Christoffel's symbols are, with W = |s_u x s_v| ::
+where Christoffel's symbols are ::
 
     Gu_ij = (a_vv s_ij . s_u - a_uv s_ij . s_v) / W^2
     Gv_ij = (a_uu s_ij . s_v - a_uv s_ij . s_u) / W^2   for ij = uu, uv, vv                            (3.21) corrected

@@ -5,7 +5,7 @@ The left column gives what the copy at hand prints, in the notation of these pag
 ============= ============================================= ===============================================
 where         printed                                       used
 ============= ============================================= ===============================================
-(3.5)-(3.7),  |r'|, which is 1                              |r''|, the curvature
+(3.5)-(3.7),  ``|r'|``, which is 1                          ``|r''|``, the curvature
 (3.9), (3.10)
 (3.21)        second terms of all symbols but the first two s_ij . s_v in Gu_ij and s_ij . s_u in Gv_ij; the
               end in a bare s_uv or s_vv; Gv_vv has no name last symbol is Gv_vv
@@ -16,15 +16,15 @@ section 4.1   an unstable geodesic is a local maximum of    it is a saddle: of t
               left                                          (4.11) and (4.17) have it
 (4.14)        P+ = P + h J+ w                               P + h J w+, the superscripts exchanged, which
                                                             (4.15) uses
-(4.18)        A . n without absolute value                  |A . n|, as (4.19) has it: with n outwards A . n
+(4.18)        A . n without absolute value                  ``|A . n|``, as (4.19) has it: with n outwards it
                                                             is negative where the fibre presses, and
-                                                            friction would drive it
+                                                            friction would drive the fibre on
 (5.7)         the Hessian H without the factor 2 that       both without it, for g / 2: as printed, the step
               grad g has                                    (5.5) is twice too long and does not converge
 (5.8)         denominator (i - i_(j-1)) (i_(j-1) - i)       (i - i_(j-1)) (i_(j+1) - i), as in (5.2): the
                                                             three weights of a row add up to 0
-Algorithm 1   P_- - 2 P_i + P_+                             the force of (5.2), as i_- and i_+ need not be
-                                                            as far from i
+Algorithm 1   ``P_- - 2 P_i + P_+``                         the force of (5.2), as ``i_-`` and ``i_+`` need
+                                                            not be as far from i
 (6.3)         s_uv without a factor 2; > 0, with            2 s_uv; < 0, as s_u x s_v points outwards here
               s_u x s_v inwards
 section 6.3   ceiling(x) new paths between two that are     ceiling(x) - 1 are enough

@@ -7,7 +7,7 @@ can.  The force on an inner particle is ::
 
     F_i = K (P_(i-1) - P_i) + K (P_(i+1) - P_i)                                                                   (4.1)
 
-which is minus K times the gradient of the energy E = 1/2 sum over i of |P_(i+1) - P_i|^2.
+which is minus K times the gradient of the energy ``E = 1/2 sum over i of |P_(i+1) - P_i|^2``.
 
 With unit masses, or k = K/m, all accelerations in space are linear in the positions; the two ends are fixed::
 

@@ -22,21 +22,21 @@ With v from 0 to 1 and divided by z^2, this is quadratic in n_rev::
 
 so that it holds on no, one or two intervals of n_rev >= 0.  The source takes n_rev from the interval that most points
 of the surface share.  Departures in meshwind: both families must press, +n_rev and -n_rev, so that the middle term
-becomes -2 n_rev |s_uv . n|; points count by the area that they stand for; and a number is used only if paths wound by
-it do not slide off a rim.  These are the *feasible revolutions*.  On a surface of revolution with the radius r and the
-winding angle alpha Clairaut's relation r sin(alpha) = constant bounds them, whatever (6.3) says.
+becomes ``-2 n_rev |s_uv . n|``; points count by the area that they stand for; and a number is used only if paths wound
+by it do not slide off a rim.  These are the *feasible revolutions*.  On a surface of revolution with the radius r and
+the winding angle alpha Clairaut's relation r sin(alpha) = constant bounds them, whatever (6.3) says.
 
 What is measured (section 6.2)
 ------------------------------
 Figure 1.3 shows at points of a surface in which tangent directions a fibre presses: all of them where it is convex,
 none where it is concave, a sector where it is a saddle.  With the principal curvatures k1 >= k2, positive where the
 surface bulges outwards, and the angle phi to the first principal direction, kn = k1 cos(phi)^2 + k2 sin(phi)^2, and the
-sector is |phi| <= arctan(sqrt(k1 / -k2)).  `meshwind.windability` gives it.
+sector is ``|phi| <= arctan(sqrt(k1 / -k2))``.  `meshwind.windability` gives it.
 
-Figure 6.3: two paths of different families cross at the angle theta; the *quality* of the crossing is |cos(theta)|, 0
-where they are square to each other and 1 where they are parallel.  The distance between neighbouring paths of a family
-is measured along the paths of the other family, from crossing to crossing; meshwind measures it straight as well.  Its
-relation to the width of the band gives the coverage.
+Figure 6.3: two paths of different families cross at the angle theta; the *quality* of the crossing is ``|cos(theta)|``,
+0 where they are square to each other and 1 where they are parallel.  The distance between neighbouring paths of a
+family is measured along the paths of the other family, from crossing to crossing; meshwind measures it straight as
+well.  Its relation to the width of the band gives the coverage.
 
 Non-uniform paths (section 6.3)
 -------------------------------
