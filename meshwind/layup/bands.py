@@ -1,27 +1,41 @@
 """Bands of fibre laid on the surface: how many lie over any point, and what stays bare."""
 
 from dataclasses import dataclass
+from math import ceil, floor
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.vectors import TINY
 from meshwind.path.paths import Paths
+from meshwind.surface.evaluate import SU, SV, S
+from meshwind.surface.forms import area_elements
+from meshwind.surface.parameters import mean_speeds, midpoints, parameter_grid
 from meshwind.surface.surface import Surface
 
 _ACROSS = 6
 """Samples across a band, where they are not too many."""
 _LEAST, _MOST = 64, 512
 """Fewest and most samples each way."""
+_SPEED_SAMPLES = 32
+"""Points each way from which the number of samples is chosen."""
+_RIM_SAMPLES = 16
+"""Samples of a rim per span, for the area that it encloses."""
+_MARGIN = 1.5
+"""Times the extent of a disc in u and v that is searched, as the metric changes within it."""
+_SINGULAR = 1e-12
+"""Least determinant of the metric over the product of its diagonal: s_u and s_v are parallel where it is less."""
 _RIM = 1e-9
 """Closer to v=0 or v=1 than this a path ends on the rim."""
 _MOST_PAST = 6.0
-"""So many half widths at most a band goes on past a rim: its edge reaches the rim at up to 80 degrees from square."""
+"""Half widths by which a band goes on past a rim at most: its edge reaches the rim at up to 80 degrees from square."""
 
 
 @dataclass(frozen=True)
 class Bands:
-    """Layers of band over an even grid of points of the surface.
+    """Layers of band over an even grid of points on the surface.
 
     uv (nu nv, 2), u slowest: the middles of the grid's cells; area (nu, nv) of the cells; layers (nu, nv): bands over
     each middle; width of the band; footprint: length of the fibres on the surface, bridges at their feet, times the
@@ -36,8 +50,8 @@ class Bands:
     openings: tuple[float, float]
 
     def share(self, layers: int) -> float:
-        """Share of the surface's area that lies under just so many layers."""
-        return float(self.area[self.layers == layers].sum() / max(float(self.area.sum()), 1e-300))
+        """Share of the surface's area that lies under exactly `layers` layers."""
+        return float(self.area[self.layers == layers].sum() / max(float(self.area.sum()), TINY))
 
     @property
     def bare(self) -> float:
@@ -57,7 +71,7 @@ class Bands:
 
     @property
     def caps(self) -> tuple[float, float]:
-        """Areas at both ends that stay bare all around: the openings, and the rings next to them without a band."""
+        """Areas at both ends that stay bare all around: each opening, with the bare rings next to it."""
         bare = (self.layers == 0).all(axis=0)
         ring = self.area.sum(axis=0)
         reach = [int(np.argmin(rows)) if not rows.all() else len(rows) for rows in (bare, bare[::-1])]
@@ -73,16 +87,15 @@ def bands(paths: Paths, width: float) -> Bands:
     surface = paths.surface
     p, n = paths.gap.shape
     frames = surface.frames(paths.uv.reshape(-1, 2)).reshape(p, n, 6, 3)
-    feet = np.ascontiguousarray(frames[:, :, 0])
+    feet = np.ascontiguousarray(frames[:, :, S])
     nu, nv = _grid(surface, width)
-    u, v = (np.arange(nu) + 0.5) / nu, (np.arange(nv) + 0.5) / nv
-    uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2)
+    uv = parameter_grid(midpoints(nu), midpoints(nv))
     at = surface.frames(uv)
-    area = np.linalg.norm(np.cross(at[:, 1], at[:, 2]), axis=1).reshape(nu, nv) / (nu * nv)
+    area = area_elements(at).reshape(nu, nv) / (nu * nv)
     layers = np.zeros((nu, nv), dtype=np.int64)
-    points = np.ascontiguousarray(at[:, 0]).reshape(nu, nv, 3)
-    reach = _reach(frames[:, :, 1], frames[:, :, 2], 0.5 * width)
-    _paint(paths.uv, feet, reach, _past_rims(paths.uv, frames), points, 0.5 * width, surface.periodic, layers)
+    cells = Cells(np.ascontiguousarray(at[:, S]).reshape(nu, nv, 3), surface.periodic)
+    reach = _reach(frames[:, :, SU], frames[:, :, SV], 0.5 * width)
+    _paint(Strips(paths.uv, feet, reach, _past_rims(paths.uv, frames), 0.5 * width), cells, layers)
     length = float(np.linalg.norm(np.diff(feet, axis=1), axis=2).sum())
     openings = tuple(_opening(surface, end) for end in (0.0, 1.0))
     return Bands(frozen(uv), frozen(area), frozen(layers), width, width * length, (openings[0], openings[1]))
@@ -90,10 +103,7 @@ def bands(paths: Paths, width: float) -> Bands:
 
 def _grid(surface: Surface, width: float) -> tuple[int, int]:
     """Samples each way so that some lie across a band everywhere."""
-    t = (np.arange(32) + 0.5) / 32
-    frames = surface.frames(np.stack(np.meshgrid(t, t, indexing="ij"), axis=2).reshape(-1, 2))
-    around, along = np.linalg.norm(frames[:, 1:3], axis=2).mean(axis=0)
-    count = np.array([around, along]) * _ACROSS / max(width, 1e-300)
+    count = np.array(mean_speeds(surface, _SPEED_SAMPLES)) * _ACROSS / max(width, TINY)
     nu, nv = np.clip(np.ceil(count), _LEAST, _MOST).astype(int)
     return int(nu), int(nv)
 
@@ -101,7 +111,7 @@ def _grid(surface: Surface, width: float) -> tuple[int, int]:
 def _reach(su: Floats, sv: Floats, half: float) -> Floats:
     """How far in u and in v (p, n, 2) a disc of radius `half` in the tangent plane goes."""
     e, f, g = ((a * b).sum(axis=2) for a, b in ((su, su), (su, sv), (sv, sv)))
-    square = np.maximum(e * g - f * f, 1e-12 * e * g + 1e-300)
+    square = np.maximum(e * g - f * f, _SINGULAR * e * g + TINY)
     return np.ascontiguousarray(np.stack([half * np.sqrt(g / square), half * np.sqrt(e / square)], axis=2))
 
 
@@ -109,9 +119,9 @@ def _past_rims(uv: Floats, frames: Floats) -> Floats:
     """Half widths (p, 2) by which a band goes on past its path's ends: the tangent of its angle to the rim's normal."""
     past = np.zeros((len(uv), 2))
     for end, step in ((0, 1), (-1, -2)):
-        along, rim = frames[:, step, 0] - frames[:, end, 0], frames[:, end, 1]
+        along, rim = frames[:, step, S] - frames[:, end, S], frames[:, end, SU]
         across = np.linalg.norm(np.cross(along, rim), axis=1)
-        tangent = np.abs((along * rim).sum(axis=1)) / np.maximum(across, 1e-300)
+        tangent = np.abs((along * rim).sum(axis=1)) / np.maximum(across, TINY)
         on_rim = np.abs(uv[:, end, 1] - 0.5) > 0.5 - _RIM
         past[:, end] = np.where(on_rim, np.minimum(tangent, _MOST_PAST), 0.0)
     return past
@@ -119,54 +129,128 @@ def _past_rims(uv: Floats, frames: Floats) -> Floats:
 
 def _opening(surface: Surface, v: float) -> float:
     """Flat area that a rim encloses: the length of its vector area."""
-    u = np.arange(16 * surface.spans[0]) / (16 * surface.spans[0])
-    frames = surface.frames(np.stack([u, np.full_like(u, v)], axis=1))
-    middle = frames[:, 0].mean(axis=0)
-    return float(0.5 * np.linalg.norm(np.cross(frames[:, 0] - middle, frames[:, 1]).mean(axis=0)))
+    count = _RIM_SAMPLES * surface.spans[0]
+    frames = surface.frames(parameter_grid(np.arange(count) / count, np.array([v])))
+    middle = frames[:, S].mean(axis=0)
+    return float(0.5 * np.linalg.norm(np.cross(frames[:, S] - middle, frames[:, SU]).mean(axis=0)))
+
+
+class Strips(NamedTuple):
+    """Bands along p paths of n particles: uv (p, n, 2) and feet (p, n, 3) of the particles; half their width.
+
+    reach (p, n, 2): extent in u and v of a disc of that radius; past (p, 2): half widths by which a band goes on past
+    its ends.
+    """
+
+    uv: Floats
+    feet: Floats
+    reach: Floats
+    past: Floats
+    half: float
+
+
+class Cells(NamedTuple):
+    """The grid that is painted: the middles (nu, nv, 3) of its cells, and whether it closes in u."""
+
+    points: Floats
+    periodic: bool
+
+
+class Segment(NamedTuple):
+    """A band between two neighbouring feet, of the same half width all along.
+
+    It goes from the plane through `start` square to `before` to that through start + along square to `after`, each
+    moved outward by what the band goes on past a rim: a point x from `start` belongs to it if x . before >= low and
+    (x - along) . after < high.  square = along . along.
+    """
+
+    start: Floats
+    along: Floats
+    before: Floats
+    after: Floats
+    square: float
+    low: float
+    high: float
+
+
+class Window(NamedTuple):
+    """Ranges of cells, each with its last: columns, which may be counted past a turn, and rows."""
+
+    first: int
+    last: int
+    bottom: int
+    top: int
 
 
 @njit(cache=True)
-def _paint(uv, feet, reach, past, points, half, periodic, layers):
-    """Add a layer at every point within `half` of a path's feet, once each time that the path passes it.
+def _paint(strips, cells, layers):
+    """Add a layer at every point within half a width of a path's feet, once each time that the path passes it.
 
     The points between the planes square to the path at two neighbouring feet are those of the segment between: the
     planes part what belongs to one segment from what belongs to the next, also where the path bends.
     """
-    nu, nv = layers.shape
-    p, n = uv.shape[:2]
+    p, n = strips.uv.shape[:2]
     for i in range(p):
         for k in range(n - 1):
-            start, end = feet[i, k], feet[i, k + 1]
-            along = end - start
-            square = (along * along).sum()
-            if square == 0.0:
+            segment = _segment(strips, i, k)
+            if segment.square > 0.0:
+                _paint_segment(segment, _window(strips, i, k, cells), cells, strips.half, layers)
+
+
+@njit(cache=True)
+def _past(strips, i, k):
+    """Half widths by which segment k of path i goes on before its first and after its last foot."""
+    last = strips.uv.shape[1] - 2
+    return strips.past[i, 0] if k == 0 else 0.0, strips.past[i, 1] if k == last else 0.0
+
+
+@njit(cache=True)
+def _segment(strips, i, k):
+    """Segment k of path i."""
+    feet, n = strips.feet[i], strips.feet.shape[1]
+    start, end = feet[k], feet[k + 1]
+    along = end - start
+    square = (along * along).sum()
+    before, after = end - feet[max(k - 1, 0)], feet[min(k + 2, n - 1)] - start
+    low, high = _past(strips, i, k)
+    length = np.sqrt(square)
+    return Segment(start, along, before, after, square, -low * strips.half * length, high * strips.half * length)
+
+
+@njit(cache=True)
+def _window(strips, i, k, cells):
+    """The cells that segment k of path i can reach."""
+    nu, nv = cells.points.shape[:2]
+    low, high = _past(strips, i, k)
+    wide = _MARGIN * (1.0 + max(low, high))
+    uv, reach = strips.uv[i], strips.reach[i]
+    ru = min(wide * max(reach[k, 0], reach[k + 1, 0]), 0.5)
+    rv = wide * max(reach[k, 1], reach[k + 1, 1])
+    first = ceil((min(uv[k, 0], uv[k + 1, 0]) - ru) * nu - 0.5)
+    last = floor((max(uv[k, 0], uv[k + 1, 0]) + ru) * nu - 0.5)
+    bottom = ceil((min(uv[k, 1], uv[k + 1, 1]) - rv) * nv - 0.5)
+    top = floor((max(uv[k, 1], uv[k + 1, 1]) + rv) * nv - 0.5)
+    last = min(last, first + nu - 1)
+    if not cells.periodic:
+        first, last = max(first, 0), min(last, nu - 1)
+    return Window(first, last, max(bottom, 0), min(top, nv - 1))
+
+
+@njit(cache=True)
+def _paint_segment(segment, window, cells, half, layers):
+    """Add a layer at every point of a window that a segment covers."""
+    nu = len(layers)
+    start, along, before, after = segment.start, segment.along, segment.before, segment.after
+    for a in range(window.first, window.last + 1):
+        for b in range(window.bottom, window.top + 1):
+            point = cells.points[a % nu, b]
+            x, y, z = point[0] - start[0], point[1] - start[1], point[2] - start[2]
+            if x * before[0] + y * before[1] + z * before[2] < segment.low:
                 continue
-            before = end - feet[i, max(k - 1, 0)]
-            after = feet[i, min(k + 2, n - 1)] - start
-            low, high = -past[i, 0] * half if k == 0 else 0.0, past[i, 1] * half if k == n - 2 else 0.0
-            wide = 1.0 + max(-low, high) / half
-            low, high = low * np.sqrt(square), high * np.sqrt(square)
-            ru = 1.5 * wide * max(reach[i, k, 0], reach[i, k + 1, 0])
-            rv = 1.5 * wide * max(reach[i, k, 1], reach[i, k + 1, 1])
-            ru = min(ru, 0.5)
-            u0, u1 = min(uv[i, k, 0], uv[i, k + 1, 0]) - ru, max(uv[i, k, 0], uv[i, k + 1, 0]) + ru
-            v0, v1 = min(uv[i, k, 1], uv[i, k + 1, 1]) - rv, max(uv[i, k, 1], uv[i, k + 1, 1]) + rv
-            first, last = int(np.ceil(u0 * nu - 0.5)), int(np.floor(u1 * nu - 0.5))
-            last = min(last, first + nu - 1)
-            if not periodic:
-                first, last = max(first, 0), min(last, nu - 1)
-            bottom, top = max(int(np.ceil(v0 * nv - 0.5)), 0), min(int(np.floor(v1 * nv - 0.5)), nv - 1)
-            for a in range(first, last + 1):
-                for b in range(bottom, top + 1):
-                    x = points[a % nu, b, 0] - start[0]
-                    y = points[a % nu, b, 1] - start[1]
-                    z = points[a % nu, b, 2] - start[2]
-                    if x * before[0] + y * before[1] + z * before[2] < low:
-                        continue
-                    ahead = (x - along[0]) * after[0] + (y - along[1]) * after[1] + (z - along[2]) * after[2]
-                    if ahead >= high:
-                        continue
-                    t = (x * along[0] + y * along[1] + z * along[2]) / square
-                    dx, dy, dz = x - t * along[0], y - t * along[1], z - t * along[2]
-                    if dx * dx + dy * dy + dz * dz <= half * half:
-                        layers[a % nu, b] += 1
+            ahead = (x - along[0]) * after[0] + (y - along[1]) * after[1] + (z - along[2]) * after[2]
+            if ahead >= segment.high:
+                continue
+            t = (x * along[0] + y * along[1] + z * along[2]) / segment.square
+            dx, dy, dz = x - t * along[0], y - t * along[1], z - t * along[2]
+            if dx * dx + dy * dy + dz * dz <= half * half:
+                layers[a % nu, b] += 1

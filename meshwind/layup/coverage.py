@@ -1,4 +1,4 @@
-"""How many layers of band lie over each cell of the surface."""
+"""Coverage: how many layers of band lie over each cell of the surface."""
 
 from dataclasses import dataclass
 from math import floor
@@ -8,11 +8,20 @@ from numba import njit
 
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
+from meshwind.core.vectors import TINY
 from meshwind.path.paths import Paths
+from meshwind.surface.forms import area_elements
+from meshwind.surface.parameters import mean_speeds, parameter_grid
 from meshwind.surface.surface import Surface
 
-_ROWS = 256
-"""Most cells from end to end."""
+_FEWEST_ROWS, _MOST_ROWS = 4, 256
+"""Cells from end to end."""
+_SPEED_SAMPLES = 16
+"""Points each way from which the cells' shape is chosen: it need not be exact."""
+_GAUSS = 4
+"""Gauss nodes per span, each way: they integrate polynomials of degree 7 exactly."""
+_PROGRESS = 1e-12
+"""Least share of a cell by which a segment goes on, so that round-off does not stop it at a wall."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +67,7 @@ class Coverage:
 def coverage(paths: Paths, width: float | None = None) -> Coverage:
     """Lay a band of `width` (in mesh units) along every path and count layers.
 
-    Without a width, the band is as wide as makes the mean one layer a family.
+    By default the band is as wide as gives one layer per family on average.
     """
     if width is not None and not (np.isfinite(width) and width > 0.0):
         raise BadInputError(f"band width {width} is no length; give a number > 0 in the mesh's units")
@@ -68,7 +77,7 @@ def coverage(paths: Paths, width: float | None = None) -> Coverage:
     nv = _rows(paths.surface, nu)
     area = cell_areas(paths.surface, nu, nv)
     length = np.zeros((nu, nv))
-    _spread(paths.uv, steps, length)
+    _add_lengths(paths.uv, steps, length)
     total = float(steps.sum())
     if width is None:
         width = len(families) * float(area.sum()) / total if total > 0.0 else 0.0
@@ -78,32 +87,28 @@ def coverage(paths: Paths, width: float | None = None) -> Coverage:
 
 def _rows(surface: Surface, nu: int) -> int:
     """Rows that make cells about as long as they are wide."""
-    t = (np.arange(16) + 0.5) / 16
-    u, v = np.meshgrid(t, t, indexing="ij")
-    frames = surface.frames(np.stack([u.ravel(), v.ravel()], axis=1))
-    around, along = np.linalg.norm(frames[:, 1:3], axis=2).mean(axis=0)
-    return int(np.clip(round(nu * along / max(around, 1e-300)), 4, _ROWS))
+    around, along = mean_speeds(surface, _SPEED_SAMPLES)
+    return int(np.clip(round(nu * along / max(around, TINY)), _FEWEST_ROWS, _MOST_ROWS))
 
 
 def cell_areas(surface: Surface, nu: int, nv: int) -> Floats:
-    """Areas (nu, nv) of the grid's cells by Gauss quadrature of |s_u x s_v|, 4 points a span."""
+    """Areas (nu, nv) of the grid's cells by Gauss quadrature of |s_u x s_v|."""
     pieces = [-(-spans // cells) for spans, cells in zip(surface.spans, (nu, nv), strict=True)]
-    node, weight = np.polynomial.legendre.leggauss(4)
-    (u, wu), (v, wv) = (_composite(node, weight, n * many) for n, many in zip((nu, nv), pieces, strict=True))
-    frames = surface.frames(np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2))
-    element = np.linalg.norm(np.cross(frames[:, 1], frames[:, 2]), axis=1).reshape(len(u), len(v))
-    patches = (wu[:, None] * element * wv).reshape(nu, pieces[0] * len(node), nv, pieces[1] * len(node))
+    (u, wu), (v, wv) = (_composite_gauss(n * many) for n, many in zip((nu, nv), pieces, strict=True))
+    element = area_elements(surface.frames(parameter_grid(u, v))).reshape(len(u), len(v))
+    patches = (wu[:, None] * element * wv).reshape(nu, pieces[0] * _GAUSS, nv, pieces[1] * _GAUSS)
     return np.asarray(patches.sum(axis=(1, 3)))
 
 
-def _composite(node: Floats, weight: Floats, intervals: int) -> tuple[Floats, Floats]:
+def _composite_gauss(intervals: int) -> tuple[Floats, Floats]:
     """Gauss nodes and weights on equal intervals of [0, 1]."""
+    node, weight = np.polynomial.legendre.leggauss(_GAUSS)
     at = (np.arange(intervals)[:, None] + 0.5 * (node + 1.0)) / intervals
     return at.ravel(), np.tile(0.5 * weight / intervals, intervals)
 
 
 @njit(cache=True)
-def _spread(uv: Floats, steps: Floats, length: Floats) -> None:
+def _add_lengths(uv: Floats, steps: Floats, length: Floats) -> None:
     """Add the length of every segment to the cells it passes, in the share it spends in each in (u, v)."""
     nu, nv = length.shape
     for p in range(steps.shape[0]):
@@ -112,7 +117,6 @@ def _spread(uv: Floats, steps: Floats, length: Floats) -> None:
             dx, dy = uv[p, k + 1, 0] * nu - x, uv[p, k + 1, 1] * nv - y
             done = 0.0
             while done < 1.0:
-                # The next wall strictly ahead; 1e-12 of a cell keeps rounding from standing still on a wall.
                 share = min(_to_wall(x, dx, done), _to_wall(y, dy, done), 1.0)
                 middle = 0.5 * (done + share)
                 i = floor(x + middle * dx) % nu
@@ -123,9 +127,9 @@ def _spread(uv: Floats, steps: Floats, length: Floats) -> None:
 
 @njit(inline="always", cache=True)
 def _to_wall(x: float, dx: float, done: float) -> float:
-    """Fraction of the step at which coordinate x + f dx reaches its next whole number after f = done."""
+    """Share of the step at which coordinate x + f dx reaches its next whole number strictly after f = done."""
     if dx == 0.0:
         return 1.0
     here = x + done * dx
-    wall = floor(here + 1e-12) + 1.0 if dx > 0.0 else -floor(1e-12 - here) - 1.0
-    return max((wall - x) / dx, done + 1e-12)
+    wall = floor(here + _PROGRESS) + 1.0 if dx > 0.0 else -floor(_PROGRESS - here) - 1.0
+    return max((wall - x) / dx, done + _PROGRESS)

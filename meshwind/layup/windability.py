@@ -5,19 +5,28 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.vectors import TINY, unit
+from meshwind.surface.evaluate import SU, SV
+from meshwind.surface.forms import Forms, fundamental_forms
+from meshwind.surface.parameters import midpoints, parameter_grid
 from meshwind.surface.surface import Surface
 
 FLAT = 1e-3
 """Curvature times the part's size below which a direction counts as flat: a sag of 1e-4 of the part."""
 CONVEX, SADDLE, CONCAVE = 1, 0, -1
+"""Kinds of points: every tangent direction presses, some do, none does."""
+_CELLS_PER_SPAN, _FEWEST_CELLS, _MOST_CELLS = 2, 16, 200
+"""Cells of the grid whose middles are looked at: curvature is linear within a span, and a map needs no more."""
+_ALIKE = 1e-12
+"""Size of a row of II - k1 I, relative, down to which both principal curvatures are the same to round-off."""
 
 
 @dataclass(frozen=True)
 class Windability:
-    """Of k points: which directions press.  All arrays are read-only.
+    """The directions in which a fibre presses, at k points.  All arrays are read-only.
 
     normal (k, 3) outward; largest, smallest (k,) principal curvature, positive where the surface bulges outward; kind
-    (k,): 1 convex (every direction presses), 0 saddle (some do), -1 concave (none does); direction (k, 3): the unit
+    (k,): CONVEX (every direction presses), SADDLE (some do) or CONCAVE (none does); direction (k, 3): the unit
     tangent in which a fibre presses hardest; reach (k,): a fibre presses up to this angle, in radians, to both sides
     of it: pi/2 where convex, 0 where concave; share (k,): of all directions, reach over pi/2; angle (k,): winding angle
     of `direction` from s_v, -pi/2 to pi/2, positive towards s_u; weight (k,): area of the surface that a point stands
@@ -44,7 +53,7 @@ class Windability:
 
     @property
     def untouchable(self) -> float:
-        """Share of the surface that no fibre can touch, whatever its direction."""
+        """Share of the surface that a fibre can touch in no direction."""
         return self.area(CONCAVE)
 
     def presses(self, angle: Floats | float) -> Floats:
@@ -81,53 +90,45 @@ def windability(surface: Surface, uv: Floats | None = None) -> Windability:
     (array([1, 0]), array([1.  , 0.61]))
     """
     if uv is None:
-        nu, nv = (int(np.clip(2 * spans, 16, 200)) for spans in surface.spans)
-        u, v = (np.arange(nu) + 0.5) / nu, (np.arange(nv) + 0.5) / nv
-        uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2)
+        nu, nv = (int(np.clip(_CELLS_PER_SPAN * spans, _FEWEST_CELLS, _MOST_CELLS)) for spans in surface.spans)
+        uv = parameter_grid(midpoints(nu), midpoints(nv))
     return of_frames(surface.frames(uv), FLAT / surface.size)
 
 
 def of_frames(frames: Floats, flat: float) -> Windability:
-    """Look at frames (k, 6, 3); curvatures down to -flat, over a length, count as none."""
-    _, su, sv, suu, suv, svv = np.moveaxis(frames, 1, 0)
-    normal, area = _unit(np.cross(su, sv))
-    first = tuple((a * b).sum(axis=1) for a, b in ((su, su), (su, sv), (sv, sv)))
-    second = tuple(-(bend * normal).sum(axis=1) for bend in (suu, suv, svv))
-    k1, k2 = _principal(first, second, area)
-    direction = _direction(first, second, k1, su, sv)
+    """Windability at frames (k, 6, 3); curvatures from -flat to 0, over a length, count as none."""
+    forms = fundamental_forms(frames)
+    su, sv = frames[:, SU], frames[:, SV]
+    k1, k2 = _principal(forms)
+    direction = _direction(forms, k1, su, sv)
     kind = np.where(k2 >= -flat, CONVEX, np.where(k1 <= flat, CONCAVE, SADDLE))
     # Euler: k1 cos^2 + k2 sin^2 = 0 at the angle whose tangent is sqrt(k1 / -k2)
     reach = np.arctan2(np.sqrt(np.maximum(k1, 0.0)), np.sqrt(np.maximum(-k2, 0.0)))
     reach = np.where(kind == CONVEX, 0.5 * np.pi, np.where(kind == CONCAVE, 0.0, reach))
-    along = _unit(sv)[0]
-    across = np.cross(along, normal)  # towards s_u: s_u x s_v is outward
+    along = unit(sv)
+    across = np.cross(along, forms.normal)  # towards s_u: s_u x s_v is outward
     angle = np.arctan2((direction * across).sum(axis=1), (direction * along).sum(axis=1))
     angle = np.mod(angle + 0.5 * np.pi, np.pi) - 0.5 * np.pi
-    weight = area / max(float(area.sum()), 1e-300)
-    return Windability(*map(frozen, (normal, k1, k2, kind, direction, reach, angle, weight)))
+    weight = forms.area / max(float(forms.area.sum()), TINY)
+    return Windability(*map(frozen, (forms.normal, k1, k2, kind, direction, reach, angle, weight)))
 
 
-def _unit(vectors: Floats) -> tuple[Floats, Floats]:
-    size = np.linalg.norm(vectors, axis=1)
-    return np.divide(vectors, size[:, None], out=np.zeros_like(vectors), where=size[:, None] > 0.0), size
-
-
-def _principal(first: tuple[Floats, ...], second: tuple[Floats, ...], area: Floats) -> tuple[Floats, Floats]:
-    """Larger and smaller principal curvature from the two fundamental forms."""
-    (e, f, g), (l, m, n) = first, second
-    safe = np.where(area > 0.0, area * area, np.inf)  # a collapsed point counts as flat
+def _principal(forms: Forms) -> tuple[Floats, Floats]:
+    """Larger and smaller principal curvature (k,)."""
+    (e, f, g), (l, m, n) = forms.first, forms.second
+    safe = np.where(forms.area > 0.0, forms.area * forms.area, np.inf)  # a collapsed point counts as flat
     mean = 0.5 * (e * n - 2.0 * f * m + g * l) / safe
     root = np.sqrt(np.maximum(mean * mean - (l * n - m * m) / safe, 0.0))
     return mean + root, mean - root
 
 
-def _direction(first: tuple[Floats, ...], second: tuple[Floats, ...], k1: Floats, su: Floats, sv: Floats) -> Floats:
+def _direction(forms: Forms, k1: Floats, su: Floats, sv: Floats) -> Floats:
     """The unit tangent (k, 3) of the larger principal curvature; along s_u where all directions are alike."""
-    (e, f, g), (l, m, n) = first, second
+    (e, f, g), (l, m, n) = forms.first, forms.second
     rows = [(m - k1 * f, k1 * e - l), (n - k1 * g, k1 * f - m)]  # either row of (II - k1 I) x = 0
     either = [a[:, None] * su + b[:, None] * sv for a, b in rows]
     size = [np.linalg.norm(tangent, axis=1) for tangent in either]
     best = np.where((size[0] >= size[1])[:, None], either[0], either[1])
-    scale = (np.abs(k1) + 1e-300) * np.maximum(e, g) * np.sqrt(np.maximum(e, g))
-    alike = np.maximum(*size) <= 1e-12 * scale
-    return _unit(np.where(alike[:, None], su, best))[0]
+    scale = (np.abs(k1) + TINY) * np.maximum(e, g) * np.sqrt(np.maximum(e, g))
+    alike = np.maximum(*size) <= _ALIKE * scale
+    return unit(np.where(alike[:, None], su, best))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.surface.parameters import parameter_grid
 from meshwind.surface.surface import Surface
 
 PER_SPAN, MOST = 4, 200
@@ -37,7 +38,7 @@ def grid(surface: Surface, per_span: int = PER_SPAN, most: int = MOST) -> Grid:
     nv = min(per_span * along + 1, most)
     u = np.arange(nu) / (nu if surface.periodic else nu - 1)
     v = np.linspace(0.0, 1.0, nv)
-    uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2)
+    uv = parameter_grid(u, v)
     quads = grid_quads(nu, nv, surface.periodic)
     return Grid(surface, (nu, nv), frozen(uv), frozen(surface.frames(uv)), frozen(quads))
 

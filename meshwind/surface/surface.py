@@ -9,8 +9,9 @@ from numpy.typing import ArrayLike
 from meshwind.core.cast import Floats, Kept, floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.threads import spread
+from meshwind.core.vectors import unit
 from meshwind.surface import evaluate, tree
-from meshwind.surface.evaluate import Spline
+from meshwind.surface.evaluate import SU, SV, Spline
 from meshwind.surface.tree import NO_TREE, Body, SearchTree
 
 DEGREE = 3
@@ -227,6 +228,4 @@ class Surface(Kept):
         array([[0., 1., 0.]])
         """
         frames = self.frames(uv)
-        normal = np.cross(frames[:, 1], frames[:, 2])
-        size = np.linalg.norm(normal, axis=1, keepdims=True)
-        return np.asarray(np.divide(normal, size, out=np.zeros_like(normal), where=size > 0))
+        return unit(np.cross(frames[:, SU], frames[:, SV]))
