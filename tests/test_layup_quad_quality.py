@@ -9,8 +9,7 @@ from layup_shapes import HEIGHT, cylinder, helices
 import meshwind as mw
 from meshwind.core.cast import frozen
 from meshwind.layup.layup import assess
-from meshwind.layup.quad_quality import quad_quality
-from meshwind.layup.quads import QuadMesh
+from meshwind.layup.quads import QuadMesh, quad_quality
 from meshwind.path import solve
 from meshwind.planning.families import families
 

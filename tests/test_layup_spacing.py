@@ -10,8 +10,7 @@ import meshwind as mw
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.layup.bands import bands
-from meshwind.layup.cell_sides import cell_sides
-from meshwind.layup.crossings import crossings
+from meshwind.layup.crossings import cell_sides, crossings
 from meshwind.path import Paths, solve
 from meshwind.path.neighbours import neighbours
 from meshwind.planning.families import families

@@ -1,20 +1,22 @@
-"""Where paths of one family cross those of the other, found in the (u, v) plane with u periodic."""
+"""Where paths of one family cross those of the other, and the lengths of fibre between neighbouring crossings."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints, frozen
-from meshwind.layup.segments import meetings
-from meshwind.layup.sharpen import sharpened
+from meshwind.layup.curve_meetings import curve_meetings
+from meshwind.layup.meetings import Meetings, meet
+from meshwind.path.lengths import lengths
 from meshwind.path.paths import Paths
+from meshwind.surface.evaluate import SU, SV, S
 
 SHARED = 4e-9
 """Ends of paths this close in (u, v) are one point of the rim."""
 _AT_RIM = 1e-5
 """A meeting this close to such a shared end, in (u, v), is the end itself rather than a crossing."""
-_SAME = 1e-6
-"""Meetings of one pair this close, in particle spacings, are one meeting found in two segments."""
+_NEXT = 0.5
+"""Meetings of a path with itself this close, in particle spacings, are the particle that two segments share."""
 
 
 @dataclass(frozen=True)
@@ -47,56 +49,36 @@ def crossings(paths: Paths, among: Bools | None = None) -> Crossings:
 
     Points on a rim that paths share as ends are not crossings.
     """
-    compared = np.ones(len(paths), dtype=bool) if among is None else np.asarray(among, dtype=bool)
-    a, b, t_a, t_b, sense = meet(paths, compared & (paths.family > 0), compared & (paths.family < 0))
-    inner = ~_at_shared_end(paths, a, b, t_a, t_b)
-    a, b, t_a, t_b, sense = a[inner], b[inner], t_a[inner], t_b[inner], sense[inner]
-    strands = [_Strand.at(paths, a, t_a), _Strand.at(paths, b, t_b)]
+    compared = _mask(paths, among)
+    met = meet(paths, compared & (paths.family > 0), compared & (paths.family < 0))
+    met = met.chosen(~_at_shared_end(paths, met))
+    strands = [_Strand.at(paths, met.a, met.t_a), _Strand.at(paths, met.b, met.t_b)]
     on_surface = strands[0].on_surface & strands[1].on_surface
-    sharp, *along, holds = sharpened(paths, a, b, t_a, t_b)
-    holds &= on_surface & (np.abs(sharp[:, 1] - 0.5) <= 0.5)
-    strands = [strand.on_curve(sharp, step, holds) for strand, step in zip(strands, along, strict=True)]
+    curve = curve_meetings(paths, met)
+    valid = curve.valid & on_surface & (np.abs(curve.uv[:, 1] - 0.5) <= 0.5)
+    along = curve.along_a, curve.along_b
+    strands = [strand.on_curve(curve.uv, step, valid) for strand, step in zip(strands, along, strict=True)]
     frames = paths.surface.frames(strands[0].uv)
     midway = 0.5 * (strands[0].points + strands[1].points)
     angle = _angle(*(strand.tangent(frames) for strand in strands))
     uv = strands[0].uv - np.floor(strands[0].uv) * [1.0, 0.0]
-    points = np.where(on_surface[:, None], frames[:, 0], midway)
-    return Crossings(*map(frozen, (a, b, t_a, t_b, sense, uv, angle, points, on_surface, compared)))
-
-
-def meet(paths: Paths, first: Bools, second: Bools) -> tuple[Ints, Ints, Floats, Floats, Ints]:
-    """Meetings of the paths in mask `first` with those in mask `second`, each once.
-
-    Returns path indices a and b, fractional particle indices t_a and t_b, and the sense of the turn a to b.
-    """
-    (ids_a, seg_a), (ids_b, seg_b) = _segments(paths, first), _segments(paths, second)
-    pieces = paths.uv.shape[1] - 1
-    i, j, s, r, sign = meetings(seg_a, seg_b, *_cells(seg_a, seg_b))
-    a, b = ids_a[i // pieces], ids_b[j // pieces]
-    t_a = np.clip(i % pieces + s, 0.0, pieces)
-    t_b = np.clip(j % pieces + r, 0.0, pieces)
-    order = np.lexsort((t_b, t_a, b, a))
-    a, b, t_a, t_b, sign = a[order], b[order], t_a[order], t_b[order], sign[order]
-    new = np.ones(len(a), dtype=bool)
-    new[1:] = (np.diff(a) != 0) | (np.diff(b) != 0) | (np.diff(t_a) > _SAME) | (np.abs(np.diff(t_b)) > _SAME)
-    order = np.flatnonzero(new)
-    order = order[np.lexsort((t_a[order], a[order]))]
-    return a[order], b[order], t_a[order], t_b[order], sign[order].astype(np.int64)
+    points = np.where(on_surface[:, None], frames[:, S], midway)
+    return Crossings(*map(frozen, (*met, uv, angle, points, on_surface, compared)))
 
 
 def own_crossings(paths: Paths, among: Bools | None = None) -> Ints:
-    """Pairs (k, 2) of paths of one family that cross each other, or of a path with itself; one row a crossing.
+    """Pairs (k, 2) of paths of one family that cross each other, or of a path with itself; one row per crossing.
 
     Fibres of a family should not cross: one that does lies under or over its neighbour, and leaves the quad mesh.
     """
-    compared = np.ones(len(paths), dtype=bool) if among is None else np.asarray(among, dtype=bool)
+    compared = _mask(paths, among)
     pairs = [np.zeros((0, 2), dtype=np.int64)]
     for family in (1, -1):
         mine = compared & (paths.family == family)
-        a, b, t_a, t_b, _ = meet(paths, mine, mine)
-        inner = ~_at_shared_end(paths, a, b, t_a, t_b)
-        apart = (a < b) | ((a == b) & (t_b - t_a > 0.5))  # neighbours on one path share a particle
-        pairs.append(np.stack([a, b], axis=1)[apart & inner])
+        met = meet(paths, mine, mine)
+        inner = ~_at_shared_end(paths, met)
+        apart = (met.a < met.b) | ((met.a == met.b) & (met.t_b - met.t_a > _NEXT))
+        pairs.append(np.stack([met.a, met.b], axis=1)[apart & inner])
     return np.concatenate(pairs)
 
 
@@ -107,28 +89,45 @@ def counts(crossings: Crossings, around: int, along: int) -> Ints:
     return np.bincount(u * along + v, minlength=around * along).reshape(around, along)
 
 
-def _segments(paths: Paths, mask: Bools) -> tuple[Ints, Floats]:
-    """Path indices and all their segments (m, 4) in the (u, v) plane."""
-    uv = paths.uv[mask]
-    return np.flatnonzero(mask), np.concatenate([uv[:, :-1], uv[:, 1:]], axis=2).reshape(-1, 4)
+@dataclass(frozen=True)
+class CellSides:
+    """Lengths of fibre from one crossing to the next, d1 (a,) along family +1 and d2 (b,) along family -1 (Fig. 6.3).
+
+    They are measured along the polylines through the particles, in the mesh's units.
+    """
+
+    d1: Floats
+    d2: Floats
 
 
-def _cells(a: Floats, b: Floats) -> tuple[int, int]:
-    """Size of the search grid: cells as large as a mean segment, no more of them than segments."""
-    both = np.concatenate([a, b])
-    extent = np.abs(both[:, 2:] - both[:, :2]).mean(axis=0) if len(both) else np.ones(2)
-    most = int(np.sqrt(len(both))) + 1
-    nu, nv = np.clip(np.ceil(1.0 / np.maximum(extent, 1.0 / most)), 1, most).astype(int)
-    return int(nu), int(nv)
+def cell_sides(paths: Paths, crossings: Crossings) -> CellSides:
+    """Measure along the paths, from each crossing to the next."""
+    arc = lengths(paths).arc_length
+    either = ((crossings.path_a, crossings.t_a), (crossings.path_b, crossings.t_b))
+    return CellSides(*(frozen(_between_neighbours(arc, path, t)) for path, t in either))
 
 
-def _at_shared_end(paths: Paths, a: Ints, b: Ints, t_a: Floats, t_b: Floats) -> Bools:
-    """True where the meeting is a rim point that both paths start from or end at."""
+def _between_neighbours(arc: Floats, path: Ints, t: Floats) -> Floats:
+    """Differences of the arc length between neighbouring points t, as fractional particle indices, of each path."""
+    order = np.lexsort((t, path))
+    path, t = path[order], t[order]
+    k = np.minimum(t.astype(np.int64), arc.shape[1] - 2)
+    at = arc[path, k] + (t - k) * (arc[path, k + 1] - arc[path, k])
+    return np.asarray(np.diff(at)[np.diff(path) == 0])
+
+
+def _mask(paths: Paths, among: Bools | None) -> Bools:
+    """The paths (p,) that take part: all of them by default."""
+    return np.ones(len(paths), dtype=bool) if among is None else np.asarray(among, dtype=bool)
+
+
+def _at_shared_end(paths: Paths, met: Meetings) -> Bools:
+    """Whether each meeting is a rim point that both paths start from or end at."""
     last = paths.uv.shape[1] - 1
-    end_a, end_b = (np.where(t < 0.5 * last, 0, last) for t in (t_a, t_b))
-    apart = paths.uv[a, end_a] - paths.uv[b, end_b]
+    end_a, end_b = (np.where(t < 0.5 * last, 0, last) for t in (met.t_a, met.t_b))
+    apart = paths.uv[met.a, end_a] - paths.uv[met.b, end_b]
     apart[:, 0] -= np.round(apart[:, 0])
-    ends = ((a, t_a, end_a), (b, t_b, end_b))
+    ends = ((met.a, met.t_a, end_a), (met.b, met.t_b, end_b))
     reach = [_between(paths.uv, path, t) - paths.uv[path, end] for path, t, end in ends]
     near = np.abs(np.concatenate(reach, axis=1)).max(axis=1) < _AT_RIM
     return np.asarray(near & (end_a == end_b) & (np.abs(apart).max(axis=1) <= SHARED))
@@ -163,13 +162,13 @@ class _Strand:
         )
 
     def on_curve(self, uv: Floats, duv: Floats, where: Bools) -> "_Strand":
-        """The strand with a better place and direction where there is one."""
+        """The strand with a better position and direction where there is one."""
         mask = where[:, None]
         return replace(self, uv=np.where(mask, uv, self.uv), duv=np.where(mask, duv, self.duv))
 
     def tangent(self, frames: Floats) -> Floats:
         """The fibre's direction: in the tangent plane where it touches, along its chord where it bridges."""
-        touching = frames[:, 1] * self.duv[:, :1] + frames[:, 2] * self.duv[:, 1:]
+        touching = frames[:, SU] * self.duv[:, :1] + frames[:, SV] * self.duv[:, 1:]
         return np.where(self.on_surface[:, None], touching, self.chord)
 
 

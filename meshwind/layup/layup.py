@@ -1,20 +1,22 @@
-"""What a batch of paths amounts to: crossings, coverage and the quad mesh."""
+"""The assessment of a batch of paths: crossings, coverage, the quad mesh, and all that follows from them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
-from meshwind.core.cast import Bools, Ints
+import numpy as np
+
+from meshwind.core.cast import Bools, Ints, frozen
 from meshwind.core.errors import BadInputError
-from meshwind.layup.as_asked import as_asked
+from meshwind.core.vectors import unit
 from meshwind.layup.bands import Bands, bands
-from meshwind.layup.cell_sides import CellSides, cell_sides
 from meshwind.layup.coverage import Coverage, coverage
-from meshwind.layup.crossings import Crossings, crossings, own_crossings
-from meshwind.layup.quad_quality import QuadQuality, quad_quality
-from meshwind.layup.quads import QuadMesh, quads
+from meshwind.layup.crossings import CellSides, Crossings, cell_sides, crossings, own_crossings
+from meshwind.layup.quads import QuadMesh, QuadQuality, quad_quality, quads
 from meshwind.layup.windability import Windability, windability
 from meshwind.path.neighbours import Neighbours, neighbours
 from meshwind.path.paths import Paths, Status
+from meshwind.path.solve import straight
+from meshwind.surface.evaluate import SU, SV, S
 
 _FEWEST = 3
 """Paths of each family below which no mesh can close around the part."""
@@ -57,8 +59,8 @@ class Layup:
     crossed: Paths
 
     @property
-    def as_asked(self) -> bool:
-        """Whether crossings and quads are of the initial paths, because too few paths are in equilibrium."""
+    def initial(self) -> bool:
+        """Whether crossings and quads are of the initial paths, as too few converge for a mesh."""
         return self.crossed is not self.paths
 
     @cached_property
@@ -131,14 +133,35 @@ def assess(paths: Paths, width: float | None = None) -> Layup:
     met = crossings(paths, _worth_crossing(paths))
     mesh = quads(paths, met)
     if not len(mesh.quads) and (paths.status != Status.CONVERGED).any():
-        asked = as_asked(paths)
-        planned = crossings(asked)
-        if len((drawn := quads(asked, planned)).quads):
-            return Layup(paths, planned, drawn, cover, asked)
+        initial = initial_paths(paths)
+        planned = crossings(initial)
+        if len((drawn := quads(initial, planned)).quads):
+            return Layup(paths, planned, drawn, cover, initial)
     return Layup(paths, met, mesh, cover, paths)
 
 
 def _worth_crossing(paths: Paths) -> Bools | None:
+    """The converged paths (p,), or None for all where a family has too few of them for a mesh."""
     taut: Bools = paths.status == Status.CONVERGED
     enough = all((taut & (paths.family == family)).sum() >= _FEWEST for family in (1, -1))
     return taut if enough else None
+
+
+def initial_paths(paths: Paths) -> Paths:
+    """The same paths before they slip, slide or bridge: straight in (u, v) from end to end (6.2), on the surface.
+
+    Statuses stay what they are.
+    """
+    p, n = paths.gap.shape
+    uv = straight(paths.uv[:, 0], paths.uv[:, -1], n)
+    frames = paths.surface.frames(uv.reshape(-1, 2))
+    normal = unit(np.cross(frames[:, SU], frames[:, SV]))
+    return replace(
+        paths,
+        points=frozen(frames[:, S].reshape(p, n, 3)),
+        uv=frozen(uv),
+        on_surface=frozen(np.ones((p, n), dtype=bool)),
+        gap=frozen(np.zeros((p, n))),
+        normal=frozen(normal.reshape(p, n, 3)),
+        slip=frozen(np.full((p, n), np.nan)),
+    )

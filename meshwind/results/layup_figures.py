@@ -93,7 +93,7 @@ def quad_figures(layup: Layup) -> dict[str, Any]:
         "warp": spread(quality.warp),
         "off_surface_points": int((~mesh.on_surface).sum()),
         "left_out": list(mesh.left_out),
-        "of": "windings as asked for" if layup.as_asked else "paths",
+        "of": "windings as asked for" if layup.initial else "paths",
         "note": mesh.note,
     }
 

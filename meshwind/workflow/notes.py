@@ -66,7 +66,7 @@ def about_paths(paths: Paths) -> tuple[Note, ...]:
 
 def about_layup(layup: Layup) -> tuple[Note, ...]:
     """Whether the quad mesh is of fibres that hold."""
-    if not layup.as_asked:
+    if not layup.initial:
         return ()
     return (Note("too few paths hold for a quad mesh: crossings and quads are those of the windings as asked for"),)
 
