@@ -16,6 +16,7 @@ from meshwind.layup.layup import assess
 from meshwind.mesh import mesh_from
 from meshwind.path import Paths
 from meshwind.results.maps import maps
+from meshwind.results.schema import COVERAGE, LAYERS, WINDABILITY
 from meshwind.surface import Surface, shapes
 from meshwind.surface.deviation import Triangles
 from meshwind.surface.grid import grid
@@ -57,8 +58,8 @@ def crossed() -> Figures:
     ends = mw.families(surface, 3, 0.3)
     layup = assess(mw.solve(surface, ends.start, ends.end, family=ends.family, particles=17))
     on = grid(surface, 1, 16)
-    told = maps(on, layup)
-    sums = [float(np.nansum(told[name])) for name in ("coverage", "layers", "windability")]
+    found = maps(on, layup)
+    sums = [float(np.nansum(found[name])) for name in (COVERAGE, LAYERS, WINDABILITY)]
     return [float(len(layup.crossings)), *sums]
 
 

@@ -17,7 +17,7 @@ from meshwind.core.units import MILLIMETRES
 from meshwind.export.formats import FORMATS
 from meshwind.export.targets import GRID, QUADS, TARGETS
 from meshwind.mesh.opening.ends import parse
-from meshwind.pictures.kinds import MOVIES, PICTURES, REDESIGN, SHEET
+from meshwind.results.schema import MOVIES, PICTURES, REDESIGN, SHEET
 
 COMMANDS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
 EXAMPLES = {line.strip() for command in (typer.main.get_command(app), *COMMANDS.values())

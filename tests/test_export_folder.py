@@ -14,7 +14,7 @@ from layup_shapes import bridged
 from meshwind.core.errors import BadInputError
 from meshwind.export.targets import TARGETS, Wishes, export
 from meshwind.path.paths import Status
-from meshwind.results.place import beside
+from meshwind.results.folder import beside
 from meshwind.results.reading import read_results
 
 KEPT = "points", "uv", "on_surface", "gap", "normal", "slip", "family", "status"

@@ -102,7 +102,7 @@ def test_obj_holds_lines_and_points(written: tuple[Path, list[str]]) -> None:
 def test_what_is_lost_is_told_once(written: tuple[Path, list[str]]) -> None:
     notes = written[1]
     assert len(notes) == len(set(notes)) == 5
-    assert any(note.startswith("gmsh: no place for the unit") for note in notes)
+    assert any(note.startswith("gmsh: no entry for the unit") for note in notes)
     assert any(note.startswith("ply: no lines") for note in notes)
     assert any(note.startswith("ply: no data of cells; of paths it lacks path, family") for note in notes)
     assert any(note.startswith("obj: no fields") for note in notes)

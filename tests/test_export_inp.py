@@ -14,8 +14,9 @@ from meshwind.core.errors import BadInputError
 from meshwind.export.elements import Elements, on_crossings, regular
 from meshwind.export.material import Material
 from meshwind.export.plies import plies
-from meshwind.export.shell_deck import FORCE, LINEAR, QUADRATIC, Deck, thicknesses, write_decks
+from meshwind.export.shell_deck import FORCE, Deck, thicknesses, write_decks
 from meshwind.results.reading import Results
+from meshwind.results.schema import SHELL, SHELL_S4R
 
 
 def deck_of(results: Results, elements: Elements, **given: float) -> Deck:
@@ -45,7 +46,7 @@ def written(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     return deck, out
 
 
-@pytest.mark.parametrize(("name", "kinds"), [(QUADRATIC, {"quad8", "triangle6"}), (LINEAR, {"quad", "triangle"})])
+@pytest.mark.parametrize(("name", "kinds"), [(SHELL, {"quad8", "triangle6"}), (SHELL_S4R, {"quad", "triangle"})])
 def test_another_program_reads_the_mesh(written: tuple[Deck, Path], name: str, kinds: set[str]) -> None:
     deck, out = written
     mesh = read(out / name)
@@ -60,7 +61,7 @@ def test_another_program_reads_the_mesh(written: tuple[Deck, Path], name: str, k
 def test_nodes_amid_edges_lie_on_the_surface(written: tuple[Deck, Path]) -> None:
     """Second order: a middle node is off its chord by the sagitta, and halfway along it."""
     deck, out = written
-    mesh = read(out / QUADRATIC)
+    mesh = read(out / SHELL)
     quads = next(block.data for block in mesh.cells if block.type == "quad8")
     corners, amid = mesh.points[quads[:, :4]], mesh.points[quads[:, 4:]]
     after = np.roll(corners, -1, axis=1)
@@ -74,7 +75,7 @@ def test_nodes_amid_edges_lie_on_the_surface(written: tuple[Deck, Path]) -> None
 
 def test_rims_take_the_whole_load(written: tuple[Deck, Path]) -> None:
     deck, out = written
-    for name in (QUADRATIC, LINEAR):
+    for name in (SHELL, SHELL_S4R):
         loads = np.array([list(map(float, line.split(","))) for line in blocks(out / name, "*CLOAD")[0]])
         assert np.bincount(loads[:, 1].astype(int), loads[:, 2], 4)[3] == pytest.approx(FORCE, rel=1e-8)
         sets = blocks(out / name, "*NSET")
@@ -87,7 +88,7 @@ def test_rims_take_the_whole_load(written: tuple[Deck, Path]) -> None:
 
 def test_orientations_are_the_fibres(written: tuple[Deck, Path]) -> None:
     deck, out = written
-    cards = blocks(out / QUADRATIC, "*ORIENTATION")
+    cards = blocks(out / SHELL, "*ORIENTATION")
     axes = np.array([list(map(float, card[0].split(","))) for card in cards]).reshape(-1, 2, 2, 3)
     for k, ply in enumerate(deck.plies.families):
         assert np.allclose(axes[:, k, 0], ply.direction, atol=1e-8)
@@ -96,7 +97,7 @@ def test_orientations_are_the_fibres(written: tuple[Deck, Path]) -> None:
 
 def test_sections_hold_the_thickness(written: tuple[Deck, Path]) -> None:
     deck, out = written
-    sections = blocks(out / QUADRATIC, "*SHELL SECTION")
+    sections = blocks(out / SHELL, "*SHELL SECTION")
     layers = np.array([[float(line.split(",")[0]) for line in section] for section in sections])
     thick = thicknesses(deck)
     assert np.allclose(layers, np.stack([0.5 * thick[0], thick[1], 0.5 * thick[0]], axis=1), rtol=1e-8)

@@ -10,8 +10,8 @@ from export_results import waisted_results
 from meshwind.core.errors import BadInputError
 from meshwind.export.formats import FORMATS
 from meshwind.export.targets import TARGETS, Wishes, export
-from meshwind.results.exports import exports_in
-from meshwind.results.folder import RESULTS, writing
+from meshwind.results.folder import exports_in, writing
+from meshwind.results.schema import RESULTS
 
 DATA = Path(__file__).parents[1] / "data"
 FOREIGN = (

@@ -14,8 +14,9 @@ from meshwind.core.errors import BadInputError
 from meshwind.export import opencascade
 from meshwind.export.opencascade import occ
 from meshwind.export.splines import clamped_surface
-from meshwind.export.step import FILE, write_step
+from meshwind.export.step import write_step
 from meshwind.results.reading import Results
+from meshwind.results.schema import STEP
 from meshwind.surface import shapes
 
 pytest.importorskip("OCP", reason="OpenCASCADE is missing: pip install 'meshwind[cad]'")
@@ -46,7 +47,7 @@ def written(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     out = tmp_path_factory.mktemp(request.param)
     results = (plain_results if request.param == "plain" else waisted_results)(out)
     assert write_step(out, results) == []
-    return results, shape_of(out / FILE)
+    return results, shape_of(out / STEP)
 
 
 def xyz(points: list[Any]) -> Floats:
@@ -94,7 +95,7 @@ def test_clamping_changes_nothing() -> None:
 def test_metres_become_millimetres(tmp_path: Path) -> None:
     results = plain_results(tmp_path, "m")
     write_step(tmp_path, results)
-    (face,) = parts(shape_of(tmp_path / FILE), "FACE")
+    (face,) = parts(shape_of(tmp_path / STEP), "FACE")
     point = occ("BRep").BRep_Tool.Surface_s(face).Value(0.3, 1.0)
     assert xyz([point])[0] == pytest.approx(1000.0 * results.surface.points([(0.3, 1.0)])[0], abs=1e-6)
 
@@ -102,7 +103,7 @@ def test_metres_become_millimetres(tmp_path: Path) -> None:
 def test_our_own_file_comes_in_as_the_surface(tmp_path: Path) -> None:
     results = waisted_results(tmp_path)
     write_step(tmp_path, results)
-    (surface,) = read_cad(tmp_path / FILE)
+    (surface,) = read_cad(tmp_path / STEP)
     uv = np.random.default_rng(2).random((400, 2))
     x, y, z = surface.points(uv).T
     radius = 1.0 - 0.35 * np.exp(-(((z / 4.0 - 0.5) / 0.16) ** 2))
@@ -190,4 +191,4 @@ def test_without_opencascade_one_line_says_what_to_install(tmp_path: Path, monke
         monkeypatch.delitem(sys.modules, module)
     with pytest.raises(BadInputError, match=r"pip install 'meshwind\[cad\]'"):
         write_step(tmp_path, results)
-    assert not (tmp_path / FILE).exists()
+    assert not (tmp_path / STEP).exists()

@@ -14,6 +14,7 @@ from scipy.interpolate import BSpline
 from meshwind.layup.layup import Layup, assess
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.path.lengths import bridges, lengths
+from meshwind.results import schema
 from meshwind.results.report import plain, report, write_report
 from meshwind.results.write import write_files
 from meshwind.surface.grid import grid
@@ -50,6 +51,23 @@ def test_all_files_are_there(written: tuple[Layup, Path]) -> None:
         "surface.npz",
         "surface.vtu",
     ]
+
+
+@pytest.mark.parametrize("file", [schema.PATHS, schema.BRIDGES, schema.CROSSINGS, schema.QUADS, schema.SURFACE])
+def test_fields_are_those_of_the_schema(written: tuple[Layup, Path], file: schema.File) -> None:
+    """Names in their order, types, and how many values each has."""
+    read = pv.read(written[1] / file)
+    for fields, data in ((file.point_data, read.point_data), (file.cell_data, read.cell_data)):
+        assert data.keys() == list(fields)
+        for field in fields:
+            values = data[field]
+            assert str(values.dtype) == field.dtype
+            assert values.size == field.columns * len(values)
+
+
+def test_the_spline_has_the_arrays_of_the_schema(written: tuple[Layup, Path]) -> None:
+    with np.load(written[1] / schema.SPLINE) as held:
+        assert list(held) == list(schema.SPLINE.point_data)
 
 
 def test_paths(written: tuple[Layup, Path]) -> None:

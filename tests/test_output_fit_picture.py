@@ -20,9 +20,10 @@ from meshwind.pictures import driver
 from meshwind.pictures.fit_scene import fit_scene
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
+from meshwind.results.schema import FIT_PICTURE
 from meshwind.surface import shapes
 from meshwind.surface.deviation import Deviation, deviation
-from meshwind.workflow.notes import FIT_ERROR, Note
+from meshwind.workflow.notes import Note
 
 AROUND, ALONG, HEIGHT = 48, 40, 4.0
 
@@ -177,7 +178,7 @@ def test_the_title_tells_the_revolutions_that_were_asked_for() -> None:
 
 
 def test_a_note_names_its_picture_only_where_it_is() -> None:
-    note = Note("bad", True, FIT_ERROR)
+    note = Note("bad", True, FIT_PICTURE)
     assert note.shown(True).text == "bad; see fit_error.png"
     assert note.shown(True).shown(True) == note.shown(True)
     assert note.shown(True).shown(False) == note == note.shown(False)
@@ -186,7 +187,7 @@ def test_a_note_names_its_picture_only_where_it_is() -> None:
 
 def test_a_run_that_warns_of_the_fit_draws_it_and_says_so(tmp_path: Path) -> None:
     result = mw.wind(horned(), paths=3, revolutions=0.2, worst_fit=0.5, out=tmp_path)
-    drawn = (tmp_path / FIT_ERROR).is_file()
+    drawn = (tmp_path / FIT_PICTURE).is_file()
     assert drawn == (tmp_path / "winding.png").is_file()
     assert drawn != any(note.text == driver.NO_DRIVER for note in result.notes)
     (line,) = [line for line in described(result.report()) if "does not resolve" in line]
@@ -195,14 +196,14 @@ def test_a_run_that_warns_of_the_fit_draws_it_and_says_so(tmp_path: Path) -> Non
     worst = deviation(result.surface, result.chart.annulus).regions[0]
     assert place(worst.on_surface, result.mesh.diagonal) in line
     again = result.write(tmp_path, render=False, overwrite=True)
-    assert not (tmp_path / FIT_ERROR).exists()  # a picture of an earlier run does not stay
+    assert not (tmp_path / FIT_PICTURE).exists()  # a picture of an earlier run does not stay
     assert not any("fit_error" in note.text for note in again.notes)
 
 
 def test_a_good_fit_is_not_drawn(tmp_path: Path) -> None:
     vertices, faces = tube(lambda z: 1.0 + 0.0 * z, HEIGHT, AROUND, ALONG)
     mw.wind(mesh_from(vertices, faces), paths=2, out=tmp_path)
-    assert not (tmp_path / FIT_ERROR).exists()
+    assert not (tmp_path / FIT_PICTURE).exists()
 
 
 def test_measures_have_the_shapes_that_they_say() -> None:

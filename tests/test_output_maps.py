@@ -8,6 +8,7 @@ from meshwind.core.cast import Floats
 from meshwind.layup.direction import directions, winding_angle
 from meshwind.layup.layup import assess
 from meshwind.layup.windability import of_frames
+from meshwind.results import schema
 from meshwind.results.maps import maps
 from meshwind.surface.grid import grid
 from meshwind.surface.surface import Surface
@@ -46,10 +47,10 @@ def test_class_and_windability_of_a_waist() -> None:
     data = maps(on, layup)
     v = on.uv[:, 1]
     waist, ends = np.abs(v - 0.5) < 0.05, np.abs(v - 0.5) > 0.4
-    assert (data["class"][waist] == 0).all()
-    assert (data["windability"][waist] < 0.75).all()
-    assert (data["class"][ends] == 1).all()
-    assert (data["windability"][ends] == 1.0).all()
+    assert (data[schema.CLASS][waist] == 0).all()
+    assert (data[schema.WINDABILITY][waist] < 0.75).all()
+    assert (data[schema.CLASS][ends] == 1).all()
+    assert (data[schema.WINDABILITY][ends] == 1.0).all()
     assert "fit_error" not in data
 
 
@@ -58,8 +59,8 @@ def test_inside_out_is_concave() -> None:
     cup = revolved(lambda v: 1.0 - 0.4 * (2.0 * v - 1.0) ** 2, 64, 32)
     on = grid(Surface(cup.control_points[::-1]))
     data = maps(on, assess(helices(6, 0.5, 51, Surface(net[::-1]))))
-    assert (data["class"] == -1).all()
-    assert (data["windability"] == 0.0).all()
+    assert (data[schema.CLASS] == -1).all()
+    assert (data[schema.WINDABILITY] == 0.0).all()
 
 
 @pytest.mark.parametrize("revolutions", [0.0, 0.3, 2.0])

@@ -13,7 +13,7 @@ from layup_shapes import bridged
 import meshwind as mw
 from meshwind.layup.layup import assess
 from meshwind.mesh.geometry.mesh import Mesh
-from meshwind.results.folder import RESULTS
+from meshwind.results.schema import RESULTS
 from meshwind.results.write import write_files
 from meshwind.surface import shapes
 from meshwind.surface.grid import grid

@@ -17,6 +17,8 @@ from meshwind.cli.wind import wind
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import MILLIMETRES, check_units, lengths_in, millimetres
 from meshwind.export.targets import Wishes, export
+from meshwind.mesh.geometry.mesh import Mesh
+from meshwind.results.write import write_edited
 
 DATA = Path(__file__).parents[1] / "data"
 LENGTHS = {
@@ -35,7 +37,7 @@ def inches(tmp_path_factory: pytest.TempPathFactory) -> Path:
     waisted_results(folder, "in")
     formats = "vtu", "vtk", "xdmf", "ply", "obj", "gmsh"
     told = export(folder, ["inp", "fibers", "frames", "step", "viewer"], wishes=Wishes(formats=formats)).notes
-    assert "gmsh: no place for the unit of length; lengths in in" in told
+    assert "gmsh: no entry for the unit of length; lengths in in" in told
     return folder
 
 
@@ -54,6 +56,15 @@ def test_fields_of_vtk_files_are_labelled(inches: Path, name: str) -> None:
 
 def label(array: object) -> object:
     return array.GetInformation().Get(array.UNITS_LABEL())  # type: ignore[attr-defined]
+
+
+def test_an_edited_mesh_is_labelled_like_a_run(tmp_path: Path) -> None:
+    mesh = Mesh(np.eye(3), np.array([[0, 1, 2]]))
+    write_edited(tmp_path, mesh, np.full((3, 3), 0.1), "in")
+    read = pv.read(tmp_path / "edited.vtu")
+    arrays = [read.GetPoints().GetData(), *(read.point_data[key].VTKObject for key in ("displacement", "moved"))]
+    assert [label(array) for array in arrays] == ["in", "in", "in"]
+    assert b"lengths in in" in (tmp_path / "edited.ply").read_bytes()[:200]
 
 
 @pytest.mark.parametrize("name", [

@@ -1,40 +1,14 @@
-"""The files of a redesign but its pictures: the edited mesh with its displacement, and the report's figures."""
+"""The report of a redesign."""
 
-from pathlib import Path
 from typing import Any
 
-import meshio
 import numpy as np
 
 from meshwind.core.version import version
 from meshwind.editing.redesign import Redesign
 from meshwind.editing.result import Round
-from meshwind.export.signature import sign
 from meshwind.path.paths import Status
 from meshwind.results.report import mesh_figures, plain, unsettled
-from meshwind.results.vtk_files import write_faces
-
-
-def write_edited(out: Path, edited: Redesign, units: str = "") -> None:
-    """Write edited.ply and edited.vtu: the edited mesh, vertices and faces in the order of the mesh that was read.
-
-    Point data: displacement (n, 3) in edited.vtu, its parts dx, dy, dz in edited.ply, and its size `moved` in both.
-    """
-    moves = np.asarray(edited.displacement)
-    moved = np.linalg.norm(moves, axis=1)
-    faces = np.asarray(edited.mesh.faces)
-    write_faces(
-        out / "edited.vtu",
-        edited.mesh.vertices,
-        np.empty((0, 4), np.int64),
-        faces,
-        {"displacement": moves, "moved": moved},
-    )
-    parts = {name: np.ascontiguousarray(moves[:, k]) for k, name in enumerate(("dx", "dy", "dz"))} | {"moved": moved}
-    cells = [("triangle", faces.astype(np.int32))]
-    mesh = meshio.Mesh(np.asarray(edited.mesh.vertices), cells, point_data=parts)
-    meshio.write(out / "edited.ply", mesh, file_format="ply", binary=True)
-    sign(out / "edited.ply", units)
 
 
 def redesign_report(

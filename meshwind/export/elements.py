@@ -1,7 +1,6 @@
 """The fitted surface as shell elements: a grid of quads, or the quad mesh on the crossings."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -9,6 +8,7 @@ from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.layup.quads import edge_counts
 from meshwind.results.reading import Results
+from meshwind.results.schema import QUADS, UV
 from meshwind.results.vtk_reading import read_faces
 from meshwind.surface.grid import grid_quads
 from meshwind.surface.surface import Surface
@@ -75,14 +75,14 @@ def regular(surface: Surface, count: int) -> Elements:
 
 def on_crossings(results: Results) -> Elements:
     """The run's quad mesh, its points on the surface; raises BadInputError where the run made none."""
-    mesh = read_faces(results.folder / "quads.vtu")
-    if not len(mesh.quads) + len(mesh.triangles) or "uv" not in mesh.point_data:
-        raise BadInputError(f"{Path('quads.vtu')} of {results.folder} has no faces; take the grid: --shell grid")
+    mesh = read_faces(results.folder / QUADS)
+    if not len(mesh.quads) + len(mesh.triangles) or UV not in mesh.point_data:
+        raise BadInputError(f"{QUADS} of {results.folder} has no faces; take the grid: --shell grid")
     used, corner = np.unique(np.concatenate([mesh.quads.ravel(), mesh.triangles.ravel()]), return_inverse=True)
     split = mesh.quads.size
-    uv = mesh.point_data["uv"][used].astype(np.float64)
+    uv = mesh.point_data[UV][used].astype(np.float64)
     if uv.ndim != 2 or not (np.isfinite(uv).all() and np.abs(uv).max() < 1e6):
-        raise BadInputError(f"quads.vtu of {results.folder} is damaged; run `meshwind wind` again")
+        raise BadInputError(f"{QUADS} of {results.folder} is damaged; run `meshwind wind` again")
     return _elements(results.surface, uv, corner[:split].reshape(-1, 4), corner[split:].reshape(-1, 3))
 
 

@@ -7,24 +7,22 @@ import numpy as np
 from meshwind.core.cast import Floats
 from meshwind.export.elements import Elements
 from meshwind.export.plies import Plies
-from meshwind.export.signature import sign
+from meshwind.results.meshio_files import write_meshio
+from meshwind.results.schema import FIBERS, FIBERS_LEGACY, NORMAL, THICKNESS, U, V, family_fields
 
-FILES = "fibers.vtu", "fibers.vtk"
+FILES = FIBERS, FIBERS_LEGACY
 
 
 def write_fibers(folder: Path, elements: Elements, laid: Plies, units: str = "") -> None:
-    """Write both files into a folder that is there; the fields are those of `cell_data`."""
-    import meshio
-
+    """Write both files into an existing folder; the fields are those of `cell_data`."""
     cells = [
         (kind, faces) for kind, faces in (("quad", elements.quads), ("triangle", elements.triangles)) if len(faces)
     ]
     data = {name: np.split(values, [len(cells[0][1])])[: len(cells)] for name, values in cell_data(laid).items()}
     u, v = np.array(elements.uv).T
-    mesh = meshio.Mesh(np.array(elements.points), cells, point_data={"u": u, "v": v}, cell_data=data)
+    points = {str(U): u, str(V): v}
     for name in FILES:
-        mesh.write(folder / name)
-        sign(folder / name, units)
+        write_meshio(folder / name, elements.points, cells, point_data=points, cell_data=data, units=units)
 
 
 def cell_data(laid: Plies) -> dict[str, Floats]:
@@ -36,10 +34,7 @@ def cell_data(laid: Plies) -> dict[str, Floats]:
     """
     data: dict[str, Floats] = {}
     for ply in laid.families:
-        number = 1 if ply.family > 0 else 2
-        data[f"fibre_{number}"] = ply.direction
-        data[f"FIB_DIR{number}"] = ply.direction
-        data[f"angle_{number}"] = np.degrees(ply.angle)
-        data[f"layers_{number}"] = ply.layers
-        data[f"thickness_{number}"] = ply.thickness
-    return data | {"thickness": laid.thickness, "normal": laid.normal}
+        names = family_fields(ply.family)
+        arrays = ply.direction, ply.direction, np.degrees(ply.angle), ply.layers, ply.thickness
+        data |= {str(name): values for name, values in zip(names, arrays, strict=True)}
+    return data | {str(THICKNESS): laid.thickness, str(NORMAL): laid.normal}

@@ -1,4 +1,4 @@
-"""The results as meshes in other formats, through meshio; what a format cannot hold is told."""
+"""The results as meshes in other formats, by meshio; what a format cannot hold is reported."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -10,13 +10,11 @@ from numpy.typing import NDArray
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.units import lengths_in
-from meshwind.export.signature import sign
-from meshwind.export.skin import read_skin
 from meshwind.export.xdmf import write_xdmf
-from meshwind.results.reading import Results
+from meshwind.results.meshio_files import write_meshio
+from meshwind.results.reading import Results, read_surface_grid
+from meshwind.results.schema import BRIDGES, CROSSINGS, FORMATS_FOLDER, PATHS, QUADS, SURFACE
 from meshwind.results.vtk_reading import Faces, Lines, read_faces, read_lines, read_vertices
-
-FOLDER = "formats"
 
 Data: TypeAlias = Mapping[str, NDArray[Any]]
 
@@ -36,34 +34,34 @@ class _Part:
 def write_formats(folder: Path, results: Results, formats: tuple[str, ...]) -> list[str]:
     """Write surface, quads, paths, bridges and crossings in each format into the folder's `formats`.
 
-    Polylines become line cells, one a segment, with their path's data each.  Returns one line for each thing that a
-    format cannot hold.
+    Polylines become line cells, one per segment, each with the data of its path.  Returns one line for each thing that
+    a format cannot hold.
     """
-    (folder / FOLDER).mkdir()
-    told: list[str] = []
+    (folder / FORMATS_FOLDER).mkdir()
+    lost: list[str] = []
     for part in _parts(results):
         if not len(part.points):
-            told.append(f"{part.name}: there are none, so no format has a file of them")
+            lost.append(f"{part.name}: there are none, so no format has a file of them")
             continue
         for name in formats:
-            told += FORMATS[name](folder / FOLDER, part)
-    return list(dict.fromkeys(told))
+            lost += FORMATS[name](folder / FORMATS_FOLDER, part)
+    return list(dict.fromkeys(lost))
 
 
 def _parts(results: Results) -> list[_Part]:
     """What of the run is a mesh; bridges and crossings may be without points."""
-    place = results.folder
-    skin, quads = read_skin(place, results.surface), read_faces(place / "quads.vtu")
-    parts = [_of_faces("surface", skin, results.units), _of_faces("quads", quads, results.units)]
-    parts += [_of_lines(name, read_lines(place / f"{name}.vtp"), results.units) for name in ("paths", "bridges")]
-    points, data = read_vertices(place / "crossings.vtp")
-    parts.append(_Part("crossings", points, (("vertex", np.arange(len(points))[:, None]),), data, {}, results.units))
+    folder, units = results.folder, results.units
+    surface, quads = read_surface_grid(folder, results.surface), read_faces(folder / QUADS)
+    parts = [_of_faces(SURFACE.stem, surface, units), _of_faces(QUADS.stem, quads, units)]
+    parts += [_of_lines(file.stem, read_lines(folder / file), units) for file in (PATHS, BRIDGES)]
+    points, data = read_vertices(folder / CROSSINGS)
+    parts.append(_Part(CROSSINGS.stem, points, (_vertices(points),), data, {}, units))
     return parts
 
 
 def _of_faces(name: str, read: Faces, units: str) -> _Part:
     cells = tuple((kind, block) for kind, block in (("quad", read.quads), ("triangle", read.triangles)) if len(block))
-    return _Part(name, read.points, cells or (_each(read.points),), read.point_data, {}, units)
+    return _Part(name, read.points, cells or (_vertices(read.points),), read.point_data, {}, units)
 
 
 def _of_lines(name: str, read: Lines, units: str) -> _Part:
@@ -75,16 +73,8 @@ def _of_lines(name: str, read: Lines, units: str) -> _Part:
     return _Part(name, read.points, (("line", np.stack([first, first + 1], axis=1)),), read.point_data, data, units)
 
 
-def _each(points: Floats) -> tuple[str, Ints]:
+def _vertices(points: Floats) -> tuple[str, Ints]:
     return "vertex", np.arange(len(points))[:, None]
-
-
-def _mesh(part: _Part, point_data: Data, cell_data: Mapping[str, list[NDArray[Any]]] | None = None) -> Any:
-    import meshio
-
-    cells = [(kind, np.array(block)) for kind, block in part.cells]
-    held = cell_data if cell_data is not None else {name: [values] for name, values in part.cell_data.items()}
-    return meshio.Mesh(np.array(part.points), cells, point_data=dict(point_data), cell_data=dict(held))
 
 
 def _apart(data: Data, widest: int) -> dict[str, NDArray[Any]]:
@@ -98,16 +88,15 @@ def _apart(data: Data, widest: int) -> dict[str, NDArray[Any]]:
     return out
 
 
+def _vtk(folder: Path, part: _Part, suffix: str = "vtk") -> list[str]:
+    data = {name: [values] for name, values in part.cell_data.items()}
+    file, points = folder / f"{part.name}.{suffix}", _apart(part.point_data, 3)
+    write_meshio(file, part.points, part.cells, point_data=points, cell_data=data, units=part.units)
+    return []
+
+
 def _vtu(folder: Path, part: _Part) -> list[str]:
-    _mesh(part, _apart(part.point_data, 3)).write(folder / f"{part.name}.vtu")
-    sign(folder / f"{part.name}.vtu", part.units)
-    return []
-
-
-def _vtk(folder: Path, part: _Part) -> list[str]:
-    _mesh(part, _apart(part.point_data, 3)).write(folder / f"{part.name}.vtk")
-    sign(folder / f"{part.name}.vtk", part.units)
-    return []
+    return _vtk(folder, part, "vtu")
 
 
 def _xdmf(folder: Path, part: _Part) -> list[str]:
@@ -125,23 +114,22 @@ def _gmsh(folder: Path, part: _Part) -> list[str]:
     }
     cell_data: dict[str, list[NDArray[Any]]] = {n: [v.astype(float)] for n, v in part.cell_data.items()}
     point_data = {name: values.astype(float) for name, values in _apart(part.point_data, 3).items()}
-    mesh = _mesh(part, point_data, cell_data | tags)
+    cells = [(kind, np.array(block)) for kind, block in part.cells]
+    mesh = meshio.Mesh(np.array(part.points), cells, point_data=point_data, cell_data=cell_data | tags)
     meshio.gmsh.write(str(folder / f"{part.name}.msh"), mesh, fmt_version="2.2", binary=True)
-    return [f"gmsh: no place for the unit of length; {lengths_in(part.units)}"]
+    return [f"gmsh: no entry for the unit of length; {lengths_in(part.units)}"]
 
 
 def _ply(folder: Path, part: _Part) -> list[str]:
-    """meshio's PLY has faces alone and its numbers at the points: lines are left as their points."""
+    """meshio's PLY has faces alone, and data at the points alone: of lines only their points are written."""
     lost = [f"ply: no data of cells; of {part.name} it lacks {', '.join(part.cell_data)}"] if part.cell_data else []
     kinds = {kind for kind, _ in part.cells}
     if kinds & {"line", "vertex"}:
         lost += ["ply: no lines; paths and bridges are written as their points"] if "line" in kinds else []
         part = replace(part, cells=())
-    mesh = _mesh(replace(part, cell_data={}), _apart(part.point_data, 1))
-    for block in mesh.cells:
-        block.data = block.data.astype(np.int32)  # PLY has no wider integers
-    mesh.write(folder / f"{part.name}.ply", binary=True)
-    sign(folder / f"{part.name}.ply", part.units)
+    cells = [(kind, block.astype(np.int32)) for kind, block in part.cells]  # PLY has no wider integers
+    data = _apart(part.point_data, 1)
+    write_meshio(folder / f"{part.name}.ply", part.points, cells, point_data=data, units=part.units)
     return lost
 
 
@@ -159,4 +147,4 @@ def _obj(folder: Path, part: _Part) -> list[str]:
 FORMATS: dict[str, Callable[[Path, _Part], list[str]]] = {
     "vtu": _vtu, "vtk": _vtk, "xdmf": _xdmf, "ply": _ply, "obj": _obj, "gmsh": _gmsh,
 }  # fmt: skip
-"""Mesh formats by name: each writes one part into a folder and tells what it could not hold."""
+"""Mesh formats by name: each writes one part into a folder and returns what it could not hold."""

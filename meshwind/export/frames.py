@@ -9,11 +9,11 @@ from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import millimetres
 from meshwind.results.reading import Results
+from meshwind.results.schema import ALL_FRAMES, FRAMES_FOLDER, frames_of
 
 HEADER = (
     "index,arc_length,parameter_s,x,y,z,tx,ty,tz,nx,ny,nz,sx,sy,sz,width,left_x,left_y,left_z,right_x,right_y,right_z"
 )
-FOLDER, ALL = "frames", "all.csv"
 STEP, ANGLE = 0.02, 5.0
 """Longest step over the part's diagonal and largest turn in degrees, where none is given."""
 _SHORTEST = 0.02
@@ -115,19 +115,19 @@ def write_frames(
     if not len(rest):
         raise BadInputError(f"no path of {results.folder} came to rest, so there is none to follow; wind it otherwise")
     scale = millimetres(results.units)
-    (folder / FOLDER).mkdir()
+    (folder / FRAMES_FOLDER).mkdir()
     paths, sharp = results.paths, 0
-    with (folder / FOLDER / ALL).open("w", encoding="ascii") as every:
+    with (folder / FRAMES_FOLDER / ALL_FRAMES).open("w", encoding="ascii") as every:
         every.write(f"path,family,{HEADER}\n")
         for k in rest:
             found = frames(paths.points[k], paths.normal[k], wide, longest, turn)
             rows = table(found, scale)
-            with (folder / FOLDER / f"path_{k:03d}.csv").open("w", encoding="ascii") as file:
+            with (folder / FRAMES_FOLDER / frames_of(int(k))).open("w", encoding="ascii") as file:
                 np.savetxt(file, rows, fmt=_FORMAT, delimiter=",", header=HEADER, comments="")
             both = np.column_stack([np.broadcast_to([k, paths.family[k]], (len(rows), 2)), rows])
             np.savetxt(every, both, fmt=["%d", "%d", *_FORMAT], delimiter=",")
             sharp += int((np.maximum(_turn(found.tangent), _turn(found.normal)) > turn * (1.0 + 1e-6)).sum())
-    return _told(results, len(rest), sharp)
+    return [f"{FRAMES_FOLDER}: {note}" for note in _notes(results, len(rest), sharp)]
 
 
 _FORMAT = ["%d"] + 21 * ["%.15g"]
@@ -144,14 +144,14 @@ def table(found: Frames, scale: float) -> Floats:
     )
 
 
-def _told(results: Results, written: int, sharp: int) -> list[str]:
+def _notes(results: Results, written: int, sharp: int) -> list[str]:
     notes = []
     if written < len(results.paths):
-        notes.append(f"{FOLDER}: left out as not at rest: {len(results.paths) - written} of {len(results.paths)} paths")
+        notes.append(f"left out as not at rest: {len(results.paths) - written} of {len(results.paths)} paths")
     if sharp:
-        notes.append(f"{FOLDER}: {sharp} steps turn by more than the limit, as no step is made tiny for a sharp edge")
+        notes.append(f"{sharp} steps turn by more than the limit, as no step is made tiny for a sharp edge")
     if not results.units:
-        notes.append(f"{FOLDER}: the run names no unit, so its lengths are taken as mm")
+        notes.append("the run names no unit, so its lengths are taken as mm")
     return notes
 
 

@@ -15,8 +15,8 @@ from meshwind.core.cast import Floats, Ints
 from meshwind.export.elements import Elements
 from meshwind.export.material import Material
 from meshwind.export.plies import Plies
+from meshwind.results.schema import SHELL, SHELL_S4R
 
-QUADRATIC, LINEAR = "shell.inp", "shell_s4r.inp"
 LEAST = 0.05
 """Where fibres lie thinner than this part of a layer, or not at all, a family counts as that thick."""
 FORCE = 1000.0
@@ -52,15 +52,15 @@ class _Nodes:
 
 def write_decks(folder: Path, deck: Deck) -> list[str]:
     """Write both decks into a folder that is there; return what the user should know."""
-    for name, quadratic in ((QUADRATIC, True), (LINEAR, False)):
+    for name, quadratic in ((SHELL, True), (SHELL_S4R, False)):
         with (folder / name).open("w", encoding="ascii", errors="replace") as file:
             _write(file, deck, _nodes(deck.elements, quadratic))
     thin = int(sum((_layers(deck, k) < LEAST).sum() for k in range(len(deck.plies.families))))
-    notes = [f"{QUADRATIC}: {len(deck.elements)} elements, one layer of band {deck.plies.layer:.4g} thick"]
+    notes = [f"{SHELL}: {len(deck.elements)} elements, one layer of band {deck.plies.layer:.4g} thick"]
     if thin:
-        notes.append(f"{QUADRATIC}: {thin} plies of elements have less than {LEAST:g} of a layer and count as that")
+        notes.append(f"{SHELL}: {thin} plies of elements have less than {LEAST:g} of a layer and count as that")
     if not deck.units:
-        notes.append(f"{QUADRATIC}: the run names no unit, so the material is in N and mm")
+        notes.append(f"{SHELL}: the run names no unit, so the material is in N and mm")
     return notes
 
 

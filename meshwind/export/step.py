@@ -10,10 +10,10 @@ from meshwind.core.errors import BadInputError
 from meshwind.core.units import millimetres
 from meshwind.export.opencascade import knots_array, need, occ, points_array, quiet
 from meshwind.export.splines import clamped_surface, curve_through
+from meshwind.results import schema
 from meshwind.results.reading import Results
 from meshwind.surface.surface import DEGREE, Surface
 
-FILE = "surface.step"
 TIME = "1970-01-01T00:00:00"
 """In place of the time of writing, which STEP asks for: the same run gives the same bytes."""
 
@@ -30,11 +30,11 @@ def write_step(folder: Path, results: Results) -> list[str]:
     for path in np.flatnonzero(results.at_rest):
         name = f"path {path} family {results.paths.family[path]:+d}"
         shapes.append((name, edge(results.paths.points[path], scale)))
-    _write(folder / FILE, shapes)
+    _write(folder / schema.STEP, shapes)
     left = int((~results.at_rest).sum())
-    notes = [f"{FILE}: left out as not at rest: {left} of {len(results.paths)} paths"] if left else []
+    notes = [f"{schema.STEP}: left out as not at rest: {left} of {len(results.paths)} paths"] if left else []
     if not results.units:
-        notes.append(f"{FILE}: the run names no unit, so its lengths are taken as mm")
+        notes.append(f"{schema.STEP}: the run names no unit, so its lengths are taken as mm")
     return notes
 
 

@@ -16,7 +16,7 @@ from meshwind.export.plies import plies
 from meshwind.export.shell_deck import Deck, write_decks
 from meshwind.export.step import write_step
 from meshwind.export.viewer import write_viewer
-from meshwind.results.place import beside
+from meshwind.results.folder import beside
 from meshwind.results.reading import Results, read_results
 
 GRID, QUADS = "grid", "quads"

@@ -18,9 +18,9 @@ from meshwind.appearance.view import best_view
 from meshwind.appearance.words import quantity
 from meshwind.core.cast import Bools, Ints
 from meshwind.core.errors import BadInputError
-from meshwind.export.skin import read_skin
 from meshwind.path.lengths import bridged_share, lengths
-from meshwind.results.reading import Results
+from meshwind.results.reading import Results, read_surface_grid
+from meshwind.results.schema import NORMAL, UV, VIEWER
 from meshwind.results.vtk_reading import Faces
 
 _MOST = 12_000
@@ -41,13 +41,13 @@ def write_viewer(folder: Path, results: Results) -> list[str]:
     for mark, content in (("/*PLOTLY*/", get_plotlyjs()), ("/*SCENE*/", told), ("<!--NAME-->", _escaped(results.name))):
         before, after = page.split(mark)
         page = before + content + after
-    (folder / "viewer.html").write_text(page, encoding="utf-8")
+    (folder / VIEWER).write_text(page, encoding="utf-8")
     return []
 
 
 def scene(results: Results) -> dict[str, Any]:
     """All that the page shows, arrays as base64 of float32 or int32."""
-    skin = read_skin(results.folder, results.surface)
+    skin = read_surface_grid(results.folder, results.surface)
     return {
         "name": results.name,
         "units": results.units,
@@ -62,7 +62,7 @@ def scene(results: Results) -> dict[str, Any]:
 
 def _surface(skin: Faces, results: Results) -> dict[str, Any]:
     """The surface thinned to what a browser can turn, with its maps."""
-    uv = skin.point_data["uv"]
+    uv = skin.point_data[UV]
     nv = int((uv[:, 0] == uv[0, 0]).sum())
     nu = len(uv) // nv
     share = min(np.sqrt(_MOST / len(uv)), 1.0)
@@ -76,7 +76,7 @@ def _surface(skin: Faces, results: Results) -> dict[str, Any]:
     size = np.linalg.norm(np.ptp(points, axis=0))
     return {
         "points": _packed(points.T),
-        "drawn": _packed((points - _SUNK * size * skin.point_data["normal"][kept]).T),
+        "drawn": _packed((points - _SUNK * size * skin.point_data[NORMAL][kept]).T),
         "triangles": _packed(np.concatenate([np.stack([a, b, c]), np.stack([a, c, d])], axis=1)),
         "uv": _packed(uv[kept].T),
         "maps": [_map(name, skin, kept, results.units) for name in MAPS if name in skin.point_data],
@@ -142,7 +142,7 @@ def _lines(results: Results, kind: str, family: int, words: str, mine: Bools, wa
 
 def _camera(skin: Faces, results: Results) -> dict[str, Any]:
     """Where the eye is and what is up, as on the pictures; the extents seen over the largest of the part's box."""
-    nv = int((skin.point_data["uv"][:, 0] == skin.point_data["uv"][0, 0]).sum())
+    nv = int((skin.point_data[UV][:, 0] == skin.point_data[UV][0, 0]).sum())
     axis = skin.points.reshape(-1, nv, 3).mean(axis=0)
     paths = results.paths
     marks = paths.points.reshape(-1, 3), paths.normal.reshape(-1, 3), paths.gap.ravel()

@@ -9,6 +9,7 @@ from meshwind.pictures.slip_scene import slip_scene
 from meshwind.pictures.subject import Subject
 from meshwind.pictures.unrolled_scene import unrolled_scene
 from meshwind.pictures.winding_scene import winding_scene
+from meshwind.results.schema import FIT, FIT_ERROR
 
 PICTURES: dict[str, Callable[[Subject], dict[str, Any]]] = {
     "winding": winding_scene,
@@ -20,13 +21,8 @@ PICTURES: dict[str, Callable[[Subject], dict[str, Any]]] = {
     "unrolled": unrolled_scene,
     "quads": quads_scene,
 }
-REDESIGN, SHEET = "redesign", "sheet"
-"""The picture of a redesign, and the contact sheet of all the others."""
-MOVIES = "gif", "mp4"
-ANIMATION = "winding"
-"""The name of the animation's files."""
 
 
 def scenes_of(of: Subject) -> dict[str, dict[str, Any]]:
     """All pictures that there are of a winding; without its fit error the surface has no picture of that."""
-    return {name: make(of) for name, make in PICTURES.items() if name != "fit" or "fit_error" in of.maps}
+    return {name: make(of) for name, make in PICTURES.items() if name != FIT or FIT_ERROR in of.maps}

@@ -11,13 +11,10 @@ from meshwind.appearance.looks import DIVERGING, Look, both_ways
 from meshwind.appearance.view import around, named_view, place_view
 from meshwind.appearance.words import quantity
 from meshwind.core.cast import Floats, Ints, floats, ints
-from meshwind.core.errors import BadInputError
 from meshwind.pictures import driver
 from meshwind.pictures.page import Page
-from meshwind.results.vtk_reading import read_faces
+from meshwind.results.reading import read_edited
 
-EDITED = "edited.vtu"
-"""A redesign's folder is one that holds this: the edited mesh as triangles, with the point data `displacement`."""
 _MOVES = Look("displacement", "moved outward\n(red) or\ninward (blue)", "{u}", DIVERGING, both_ways)
 _EYES = 240
 
@@ -77,11 +74,7 @@ def draw_redesign(
 
 def redesign_in(folder: Path, name: str, units: str = "", seen_from: str = "auto") -> dict[str, Any]:
     """The scene of a redesign's folder; raises BadInputError where its edited mesh is none."""
-    read = read_faces(folder / EDITED)
-    moves = read.point_data.get("displacement")
-    if moves is None or not len(read.triangles):
-        raise BadInputError(f"{folder / EDITED} holds no triangles with a displacement; run `meshwind redesign` again")
-    return redesign_scene(read.points - moves, moves, read.triangles, name, units, seen_from)
+    return redesign_scene(*read_edited(folder), name, units, seen_from)
 
 
 def redesign_scene(

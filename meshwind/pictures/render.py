@@ -13,13 +13,14 @@ from meshwind.core.units import unit_told
 from meshwind.pictures import driver
 from meshwind.pictures.animation_scene import animation_scene
 from meshwind.pictures.encoder import encoder
-from meshwind.pictures.kinds import ANIMATION, MOVIES, PICTURES, REDESIGN, SHEET, scenes_of
+from meshwind.pictures.kinds import scenes_of
 from meshwind.pictures.page import Page
-from meshwind.pictures.redesign_scene import EDITED, redesign_in
+from meshwind.pictures.redesign_scene import redesign_in
 from meshwind.pictures.sheet import cell, write_sheet
 from meshwind.pictures.subject import Subject, subject_of
-from meshwind.results.place import beside
-from meshwind.results.reading import read_report, read_results
+from meshwind.results.folder import beside
+from meshwind.results.reading import is_redesign, read_report, read_results
+from meshwind.results.schema import MOVIES, PATHS, PICTURES, REDESIGN, SHEET, movie, picture
 
 Scenes = dict[str, dict[str, Any]]
 Tell = Callable[[str, int, int], None]
@@ -84,7 +85,7 @@ def render(
     """
     paper = page or Page()
     _check(only, animate, paper)
-    movie = encoder() if "mp4" in animate else ""
+    mp4 = encoder() if "mp4" in animate else ""
     source, target = Path(folder), Path(folder if out is None else out)
     driver.start_probe()
     try:
@@ -97,11 +98,11 @@ def render(
             work = placed(scenes, only or (() if animate else (*scenes, SHEET)), paper, staging, Path(cells))
             pictures = list(work)
             if animate and of is not None:
-                files = [staging / f"{ANIMATION}.{kind}" for kind in dict.fromkeys(animate)]
-                work[files[0]] = animation_scene(of, seconds, files, movie) | replace(paper, transparent=False).told
+                files = [staging / movie(kind) for kind in dict.fromkeys(animate)]
+                work[files[0]] = animation_scene(of, seconds, files, mp4) | replace(paper, transparent=False).told
             _paint(work, tell)
             if SHEET in only or not (only or animate):
-                write_sheet(staging / f"{SHEET}.png", pictures, paper.transparent)
+                write_sheet(staging / picture(SHEET), pictures, paper.transparent)
             names = sorted(path.name for path in staging.iterdir() if path.is_file())
     finally:
         driver.stop()
@@ -113,9 +114,9 @@ def placed(scenes: Scenes, names: Sequence[str], page: Page, out: Path, cells: P
     work = {}
     for name, scene in scenes.items():
         if name in names:
-            work[out / f"{name}.png"] = scene | page.told
+            work[out / picture(name)] = scene | page.told
         elif SHEET in names:
-            work[cells / f"{name}.png"] = scene | cell(page).told
+            work[cells / picture(name)] = scene | cell(page).told
     return work
 
 
@@ -130,14 +131,14 @@ def _check(only: Sequence[str], animate: Sequence[str], page: Page) -> None:
 
 def _subject(source: Path, page: Page) -> Subject | None:
     """The winding in a folder; None where there is but a redesign."""
-    if (source / EDITED).is_file() and not (source / "paths.vtp").is_file():
+    if is_redesign(source) and not (source / PATHS).is_file():
         return None
     return subject_of(read_results(source), page.view)
 
 
 def _scenes(source: Path, of: Subject | None, page: Page) -> Scenes:
     scenes = {} if of is None else scenes_of(of)
-    if (source / EDITED).is_file():
+    if is_redesign(source):
         name, units = _called(source) if of is None else (of.name, of.units)
         scenes[REDESIGN] = redesign_in(source, name, units, page.view)
     return scenes

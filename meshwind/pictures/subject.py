@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from meshwind.appearance.view import View, best_view, named_view
 from meshwind.core.cast import Bools, Floats, Ints
-from meshwind.export.skin import read_skin
 from meshwind.layup.layup import Layup
 from meshwind.path.lengths import lengths
 from meshwind.path.paths import Paths, Status
 from meshwind.results.figures import PathFigures, path_figures
-from meshwind.results.reading import Results
+from meshwind.results.reading import Results, read_surface_grid
+from meshwind.results.schema import NORMAL
 from meshwind.surface.grid import grid
 
 _MOST_POINTS, _FEWEST_POINTS, _ALL_POINTS = 250, 40, 60_000
@@ -129,9 +129,9 @@ def subject_in(
 
     trusted: this very process has written the file.
     """
-    skin = read_skin(folder, layup.paths.surface, trusted)
+    skin = read_surface_grid(folder, layup.paths.surface, trusted)
     maps = dict(skin.point_data)
-    normals = maps.pop("normal")
+    normals = maps.pop(NORMAL)
     return Subject(layup, skin.points, skin.quads, normals, name, units, revolutions, maps, seen_from)
 
 

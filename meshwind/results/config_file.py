@@ -5,21 +5,22 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-NAME = "meshwind.toml"
-_ON = {"particles": "auto"}
-"""What stands for an option that was left to the run; any other has no line of its own."""
+from meshwind.results.schema import CONFIG
+
+_LEFT_OPEN = {"particles": "auto"}
+"""What is written for an option that was left to the run; any other has no line of its own."""
 
 
 def write_config(path: Path, out: Path, options: Mapping[str, object], version: str, command: str = "wind") -> None:
-    """Write options by their long names; paths (Path) are told from the folder `out`, where the file comes to lie."""
+    """Write options by their long names; paths (Path) are relative to `out`, the folder of the file."""
     lines = [
-        f"# meshwind {version}: repeat this run with `meshwind {command} --config {NAME}`",
+        f"# meshwind {version}: repeat this run with `meshwind {command} --config {CONFIG}`",
         "# paths are relative to this file",
     ]
     for name, value in options.items():
         key = name.replace("_", "-")
-        told = _ON.get(name) if value is None else _from(value, out) if isinstance(value, Path) else value
-        lines.append(f"# {key}: not given" if told is None else f"{key} = {_toml(told)}")
+        given = _LEFT_OPEN.get(name) if value is None else _from(value, out) if isinstance(value, Path) else value
+        lines.append(f"# {key}: not given" if given is None else f"{key} = {_toml(given)}")
     path.write_text("\n".join(lines) + "\n", encoding="utf-8", errors="replace")
 
 
@@ -29,7 +30,7 @@ def _toml(value: object) -> str:
 
 
 def _from(file: Path, folder: Path) -> str:
-    """The way to a file from a folder, with symbolic links followed, as a program takes it."""
+    """The path of a file relative to a folder, with symbolic links resolved."""
     try:
         return Path(os.path.relpath(os.path.realpath(file), os.path.realpath(folder))).as_posix()
     except ValueError:  # on another drive

@@ -1,21 +1,12 @@
-"""The output folder: files appear in it whole and together, or not at all, and results are replaced only on demand."""
+"""A run's folder: files appear in it whole and together, or not at all, and results are replaced only on demand."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from meshwind.core.errors import BadInputError
-from meshwind.results.exports import exports_in
+from meshwind.results.schema import EXPORT_FOLDERS, EXPORTS, RESULTS
 from meshwind.results.staging import staged
-
-RESULTS = frozenset(
-    ("paths.vtp", "bridges.vtp", "crossings.vtp", "quads.vtu", "quads.obj", "surface.vtu", "surface.npz")
-    + ("chart.png", "report.json", "winding.png", "fit_error.png", "revolutions.png", "sheet.png", "crossings.png")
-    + ("coverage.png", "windability.png", "slip.png", "fit.png", "unrolled.png", "quads.png", "redesign.png")
-    + ("winding.gif", "winding.mp4", "viewer.html", "edited.ply", "edited.vtu", "before.png", "after.png")
-    + ("meshwind.toml",)
-)
-"""All that a run, or what is made of it, may leave in its folder."""
 
 
 class _TrialError(Exception):
@@ -25,7 +16,7 @@ class _TrialError(Exception):
 def prepare(out: Path, overwrite: bool = False) -> None:
     """Make sure that files can be written into `out`, and leave nothing behind; first finish what a killed run left.
 
-    Raises BadInputError where a file is in the way, where the place cannot be written or where, without `overwrite`,
+    Raises BadInputError where a file is in the way, where the folder cannot be written or where, without `overwrite`,
     it holds results.
     """
     try:
@@ -44,12 +35,37 @@ def writing(out: Path, overwrite: bool = False) -> Iterator[Path]:
     even `out` itself where it was missing, and killed on the way the next run into `out` finishes the move or clears
     away.  Raises BadInputError where `out` cannot be written or, without `overwrite`, holds results.
     """
-    if out.exists() and not out.is_dir():
-        raise BadInputError(f"{out} is a file; give a folder for the results")
+    _not_a_file(out)
     with staged(out, lambda _: map(Path, held)) as staging:
         held = _held(out, overwrite)
         yield staging
         held = _held(out, overwrite)
+
+
+@contextmanager
+def beside(out: Path) -> Iterator[Path]:
+    """Give a folder for exports of a run; on leaving they move to `out` beside what is there, on an error they vanish.
+
+    Files of the same names in `out` are replaced, and in a folder of the same name numbered files (path_007.csv) of
+    an earlier export do not stay.  All else in `out` is left alone.  Raises BadInputError where `out` cannot be
+    written.
+    """
+    _not_a_file(out)
+    with staged(out, lambda fresh: _outdated(out, fresh)) as staging:
+        yield staging
+
+
+def exports_in(out: Path) -> list[str]:
+    """Names of the exported files in a folder, relative to it; other files there and below are not among them."""
+    folders = out, *map(out.joinpath, EXPORT_FOLDERS)
+    files = [file for folder in folders if folder.is_dir() for file in folder.iterdir()]
+    names = (file.relative_to(out).as_posix() for file in files if file.is_file())
+    return sorted(name for name in names if EXPORTS.fullmatch(name))
+
+
+def _not_a_file(out: Path) -> None:
+    if out.exists() and not out.is_dir():
+        raise BadInputError(f"{out} is a file; give a folder for the results")
 
 
 def _held(out: Path, overwrite: bool) -> list[str]:
@@ -61,3 +77,12 @@ def _held(out: Path, overwrite: bool) -> list[str]:
             f"{out} holds results already ({what}); give another folder, or --overwrite to replace them"
         )
     return held
+
+
+def _outdated(out: Path, fresh: list[Path]) -> Iterator[Path]:
+    """What an earlier export left in folders of the same kinds and this one does not have."""
+    for top in {name.parts[0] for name in fresh if len(name.parts) > 1}:
+        kinds = {name.name.rsplit("_", 1)[0] for name in fresh if name.parts[0] == top and "_" in name.name}
+        for old in (out / top).iterdir() if (out / top).is_dir() else ():
+            if old.is_file() and old.name.rsplit("_", 1)[0] in kinds:
+                yield Path(top, old.name)

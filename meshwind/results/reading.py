@@ -12,21 +12,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from meshwind.core.cast import Bools, floats, frozen
+from meshwind.core.cast import Bools, Floats, Ints, floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import unit_told
 from meshwind.layup.layup import Layup, assess
 from meshwind.path.paths import Counters, Paths, Status
-from meshwind.results.staging import REPORT, settle
-from meshwind.results.vtk_reading import Lines, read_lines
+from meshwind.results import schema
+from meshwind.results.schema import EDITED, PATHS, REPORT, SPLINE, SURFACE
+from meshwind.results.staging import settle
+from meshwind.results.vtk_reading import Faces, Lines, read_faces, read_lines
+from meshwind.surface.grid import grid
 from meshwind.surface.surface import FitError, Surface
 
-_NEEDED = "paths.vtp", "surface.npz", REPORT
-_FIELDS = {"uv": (2,), "on_surface": (), "gap": (), "normal": (3,), "slip": ()}
+_NEEDED = PATHS, SPLINE, REPORT
+_AT_PARTICLES = schema.UV, schema.ON_SURFACE, schema.GAP, schema.NORMAL, schema.SLIP
+_OF_PATHS = schema.FAMILY, schema.STATUS
 _FARTHEST, _MOST_TURNS = 1e100, 1e6
 """Of any length of a surface, and of u: beyond them a file is damaged."""
-_OFF = 1e-5
-"""Particles on the surface lie no further off it than this, over its size."""
+_OFF, _OFF_GRID = 1e-5, 1e-9
+"""Particles on the surface, and points of its grid, lie no further off it than this, over its size."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +57,7 @@ class Results:
 
     @property
     def units(self) -> str:
-        """Name of the unit of length, "" where the run was told none."""
+        """Name of the unit of length, "" where it is not known."""
         return unit_told(str(_under(self.report, "mesh", "units") or ""))
 
     @property
@@ -80,36 +84,71 @@ class Results:
 
 def read_results(folder: str | PathLike[str]) -> Results:
     """Read the folder of a run; raises BadInputError where it is none, or its files do not belong together."""
-    place = _place(folder, _NEEDED)
-    report = _report(place / REPORT)
+    source = _folder(folder, _NEEDED)
+    report = _report(source / REPORT)
     try:
-        surface = _surface(place / "surface.npz", report)
-        paths = _paths(place / "paths.vtp", surface, report)
+        surface = _surface(source / SPLINE, report)
+        paths = _paths(source / PATHS, surface, report)
     except BadInputError:
         raise
     except (ArithmeticError, LookupError, TypeError, ValueError) as error:
-        raise _spoilt(place, error) from error
-    return Results(place, paths, report)
+        raise _spoilt(source, error) from error
+    return Results(source, paths, report)
 
 
 def read_report(folder: str | PathLike[str]) -> dict[str, Any]:
     """Read the report in the folder of a run; raises BadInputError where there is none, or it cannot be read."""
-    return _report(_place(folder, (REPORT,)) / REPORT)
+    return _report(_folder(folder, (REPORT,)) / REPORT)
 
 
-def _place(folder: str | PathLike[str], needed: tuple[str, ...]) -> Path:
+def read_surface_grid(folder: Path, surface: Surface, trusted: bool = False) -> Faces:
+    """Read surface.vtu, the grid of a folder's surface with its maps.
+
+    trusted: this very process has written the file.  Raises BadInputError where it is damaged or of another surface.
+    """
+    read, on = read_faces(folder / SURFACE, trusted), grid(surface)
+    if (
+        read.points.shape != on.points.shape
+        or not np.array_equal(read.quads, on.quads)
+        or not np.isfinite(read.points).all()
+        or np.abs(read.points - on.points).max() > _OFF_GRID * surface.size
+        or not np.array_equal(read.point_data.get(schema.UV, on.points), on.uv)
+        or read.point_data.get(schema.NORMAL, on.uv).shape != on.points.shape
+    ):
+        raise _spoilt(folder / SURFACE, "it is of another surface")
+    return read
+
+
+def is_redesign(folder: Path) -> bool:
+    """Whether a folder holds what a redesign left."""
+    return (folder / EDITED).is_file()
+
+
+def read_edited(folder: Path) -> tuple[Floats, Floats, Ints]:
+    """Vertices (n, 3) of a redesign's mesh as they were, their displacement (n, 3), and its faces (m, 3).
+
+    Raises BadInputError where the folder's edited mesh is none.
+    """
+    read = read_faces(folder / EDITED)
+    moves = read.point_data.get(schema.DISPLACEMENT)
+    if moves is None or not len(read.triangles):
+        raise BadInputError(f"{folder / EDITED} holds no triangles with a displacement; run `meshwind redesign` again")
+    return read.points - moves, moves, read.triangles
+
+
+def _folder(folder: str | PathLike[str], needed: tuple[str, ...]) -> Path:
     """The folder, once it is known to be one and to hold the needed files."""
-    place = Path(folder)
-    if not place.is_dir():
-        raise BadInputError(f"{place} is no folder; give one that `meshwind wind MESH --out DIR` left")
+    path = Path(folder)
+    if not path.is_dir():
+        raise BadInputError(f"{path} is no folder; give one that `meshwind wind MESH --out DIR` left")
     with suppress(OSError):  # a folder that cannot be written is read as it is
-        settle(place)
-    missing = [name for name in needed if not (place / name).is_file()]
+        settle(path)
+    missing = [name for name in needed if not (path / name).is_file()]
     if missing:
         raise BadInputError(
-            f"{place} holds no {' and no '.join(missing)}; give a folder that `meshwind wind MESH --out DIR` left"
+            f"{path} holds no {' and no '.join(missing)}; give a folder that `meshwind wind MESH --out DIR` left"
         )
-    return place
+    return path
 
 
 def _report(path: Path) -> dict[str, Any]:
@@ -125,10 +164,10 @@ def _report(path: Path) -> dict[str, Any]:
 def _surface(path: Path, report: dict[str, Any]) -> Surface:
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as held:
-            control, periodic = held["control_points"], bool(held["periodic_u"])
+            control, periodic = held[schema.CONTROL_POINTS], bool(held[schema.PERIODIC_U])
     except (OSError, EOFError, ValueError, LookupError, TypeError, AttributeError, zipfile.BadZipFile) as error:
         raise _spoilt(path, error) from error
-    points = floats(control, f"control_points of {path.name}", -1, -1, 3)
+    points = floats(control, f"{schema.CONTROL_POINTS} of {path.name}", -1, -1, 3)
     if np.abs(points).max(initial=0.0) > _FARTHEST:
         raise _spoilt(path, f"it reaches beyond {_FARTHEST:g}")
     return Surface(points, periodic, _fit_error(report))
@@ -149,32 +188,33 @@ def _fit_error(report: dict[str, Any]) -> FitError | None:
 def _paths(path: Path, surface: Surface, report: dict[str, Any]) -> Paths:
     lines = read_lines(path)
     sizes = np.diff(lines.starts)
-    lacking = [name for name in _FIELDS if name not in lines.point_data]
-    lacking += [name for name in ("family", "status") if name not in lines.cell_data]
+    lacking: list[str] = [name for name in _AT_PARTICLES if name not in lines.point_data]
+    lacking += [name for name in _OF_PATHS if name not in lines.cell_data]
     if lacking or not len(sizes) or (sizes != sizes[0]).any():
         raise _spoilt(path, f"no {' or '.join(lacking)} in it" if lacking else "its lines are no paths of one run")
-    held = {name: _shaped(lines, name, len(sizes), *shape) for name, shape in _FIELDS.items()}
-    if not all(np.isfinite(values).all() for values in (lines.points, *(held[n] for n in _FIELDS if n != "slip"))):
+    held = {name: _shaped(lines, name, len(sizes)) for name in _AT_PARTICLES}
+    known = (values for name, values in held.items() if name != schema.SLIP)
+    if not all(np.isfinite(values).all() for values in (lines.points, *known)):
         raise _spoilt(path, "it holds NaN or infinite values")
-    on = held["on_surface"].astype(bool).ravel()
-    uv, points = np.ascontiguousarray(held["uv"].reshape(-1, 2)[on]), lines.points[on]
+    on = held[schema.ON_SURFACE].astype(bool).ravel()
+    uv, points = np.ascontiguousarray(held[schema.UV].reshape(-1, 2)[on]), lines.points[on]
     if np.abs(uv).max(initial=0.0) > _MOST_TURNS or np.abs(surface.points(uv) - points).max(initial=0.0) > (
         _OFF * surface.size
     ):
-        raise _spoilt(path, f"its paths are none on the surface of {path.with_name('surface.npz').name}")
-    status = lines.cell_data["status"].astype(np.int64)
+        raise _spoilt(path, f"its paths are none on the surface of {SPLINE}")
+    status = lines.cell_data[schema.STATUS].astype(np.int64)
     worst = _under(report, "paths", "max_residual")
     residual = np.where(status == Status.CONVERGED, np.inf if worst is None else float(worst), np.inf)
     nothing = frozen(np.zeros(len(sizes)))
     return Paths(
         surface=surface,
         points=frozen(lines.points.reshape(len(sizes), -1, 3)),
-        uv=held["uv"],
-        on_surface=frozen(held["on_surface"].astype(bool)),
-        gap=held["gap"],
-        normal=held["normal"],
-        slip=held["slip"],
-        family=frozen(lines.cell_data["family"].astype(np.int64)),
+        uv=held[schema.UV],
+        on_surface=frozen(held[schema.ON_SURFACE].astype(bool)),
+        gap=held[schema.GAP],
+        normal=held[schema.NORMAL],
+        slip=held[schema.SLIP],
+        family=frozen(lines.cell_data[schema.FAMILY].astype(np.int64)),
         status=frozen(status),
         residual=frozen(residual),
         friction=float(_under(report, "winding", "friction") or 0.0),
@@ -184,8 +224,9 @@ def _paths(path: Path, surface: Surface, report: dict[str, Any]) -> Paths:
     )
 
 
-def _shaped(lines: Lines, name: str, count: int, *shape: int) -> NDArray[Any]:
-    return frozen(lines.point_data[name].reshape(count, len(lines.points) // count, *shape))
+def _shaped(lines: Lines, field: schema.Field, count: int) -> NDArray[Any]:
+    shape = (field.columns,) if field.columns > 1 else ()
+    return frozen(lines.point_data[field].reshape(count, len(lines.points) // count, *shape))
 
 
 def _counters(report: dict[str, Any]) -> Counters:

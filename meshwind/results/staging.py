@@ -5,7 +5,7 @@ within, and its name says how far it has come:
 
     .writing-    files are being written; what a killed process left is rubbish
     .complete-   all are written: what they stand in for has to go
-    .moving-     that has gone: they move in, report.json as the last
+    .moving-     that has gone: they move in, report.json as the last: with it a folder is whole
 
 Each step can be taken again, so `settle` clears away or finishes what a killed process left.  As long as a process
 lives it holds a lock on its folder, and others leave that alone.
@@ -21,10 +21,9 @@ from pathlib import Path
 from secrets import token_hex
 
 from meshwind.core.errors import BadInputError
+from meshwind.results.schema import REPORT
 
 WRITING, COMPLETE, MOVING = ".writing-", ".complete-", ".moving-"
-REPORT = "report.json"
-"""First to go and last to come: with it a folder is whole."""
 _REPLACED = ".replaced.json"
 """In a complete folder: the names of the files that go."""
 _ATTEMPTS = 3

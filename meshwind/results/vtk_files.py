@@ -1,6 +1,7 @@
 """VTK's XML files from arrays.  VTK is imported late: it takes longer than small runs.
 
-Points and fields carry the name of their unit as VTK's own key UNITS_LABEL; `units` is that of lengths.
+Points and fields carry the name of their unit as VTK's own key UNITS_LABEL; `units` is that of lengths, "" where it is
+not known.
 """
 
 from collections.abc import Mapping
@@ -11,29 +12,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshwind.core.cast import Floats, Ints
-from meshwind.results.field_units import unit_of
+from meshwind.results.schema import Field
 
-Data: TypeAlias = Mapping[str, NDArray[Any]]
+Data: TypeAlias = Mapping[Field, NDArray[Any]]
 
 VERTEX, TRIANGLE, QUAD = 1, 5, 9
 """VTK's numbers of the cell types."""
 
 
-def write_lines(path: Path, points: Floats, starts: Ints, point_data: Data, cell_data: Data, units: str = "") -> None:
+def write_lines(path: Path, points: Floats, starts: Ints, point_data: Data, cell_data: Data, units: str) -> None:
     """Write polylines over consecutive points: line k holds points starts[k] to starts[k + 1] (l + 1,)."""
     poly = _polydata(points, point_data, cell_data, units)
     poly.SetLines(_cells(starts, np.arange(len(points))))
     _write_polydata(path, poly)
 
 
-def write_vertices(path: Path, points: Floats, point_data: Data, units: str = "") -> None:
+def write_vertices(path: Path, points: Floats, point_data: Data, units: str) -> None:
     """Write points, each with a vertex cell."""
     poly = _polydata(points, point_data, {}, units)
     poly.SetVerts(_cells(np.arange(len(points) + 1), np.arange(len(points))))
     _write_polydata(path, poly)
 
 
-def write_faces(path: Path, points: Floats, quads: Ints, triangles: Ints, point_data: Data, units: str = "") -> None:
+def write_faces(path: Path, points: Floats, quads: Ints, triangles: Ints, point_data: Data, units: str) -> None:
     """Write an unstructured grid of quads (q, 4) and triangles (t, 3), in this order.
 
     Without faces the points become vertex cells: meshio cannot read a grid that has no cell.
@@ -101,10 +102,10 @@ def _cells(starts: Ints, corners: Ints) -> Any:
 
 
 def _add(attributes: Any, data: Data, units: str) -> None:
-    for name, values in data.items():
+    for field, values in data.items():
         array = _array(values)
-        array.SetName(name)
-        attributes.AddArray(_labelled(array, unit_of(name, units)))
+        array.SetName(str(field))
+        attributes.AddArray(_labelled(array, field.unit_in(units)))
 
 
 def _labelled(array: Any, unit: str) -> Any:

@@ -7,7 +7,7 @@ from typing import Any
 
 from meshwind.core.version import version
 from meshwind.editing.redesign import Redesign
-from meshwind.export.edited_files import redesign_report, write_edited
+from meshwind.export.edited_files import redesign_report
 from meshwind.layup.layup import assess
 from meshwind.pictures import driver
 from meshwind.pictures.page import Page
@@ -15,9 +15,10 @@ from meshwind.pictures.redesign_scene import redesign_scene
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.results import folder
-from meshwind.results.config_file import NAME as CONFIG
 from meshwind.results.config_file import write_config
 from meshwind.results.report import write_report
+from meshwind.results.schema import AFTER, BEFORE, CONFIG, REDESIGN, REPORT, picture
+from meshwind.results.write import write_edited
 from meshwind.workflow.clock import Clock
 from meshwind.workflow.notes import Note
 
@@ -79,7 +80,7 @@ def write_redesign(
     clock, notes = Clock(), list[str]()
     with folder.writing(Path(out), overwrite) as staging:
         with clock.stage("write"):
-            write_edited(staging, edited, units)
+            write_edited(staging, edited.mesh, edited.displacement, units)
         if render:
             with clock.stage("render"):
                 missing = driver.paint(_pictures(staging, edited, units), Page())
@@ -88,16 +89,16 @@ def write_redesign(
         report = redesign_report(edited, command=command, units=units, seconds=spent) | {"notes": notes}
         if options is not None:
             write_config(staging / CONFIG, Path(out), options, version(), "redesign")
-        write_report(staging / "report.json", report)
+        write_report(staging / REPORT, report)
     return report
 
 
 def _pictures(out: Path, edited: Redesign, units: str) -> dict[Path, dict[str, Any]]:
-    name, turns = edited.part.name, edited.revolutions
+    part, name, turns = edited.part, edited.part.name, edited.revolutions
     before = subject(assess(edited.before.paths), f"{name}, as it was", units, turns)
     after = subject(assess(edited.after.paths), f"{name}, edited", units, turns, before.view)
     return {
-        out / "before.png": winding_scene(before),
-        out / "after.png": winding_scene(after),
-        out / "redesign.png": redesign_scene(edited.part.vertices, edited.displacement, edited.part.faces, name, units),
+        out / BEFORE: winding_scene(before),
+        out / AFTER: winding_scene(after),
+        out / picture(REDESIGN): redesign_scene(part.vertices, edited.displacement, part.faces, name, units),
     }

@@ -12,20 +12,20 @@ from meshwind.mesh import Mesh
 from meshwind.path import Paths, Status
 from meshwind.pictures import driver
 from meshwind.pictures.fit_scene import fit_scene
-from meshwind.pictures.kinds import SHEET, scenes_of
+from meshwind.pictures.kinds import scenes_of
 from meshwind.pictures.page import Page
 from meshwind.pictures.render import placed
 from meshwind.pictures.revolutions_picture import draw_revolutions
 from meshwind.pictures.sheet import write_sheet
 from meshwind.pictures.subject import subject_in
 from meshwind.results import folder
-from meshwind.results.config_file import NAME as CONFIG
 from meshwind.results.config_file import write_config
 from meshwind.results.report import report, write_report
+from meshwind.results.schema import CONFIG, FIT_PICTURE, REPORT, REVOLUTIONS_PICTURE, SHEET, WINDING, picture
 from meshwind.results.write import write_files
 from meshwind.surface import Surface
 from meshwind.workflow.clock import Clock, Progress
-from meshwind.workflow.notes import FIT_ERROR, Note
+from meshwind.workflow.notes import Note
 from meshwind.workflow.options import Options
 from meshwind.workflow.part import fit_part, read_source
 from meshwind.workflow.winding import Winding, wind_part
@@ -295,7 +295,7 @@ def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: Cloc
         with clock.stage("write"):
             write_files(staging, result.layup, result.mesh, result.options.units)
             if result.chosen is not None and render:
-                draw_revolutions(staging / "revolutions.png", result.chosen, result.mesh.name)
+                draw_revolutions(staging / REVOLUTIONS_PICTURE, result.chosen, result.mesh.name)
         if render:
             with clock.stage("render"):
                 missing = _draw(result, staging)
@@ -303,7 +303,7 @@ def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: Cloc
         notes = tuple(note.shown((staging / note.picture).is_file()) for note in notes)
         result = replace(result, seconds=result.seconds | clock.seconds, notes=notes)
         write_config(staging / CONFIG, out, _used(result, out, render), version())
-        write_report(staging / "report.json", result.report())
+        write_report(staging / REPORT, result.report())
     return result
 
 
@@ -319,11 +319,11 @@ def _draw(result: Result, out: Path) -> str:
     name, units = result.mesh.name, result.options.units
     of = subject_in(out, result.layup, name, units, result.revolutions)
     with TemporaryDirectory(dir=out) as cells:  # a killed run leaves nothing elsewhere
-        pictures = placed(scenes_of(of), ("winding", SHEET), Page(), out, Path(cells))
+        pictures = placed(scenes_of(of), (WINDING, SHEET), Page(), out, Path(cells))
         work = dict(pictures)
-        if any(note.picture == FIT_ERROR for note in result.notes):
-            work[out / FIT_ERROR] = fit_scene(result.surface, result.chart.annulus, name, units)
+        if any(note.picture == FIT_PICTURE for note in result.notes):
+            work[out / FIT_PICTURE] = fit_scene(result.surface, result.chart.annulus, name, units)
         missing = driver.paint(work)
         if not missing:
-            write_sheet(out / f"{SHEET}.png", list(pictures))
+            write_sheet(out / picture(SHEET), list(pictures))
     return missing

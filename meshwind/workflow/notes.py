@@ -12,6 +12,7 @@ from meshwind.mesh.opening.ends import place
 from meshwind.path.paths import EDGE, Paths, Status
 from meshwind.planning.revolutions import FRICTION, WIDER, Revolutions
 from meshwind.planning.spacing import Spaced
+from meshwind.results.schema import FIT_PICTURE, REVOLUTIONS_PICTURE
 from meshwind.surface import FitError, Surface
 from meshwind.surface.deviation import deviation
 
@@ -24,10 +25,6 @@ UNRESOLVED = 1e-2
 
 SQUEEZED = 8.0
 """Area scale that is this uneven (its 99th percentile over its mean) is the mark of fingers, ears and fins."""
-REVOLUTIONS = "revolutions.png"
-"""The picture of how the revolutions were chosen."""
-FIT_ERROR = "fit_error.png"
-"""The picture of how far the surface and the mesh lie apart."""
 _TOLD = 3
 """So many of the places where they do are told by their coordinates."""
 _PROTRUSIONS = "protrusions such as fingers and ears are squeezed by the chart; wind a part without them"
@@ -81,7 +78,7 @@ def about_choice(chosen: Revolutions | None) -> tuple[Note, ...]:
     if chosen.with_opening > 0.0:
         ways.append(f"openings {WIDER:g} times as wide {_number(chosen.with_opening)}")
     more = f"; {', '.join(ways)}" if ways else ""
-    return (Note(f"chose {chosen.why}{more}; see {REVOLUTIONS}", not chosen.holding.any, REVOLUTIONS),)
+    return (Note(f"chose {chosen.why}{more}; see {REVOLUTIONS_PICTURE}", not chosen.holding.any, REVOLUTIONS_PICTURE),)
 
 
 def _number(turns: float) -> str:
@@ -105,7 +102,7 @@ def about_spacing(spaced: Spaced | None, units: str = "") -> tuple[Note, ...]:
 def about_fit(surface: Surface, chart: Chart, tolerance: float, worst_fit: float, units: str = "") -> tuple[Note, ...]:
     """What to say of the fit; raises BadInputError where it is off by more than `worst_fit` of the part.
 
-    A warning has FIT_ERROR for its picture.
+    A warning has FIT_PICTURE for its picture.
     """
     error = surface.error
     if error is None:
@@ -114,14 +111,14 @@ def about_fit(surface: Surface, chart: Chart, tolerance: float, worst_fit: float
         text = _unresolved(surface, chart, error, units)
         if error.relative_max > worst_fit:
             raise BadInputError(f"{text}, or raise worst_fit (--worst-fit), now {worst_fit:g}")
-        return (Note(text, True, FIT_ERROR),)
+        return (Note(text, True, FIT_PICTURE),)
     missed = error.to_surface_max / error.diagonal
     if missed <= tolerance:
         return ()
     text = _missed(error, missed, tolerance, units)
     if missed <= max(MISSED * tolerance, SHOWS):
         return (Note(text),)
-    return (Note(f"{text}; surface and mesh lie furthest apart {_places(surface, chart)}", True, FIT_ERROR),)
+    return (Note(f"{text}; surface and mesh lie furthest apart {_places(surface, chart)}", True, FIT_PICTURE),)
 
 
 def _missed(error: FitError, missed: float, tolerance: float, units: str) -> str:

@@ -1,0 +1,219 @@
+"""The files of a run's folder: their names, their fields, and each field's unit and type.
+
+What writes, reads, draws, exports or sums up a run takes these names from here; the keys of report.json stand in
+`report_types`.  Loads nothing: the process that draws and the command line's help need the names, too.
+"""
+
+import re
+from typing import NamedTuple
+
+LENGTHS = "{u}"
+"""The unit of a length; "{u}" stands for the name of the mesh's."""
+DEGREES = "degrees"
+
+
+class Field(str):
+    """Name of an array in a file, with the unit of its values, their type and how many a point or cell has."""
+
+    unit: str
+    dtype: str
+    columns: int
+
+    def __new__(cls, name: str, unit: str = "", dtype: str = "float64", columns: int = 1) -> "Field":
+        """Name a field; `unit` holds "{u}" for the mesh's unit of length."""
+        field = super().__new__(cls, name)
+        field.unit, field.dtype, field.columns = unit, dtype, columns
+        return field
+
+    def unit_in(self, units: str) -> str:
+        """The field's unit where lengths are in `units`; "" for plain numbers, and where `units` is not known."""
+        return self.unit.format(u=units) if units or LENGTHS not in self.unit else ""
+
+
+class File(str):
+    """Name of a file, with the fields of its points and of its cells, each in the order of the file."""
+
+    point_data: tuple[Field, ...]
+    cell_data: tuple[Field, ...]
+
+    def __new__(cls, name: str, point_data: tuple[Field, ...] = (), cell_data: tuple[Field, ...] = ()) -> "File":
+        """Name a file with its fields, if it holds arrays."""
+        file = super().__new__(cls, name)
+        file.point_data, file.cell_data = point_data, cell_data
+        return file
+
+    @property
+    def stem(self) -> str:
+        """The name without its ending."""
+        return self.rpartition(".")[0]
+
+
+# fields of several files
+
+UV = Field("uv", columns=2)
+ON_SURFACE = Field("on_surface", dtype="uint8")
+GAP = Field("gap", LENGTHS)
+NORMAL = Field("normal", columns=3)
+PATH = Field("path", dtype="int64")
+LENGTH = Field("length", LENGTHS)
+"""Of the polyline through the particles."""
+MAX_GAP = Field("max_gap", LENGTHS)
+ANGLE = Field("angle", DEGREES)
+"""At a crossing that between the families, on the surface the winding angle of family +1."""
+
+# the fibres
+
+SLIP = Field("slip")
+"""Required friction |kg| / kn: geodesic over normal curvature."""
+ARC_LENGTH = Field("arc_length", LENGTHS)
+FAMILY = Field("family", dtype="int64")
+FIBRE_LENGTH = Field("fibre_length", LENGTHS)
+BRIDGED_LENGTH = Field("bridged_length", LENGTHS)
+MAX_SLIP = Field("max_slip")
+STATUS = Field("status", dtype="int64")
+PATHS = File(
+    "paths.vtp",
+    point_data=(UV, ON_SURFACE, GAP, NORMAL, SLIP, ARC_LENGTH),
+    cell_data=(PATH, FAMILY, LENGTH, FIBRE_LENGTH, BRIDGED_LENGTH, MAX_GAP, MAX_SLIP, STATUS),
+)
+BRIDGES = File("bridges.vtp", point_data=(GAP,), cell_data=(PATH, LENGTH, MAX_GAP))
+
+PATH_A = Field("path_a", dtype="int64")
+PATH_B = Field("path_b", dtype="int64")
+QUALITY = Field("quality")
+CROSSINGS = File("crossings.vtp", point_data=(PATH_A, PATH_B, ANGLE, QUALITY, UV, ON_SURFACE))
+
+QUADS = File("quads.vtu", point_data=(UV, ON_SURFACE))
+QUADS_OBJ = File("quads.obj")
+
+# the fitted surface
+
+GAUSSIAN_CURVATURE = Field("gaussian_curvature", "1/{u}2")
+MEAN_CURVATURE = Field("mean_curvature", "1/{u}")
+WINDABILITY = Field("windability")
+CLASS = Field("class", dtype="int64")
+PRESS_DIRECTION = Field("press_direction", columns=3)
+PRESS_REACH = Field("press_reach", DEGREES)
+COVERAGE = Field("coverage")
+LAYERS = Field("layers", dtype="int64")
+STRETCH = Field("stretch")
+FIT_ERROR = Field("fit_error", LENGTHS)
+"""Only where the mesh is known."""
+SURFACE = File(
+    "surface.vtu",
+    point_data=(
+        UV, NORMAL, GAUSSIAN_CURVATURE, MEAN_CURVATURE, WINDABILITY, CLASS, PRESS_DIRECTION, PRESS_REACH, ANGLE,
+        COVERAGE, LAYERS, STRETCH, FIT_ERROR,
+    ),
+)  # fmt: skip
+
+CONTROL_POINTS = Field("control_points", LENGTHS, columns=3)
+KNOTS_U, KNOTS_V = Field("knots_u"), Field("knots_v")
+DEGREE = Field("degree", dtype="int64")
+PERIODIC_U = Field("periodic_u", dtype="bool")
+UNITS = Field("units", dtype="str")
+SPLINE = File("surface.npz", point_data=(CONTROL_POINTS, KNOTS_U, KNOTS_V, DEGREE, PERIODIC_U, UNITS))
+CHART = File("chart.png")
+
+# a redesign
+
+DISPLACEMENT = Field("displacement", LENGTHS, columns=3)
+MOVED = Field("moved", LENGTHS)
+"""Size of the displacement."""
+DX, DY, DZ = Field("dx", LENGTHS), Field("dy", LENGTHS), Field("dz", LENGTHS)
+EDITED = File("edited.vtu", point_data=(DISPLACEMENT, MOVED))
+"""A folder that holds it is a redesign's."""
+EDITED_PLY = File("edited.ply", point_data=(DX, DY, DZ, MOVED))
+
+# figures and options
+
+REPORT = File("report.json")
+CONFIG = File("meshwind.toml")
+
+# pictures
+
+WINDING, FIT, REDESIGN, SHEET = "winding", "fit", "redesign", "sheet"
+PICTURES = WINDING, "crossings", "coverage", "windability", "slip", FIT, "unrolled", "quads"
+"""The pictures of a winding; REDESIGN is that of a redesign, SHEET shows all of a folder on one page."""
+MOVIES = "gif", "mp4"
+
+
+def picture(name: str) -> File:
+    """The file of a picture."""
+    return File(f"{name}.png")
+
+
+def movie(kind: str) -> File:
+    """The file of the animation, by kind."""
+    return File(f"{WINDING}.{kind}")
+
+
+FIT_PICTURE, REVOLUTIONS_PICTURE = picture("fit_error"), picture("revolutions")
+BEFORE, AFTER = picture("before"), picture("after")
+
+# exports
+
+VIEWER = File("viewer.html")
+SHELL, SHELL_S4R = File("shell.inp"), File("shell_s4r.inp")
+STEP = File("surface.step")
+
+
+class FamilyFields(NamedTuple):
+    """The fields of one family in the files of the fibre field; `alias` holds the direction, too."""
+
+    direction: Field
+    alias: Field
+    angle: Field
+    layers: Field
+    thickness: Field
+
+
+def family_fields(family: int) -> FamilyFields:
+    """The fields of family +1, which are numbered 1, or of family -1, numbered 2."""
+    number = 1 if family > 0 else 2
+    return FamilyFields(
+        Field(f"fibre_{number}", columns=3),
+        Field(f"FIB_DIR{number}", columns=3),
+        Field(f"angle_{number}", DEGREES),
+        Field(f"layers_{number}"),
+        Field(f"thickness_{number}", LENGTHS),
+    )
+
+
+U, V, THICKNESS = Field("u"), Field("v"), Field("thickness", LENGTHS)
+_FIBRE_FIELD = (*family_fields(1), *family_fields(-1), THICKNESS, NORMAL)
+FIBERS, FIBERS_LEGACY = (File(name, point_data=(U, V), cell_data=_FIBRE_FIELD) for name in ("fibers.vtu", "fibers.vtk"))
+"""A family that the run does not have has no fields."""
+
+FRAMES_FOLDER, ALL_FRAMES = "frames", "all.csv"
+"""A folder, and the file in it that holds the frames of all paths."""
+
+
+def frames_of(path: int) -> str:
+    """Name of the file of a path's frames, in the folder FRAMES_FOLDER."""
+    return f"path_{path:03d}.csv"
+
+
+FORMATS_FOLDER = "formats"
+"""A folder, with the files CONVERTED in other mesh formats."""
+CONVERTED = SURFACE, QUADS, PATHS, BRIDGES, CROSSINGS
+SUFFIXES = {
+    "vtu": ("vtu",), "vtk": ("vtk",), "xdmf": ("xdmf", "raw"), "ply": ("ply",), "obj": ("obj",), "gmsh": ("msh",),
+}  # fmt: skip
+"""Endings of a mesh format's files, by its name."""
+
+EXPORT_FOLDERS = FRAMES_FOLDER, FORMATS_FOLDER
+EXPORTS = re.compile(
+    "|".join(re.escape(name) for name in (SHELL, SHELL_S4R, FIBERS, FIBERS_LEGACY, STEP))
+    + rf"|{FRAMES_FOLDER}/(path_\d{{3,}}\.csv|{re.escape(ALL_FRAMES)})"
+    + rf"|{FORMATS_FOLDER}/({'|'.join(file.stem for file in CONVERTED)})\.({'|'.join(sum(SUFFIXES.values(), ()))})"
+)
+"""What exports of a run leave beside it, VIEWER apart: files about that run, which go when it is replaced."""
+
+RESULTS = frozenset(
+    (PATHS, BRIDGES, CROSSINGS, QUADS, QUADS_OBJ, SURFACE, SPLINE, CHART, EDITED, EDITED_PLY, REPORT, CONFIG, VIEWER)
+    + (FIT_PICTURE, REVOLUTIONS_PICTURE, BEFORE, AFTER)
+    + tuple(picture(name) for name in (*PICTURES, REDESIGN, SHEET))
+    + tuple(movie(kind) for kind in MOVIES)
+)
+"""All that a run, or what is made of it, may leave in its folder."""
