@@ -18,7 +18,8 @@ from meshwind.results.write import write_files
 from meshwind.surface import shapes
 from meshwind.surface.grid import grid
 
-README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
 def rows(heading: str) -> list[list[str]]:
@@ -66,6 +67,24 @@ def test_every_option_is_told() -> None:
     assert told == set(re.findall(r"^  (?:--render / )?(--[a-z-]+)", shown, re.MULTILINE)) - {"--help", "--render"} | {
         "--no-render"
     }
+
+
+def test_every_package_is_named() -> None:
+    section = README.split("\n## How it works\n")[1]
+    rooms = {file.parent.name for file in (ROOT / "meshwind").glob("*/__init__.py")}
+    assert rooms <= set(re.findall(r"`([a-z]+)`", section))
+
+
+def test_snippets_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All Python of the README, one after the other, as a reader would type it."""
+    (tmp_path / "data").symlink_to(ROOT / "data")
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {}
+    snippets = re.findall(r"```python\n(.+?)```", README, re.DOTALL)
+    for number, snippet in enumerate(snippets):
+        exec(compile(snippet, f"README.md, snippet {number}", "exec"), names)
+    assert {"result", "layup", "barrel", "held", "field"} <= set(names)
+    assert (tmp_path / "out" / "slip.png").is_file()
 
 
 @pytest.mark.parametrize("turns", [1, 4])
