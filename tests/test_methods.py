@@ -10,7 +10,7 @@ from comparison.problems import PROBLEMS, barrel, sphere
 from numpy.typing import NDArray
 
 from meshwind.core.errors import BadInputError
-from meshwind.methods import Ending, Method, Run, largest_frequency, run, stable_step
+from meshwind.methods import Ending, Method, Motion, largest_frequency, run, stable_step
 from meshwind.path import solve
 from meshwind.surface import Surface, shapes
 
@@ -33,7 +33,7 @@ SETTLES = {
 EXPLICIT = [Method.EXPLICIT_EULER, Method.SYMPLECTIC_EULER, Method.RUNGE_KUTTA]
 
 
-def lay(name: str, method: str, **setting: Any) -> Run:
+def lay(name: str, method: str, **setting: Any) -> Motion:
     problem = TABLE[name]
     setting = {"particles": N, **setting}
     return run(method, problem.surface(), problem.start, problem.end, **setting)
@@ -45,7 +45,7 @@ def ours(name: str) -> float:
     return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
-def slip(surface: Surface, result: Run) -> Floats:
+def slip(surface: Surface, result: Motion) -> Floats:
     """|kg| / kn at the inner particles."""
     X, normal = result.points, surface.normals(result.uv)[1:-1]
     bend, along = X[:-2] - 2 * X[1:-1] + X[2:], X[2:] - X[:-2]
@@ -234,7 +234,7 @@ WAVE = np.linspace(0.0, 1.0, 201)
 WAVY = np.stack([0.5 * WAVE, WAVE + 0.08 * np.sin(2 * np.pi * WAVE)], 1)
 
 
-def rub(step_size: float, friction: float = 0.1) -> tuple[Run, Floats]:
+def rub(step_size: float, friction: float = 0.1) -> tuple[Motion, Floats]:
     """A wavy fibre on a cylinder, to be held in part by friction; and the slip it needs where it comes to rest."""
     surface = shapes.cylinder(1.0, 4.0, (256, 16))
     result = run("backward-euler", surface, WAVY[0], WAVY[-1], particles=201, initial=WAVY, steps=20000,

@@ -14,15 +14,16 @@ from meshwind.core.cast import Floats
 from meshwind.editing.demands import reach
 from meshwind.editing.stencil import along, weights
 from meshwind.march.geodesic_equation import rates
-from meshwind.methods import Ending, Run, penalty, run
-from meshwind.methods.blocks import room
+from meshwind.methods import Ending, Motion, penalty, run
 from meshwind.methods.chain import Physics
+from meshwind.methods.in_space import PENALTY, SpaceRules, workspace_for
+from meshwind.methods.strand import Strand
 from meshwind.path.kernels.contact import lift, pull
 from meshwind.path.kernels.state import energy
 from meshwind.path.solve import straight
 from meshwind.planning.pressing import pressing
 from meshwind.surface import Surface, shapes
-from meshwind.surface.foot import foot, newton_step
+from meshwind.surface.foot import Expansion, Gradient, Symmetric, foot, newton_step
 
 N = 9
 H, DAMPING = 0.7, 0.3
@@ -69,7 +70,7 @@ def inner(n: int, size: int) -> slice:
     return slice(size, size * (n - 1))
 
 
-def one_step(method: str, **options: Any) -> tuple[Run, Floats, Floats, Floats]:
+def one_step(method: str, **options: Any) -> tuple[Motion, Floats, Floats, Floats]:
     """One step from rest of all particles on the surface, and its P, J and L, restricted to what can move."""
     curve = wavy()
     setting: dict[str, Any] = (
@@ -277,7 +278,8 @@ def test_foot_points(uv: Floats) -> None:
     assert mixed / step**2 / 2 == pytest.approx(hessian[0, 1], rel=1e-4)
     s, su, sv, suu, suv, svv = skew().frames(near[None])[0]
     d = s - point
-    move = newton_step(True, *near, su @ d, sv @ d, su @ su, su @ sv, sv @ sv, suu @ d, suv @ d, svv @ d)
+    metric, curvature = Symmetric(su @ su, su @ sv, sv @ sv), Symmetric(suu @ d, suv @ d, svv @ d)
+    move = newton_step(True, *near, Expansion(d @ d, Gradient(su @ d, sv @ d), metric, curvature))
     assert move == pytest.approx(-np.linalg.solve(hessian, gradient))
     guess = near.copy()
     foot(skew().spline, point, guess, np.empty((6, 3)))
@@ -362,7 +364,7 @@ def test_demands_of_lifted_particles() -> None:
 # chapter 7
 
 
-def in_space(method: str, **options: Any) -> tuple[Run, Floats, Floats, Floats]:
+def in_space(method: str, **options: Any) -> tuple[Motion, Floats, Floats, Floats]:
     """One step from rest in space, on a sphere, with the positions before it, the springs' matrix and the normals."""
     surface, curve = shapes.sphere_band(2.0, 0.2 * np.pi, 0.8 * np.pi), wavy()
     setting: dict[str, Any] = dict(particles=N, initial=curve, steps=1, step_size=H, damping=DAMPING) | options
@@ -386,9 +388,9 @@ def test_penalty_force() -> None:
     X, before = rng.normal(size=(N, 3)), rng.normal(size=(N, 3))
     before[[0, -1]] = 0.0
     W = before.copy()
-    strand = X, W, np.zeros((N, 2)), np.zeros((N, 6, 3)), normal, gap <= epsilon, gap
-    penalty.step(strand, Physics(H, 1.0, DAMPING, 0.0), epsilon, push, np.zeros(N, np.bool_), room(N),
-                 np.zeros((N, 3)), np.zeros(4, np.int64))  # fmt: skip
+    strand = Strand(X, W, np.zeros((N, 2)), np.zeros((N, 6, 3)), normal, gap <= epsilon, np.zeros(N, np.bool_), gap)
+    physics, rules = Physics(H, 1.0, DAMPING, 0.0, False), SpaceRules(PENALTY, 1, 0.0, epsilon, push, 0.0)
+    penalty.step(strand, physics, rules, workspace_for(N, physics), np.zeros(4, np.int64))
     d = gap[1:-1]
     size = np.where(d > epsilon, 0.0, np.where(d > 0.0, push * (epsilon - d) / epsilon, push))
     slope = np.where((d > 0.0) & (d <= epsilon), -push / epsilon, 0.0)

@@ -10,7 +10,7 @@ from comparison.problems import TABLE
 from charts.record import Results
 from charts.style import GREEN, LOOKS, ORANGE, PURPLE, save
 from charts.timing import least
-from meshwind.methods import Run, run
+from meshwind.methods import Motion, run
 
 PROBLEM = TABLE["bottle-neck"]
 PARTICLES = 201
@@ -43,7 +43,7 @@ def measure(results: Results) -> list[dict[str, Any]]:
     rows = []
     for name, (scheme, extra, colour, line) in settings().items():
 
-        def go(steps: int, history: bool, scheme: str = scheme, extra: dict[str, Any] = extra) -> Run:
+        def go(steps: int, history: bool, scheme: str = scheme, extra: dict[str, Any] = extra) -> Motion:
             return run(
                 scheme,
                 PROBLEM.surface(),

@@ -16,9 +16,9 @@ from charts.record import Results
 from charts.style import BLUE, GREY, ORANGE, SKY, save
 from charts.timing import least
 from meshwind.methods import backward_euler, run
-from meshwind.methods.chain import Physics, carry, gather, link, place
-from meshwind.methods.lifting import PULL, contact
-from meshwind.methods.march import forces_for
+from meshwind.methods.chain import Physics, chain_at_rest, gather, link, move_contacts, put_on_surface
+from meshwind.methods.lifting import PULL, update_touching
+from meshwind.methods.on_surface import workspace_for
 
 SOURCE = {"build": 233.22, "solve": 204.35, "lift and land": 149.65, "other": 15.86}
 """Milliseconds, C++ on 6 threads of a Core i7 7700K; its surface and number of particles are not given."""
@@ -38,44 +38,32 @@ def clocked(call: Callable[..., Any], *arguments: Any) -> tuple[float, Any]:
 
 def split() -> dict[str, float]:
     """Milliseconds of 1000 steps by part: the compiled parts called one by one, less what an idle call costs."""
-    surface = PROBLEM.surface()
-    spline, n = surface.spline, PARTICLES
-    physics = Physics(STEP, 1.0, DAMPING, 0.0)
+    spline, n = PROBLEM.surface().spline, PARTICLES
+    physics = Physics(STEP, 1.0, DAMPING, 0.0, False)
     t = np.linspace(0.0, 1.0, n)[:, None]
-    uv = np.ascontiguousarray((1 - t) * np.array(PROBLEM.start) + t * np.array(PROBLEM.end))
-    chain = (
-        np.empty((n, 3)),
-        uv,
-        np.zeros((n, 2)),
-        np.empty((n, 6, 3)),
-        np.empty((n, 3)),
-        np.ones(n, np.bool_),
-        np.zeros(n),
-    )
-    contacts, before, after = np.empty(n, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int64)
-    forces, kept, move, tally = forces_for(n), np.empty(n, np.bool_), np.zeros((n, 2)), np.zeros(4, np.int64)
-    bits, metric = forces[0], forces[1]
-    system = np.empty((n, 3)), np.zeros((n, 2, 2)), np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 3))
-    place(spline, chain, np.arange(n), n, False)
-    link(chain[5], before, after)
-    spacing = PROBLEM.length / (n - 1)
+    chain = chain_at_rest(np.ascontiguousarray((1 - t) * np.array(PROBLEM.start) + t * np.array(PROBLEM.end)))
+    work, tally = workspace_for(n), np.zeros(4, np.int64)
+    forces, system, move = work.forces, work.system, work.move
+    put_on_surface(spline, chain, np.arange(n), n, False)
+    link(chain.touching, chain.before, chain.after)
+    slack = PULL * PROBLEM.length / (n - 1)
     spent = {"build": 0.0, "solve": 0.0, "lift and land": 0.0, "other": 0.0}
-    contact(spline, chain, True, PULL * spacing, before, after, kept, tally)
+    update_touching(spline, chain, True, slack, work.former, tally)
     for _ in range(STEPS):
-        gathered, (count, _worst) = clocked(gather, chain, spline.periodic, 0.0, contacts, before, after, forces)
-        building = (chain, physics, contacts, before, after)
-        idle = clocked(backward_euler.build, *building, 0, bits, metric, system[0], system[1])[0]
-        built = clocked(backward_euler.build, *building, count, bits, metric, system[0], system[1])[0]
-        stepping = (forces, True, system, move, tally)
+        gathered, (count, _worst) = clocked(gather, chain, spline.periodic, 0.0, forces)
+        building = (chain, physics, forces)
+        idle = clocked(backward_euler.build, *building, 0, system)[0]
+        built = clocked(backward_euler.build, *building, count, system)[0]
+        stepping = (True, system, move, tally)
         idle_step = clocked(backward_euler.step, *building, 0, *stepping)[0]
         stepped = clocked(backward_euler.step, *building, count, *stepping)[0]
-        idle_carry = clocked(carry, spline, chain, contacts, 0, move, False)[0]
-        carried = clocked(carry, spline, chain, contacts, count, move, False)[0]
-        landed = clocked(contact, spline, chain, True, PULL * spacing, before, after, kept, tally)[0]
+        idle_move = clocked(move_contacts, spline, chain, forces.particle, 0, move, False)[0]
+        moved = clocked(move_contacts, spline, chain, forces.particle, count, move, False)[0]
+        landed = clocked(update_touching, spline, chain, True, slack, work.former, tally)[0]
         spent["build"] += built - idle
         spent["solve"] += stepped - idle_step - (built - idle)
-        spent["lift and land"] += landed - idle_carry
-        spent["other"] += gathered - idle_carry + carried - idle_carry
+        spent["lift and land"] += landed - idle_move
+        spent["other"] += gathered - idle_move + moved - idle_move
     return {key: 1e3 * max(value, 0.0) for key, value in spent.items()}
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from comparison.problem import Problem
 from meshwind.core.cast import Floats
 from meshwind.methods.driver import run
-from meshwind.methods.run import Ending
+from meshwind.methods.motion import Ending
 from meshwind.path.drag import drag
 from meshwind.path.length import fibre_lengths
 from meshwind.path.paths import Counters, Status

@@ -1,82 +1,112 @@
-"""Linearised backward Euler (4.16), damped (4.17), with the factored matrix kept over several steps (section 7.2).
+"""Linearised backward Euler (4.16), damped (4.17), with the factored matrix kept over several steps (7.2).
 
 The matrix is symmetric, positive definite and 2 x 2 block tridiagonal over the touching particles, so that a step
 is O(n); with lifted particles its rows are those of (5.2).
 """
 
+from typing import NamedTuple
+
+import numpy as np
 from numba import njit
 
+from meshwind.core.cast import Floats, Ints
 from meshwind.methods.chain import SOLVES
 from meshwind.path.kernels.block_tridiagonal import solve
 from meshwind.surface.evaluate import SU
 
 
+class System(NamedTuple):
+    """The linear system of a step, kept with its factors, by contact.
+
+    diagonal (n, 3), upper (n, 2, 2): the matrix; right, x (n, 2): right side and solution; inverse (n, 3): inverses of
+    the pivots; held (n,): the held directions that the matrix was built with.
+    """
+
+    diagonal: Floats
+    upper: Floats
+    right: Floats
+    x: Floats
+    inverse: Floats
+    held: Ints
+
+
 @njit(cache=True)
-def step(chain, physics, contacts, before, after, count, forces, refresh, system, move, tally):
+def system_for(n):
+    """Room for the system of n particles."""
+    return System(
+        np.empty((n, 3)),
+        np.zeros((n, 2, 2)),
+        np.empty((n, 2)),
+        np.empty((n, 2)),
+        np.empty((n, 3)),
+        np.zeros(n, np.int64),
+    )
+
+
+@njit(cache=True)
+def step(chain, physics, forces, count, refresh, system, move, tally):
     """New velocities and their moves; `refresh` builds and factors the matrix, otherwise the last one serves.
 
-    system is (diagonal, upper, right, x, inverse), work space that keeps the factors.  Returns whether the matrix
-    was positive definite: where it is not, the surface is singular.
+    Returns whether the matrix was positive definite: where it is not, the surface is singular.
     """
-    V, h = chain[2], physics.step
-    bits, metric, force, press = forces
-    diagonal, upper, right, x, inverse = system
+    V, h, metric, right = chain.V, physics.step, forces.metric, system.right
     for c in range(count):
-        i = contacts[c]
+        i = forces.particle[c]
         a, b, d = metric[c, 0], metric[c, 1], metric[c, 2]
-        right[c, 0] = a * V[i, 0] + b * V[i, 1] + h * physics.stiff * force[c, 0]
-        right[c, 1] = b * V[i, 0] + d * V[i, 1] + h * physics.stiff * force[c, 1]
+        right[c, 0] = a * V[i, 0] + b * V[i, 1] + h * physics.stiffness * forces.force[c, 0]
+        right[c, 1] = b * V[i, 0] + d * V[i, 1] + h * physics.stiffness * forces.force[c, 1]
     tally[SOLVES] += 1
     if refresh:
-        build(chain, physics, contacts, before, after, count, bits, metric, diagonal, upper)
-        if not solve(diagonal, upper, metric, 0.0, right, count, x, inverse):
+        build(chain, physics, forces, count, system)
+        if not solve(system.diagonal, system.upper, metric, 0.0, right, count, system.x, system.inverse):
             return False
     else:
-        again(upper, inverse, right, count, x)
+        solve_again(system, count)
     for c in range(count):
-        i = contacts[c]
+        i = forces.particle[c]
         for a in range(2):
-            V[i, a] = 0.0 if (bits[c] >> a) & 1 else x[c, a]
+            V[i, a] = 0.0 if (forces.held[c] >> a) & 1 else system.x[c, a]
             move[c, a] = h * V[i, a]
     return True
 
 
 @njit(cache=True)
-def repinned(bits, pinned, count):
-    """Note which directions the rims hold in `pinned`; returns whether that has changed."""
+def held_otherwise(system, forces, count):
+    """Note the held directions in the system; returns whether they have changed."""
     changed = False
     for c in range(count):
-        if pinned[c] != bits[c]:
-            pinned[c] = bits[c]
+        if system.held[c] != forces.held[c]:
+            system.held[c] = forces.held[c]
             changed = True
     return changed
 
 
 @njit(cache=True)
-def build(chain, physics, contacts, before, after, count, bits, metric, diagonal, upper):
+def build(chain, physics, forces, count, system):
     """The matrix J'((1 + h beta / m) I - h^2 K) J of (4.17) over the touching particles."""
-    frames = chain[3]
-    pull = physics.step * physics.step * physics.stiff
+    frames, before, after, held = chain.frames, chain.before, chain.after, forces.held
+    pull = physics.step * physics.step * physics.stiffness
     for c in range(count):
-        i = contacts[c]
-        weight = 1.0 + physics.step * physics.damp + pull * (1.0 / (i - before[i]) + 1.0 / (after[i] - i))
+        i = forces.particle[c]
+        weight = 1.0 + physics.step * physics.damping + pull * (1.0 / (i - before[i]) + 1.0 / (after[i] - i))
         for k in range(3):
-            diagonal[c, k] = weight * metric[c, k]
+            system.diagonal[c, k] = weight * forces.metric[c, k]
         if c == 0:
             continue
         p = before[i]
         for a in range(2):
             for b in range(2):
                 dot = 0.0
-                if not ((bits[c - 1] >> a) & 1 or (bits[c] >> b) & 1):
+                if not ((held[c - 1] >> a) & 1 or (held[c] >> b) & 1):
                     for k in range(3):
                         dot -= frames[p, SU + a, k] * frames[i, SU + b, k]
-                upper[c - 1, a, b] = pull * dot / (i - p)
+                system.upper[c - 1, a, b] = pull * dot / (i - p)
 
 
 @njit(cache=True)
-def again(upper, inverse, right, count, x):
-    """Solve once more with the pivots' inverses that `block_tridiagonal.solve` left in `inverse`."""
+def solve_again(system, count):
+    """Solve for another right side with the pivots' inverses that `block_tridiagonal.solve` left in the system."""
+    upper, inverse, right, x = system.upper, system.inverse, system.right, system.x
     for j in range(count):
         x[j, 0], x[j, 1] = right[j, 0], right[j, 1]
         if j > 0:

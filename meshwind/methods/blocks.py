@@ -1,18 +1,52 @@
 """Direct solvers for chains in space: symmetric 3 x 3 blocks joined by -c I, and the same without blocks."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
+from meshwind.core.cast import Floats
+
 XX, XY, XZ, YY, YZ, ZZ = range(6)
-"""Places of a symmetric block's entries."""
+"""Entries of a symmetric block."""
 
 SINGULAR = 1e-14
 """A pivot whose determinant is below this share of its diagonal's product has no digits left."""
 
 
+class ChainMatrix(NamedTuple):
+    """The matrix of a chain of n particles with fixed ends, and room for its factors.
+
+    free: diagonal entry of a particle that nothing touches; coupling: neighbours are joined by minus this; diagonal
+    (n, 6): symmetric blocks; pivots (n,): inverses of the pivots where no particle is touched, all blocks being free I;
+    inverse (n, 6): inverses of the pivots otherwise; block (6,), vector (3,): work space.
+    """
+
+    free: float
+    coupling: float
+    diagonal: Floats
+    pivots: Floats
+    inverse: Floats
+    block: Floats
+    vector: Floats
+
+
+@njit(cache=True)
+def chain_matrix(n, step, stiffness, damping):
+    """The matrix of n free particles by (7.2), M - h^2 K + h D over the mass, factored."""
+    coupling = step * step * stiffness
+    free = 1.0 + step * damping + 2.0 * coupling
+    matrix = ChainMatrix(free, coupling, np.zeros((n, 6)), np.zeros(n), np.empty((n, 6)), np.empty(6), np.empty(3))
+    last = 0.0
+    for j in range(1, n - 1):
+        last = 1.0 / (free - coupling * coupling * last)
+        matrix.pivots[j] = last
+    return matrix
+
+
 @njit(inline="always", cache=True)
 def project(n, out):
-    """Take the part along the unit vector n out of a vector."""
+    """Remove a vector's component along the unit vector n."""
     dot = out[0] * n[0] + out[1] * n[1] + out[2] * n[2]
     for k in range(3):
         out[k] -= dot * n[k]
@@ -56,68 +90,76 @@ def invert(s, out):
     return True
 
 
+@njit(inline="always", cache=True)
+def project_between(i, j, normal, pinned, out):
+    """Apply P_i, then P_j to a vector, where the particles are pinned."""
+    if pinned[i]:
+        project(normal[i], out)
+    if pinned[j]:
+        project(normal[j], out)
+
+
 @njit(cache=True)
-def solve(diagonal, coupling, normal, pinned, x, inverse, work):
+def solve(matrix, normal, pinned, x):
     """Solve for particles 1 to n - 2, in place of the right sides x (n, 3).
 
-    diagonal (n, 6); neighbours are joined by -coupling P_i P_{i+1}, where P = I - n n' at a pinned particle and I
-    elsewhere.  inverse (n, 6) and work (2, 6) are work space.  Returns False at a singular pivot, where x is lost: a
-    matrix that dominates its couplings has none, but stiffness of 1e14 across a normal leaves no digits along it.
+    Neighbours are joined by -coupling P_i P_{i+1}, where P = I - n n' at a pinned particle and I elsewhere.  Returns
+    False at a singular pivot, where x is lost: a matrix that dominates its couplings has none, but stiffness of 1e14
+    across a normal leaves no digits along it.
     """
     n = len(x)
-    s, y = work[0], work[1]
     for j in range(1, n - 1):
         for k in range(6):
-            s[k] = diagonal[j, k]
+            matrix.block[k] = matrix.diagonal[j, k]
         if j > 1:
-            i = j - 1
-            times(inverse[i], x[i], y)
-            if pinned[i]:
-                project(normal[i], y)
-            if pinned[j]:
-                project(normal[j], y)
-            for k in range(3):
-                x[j, k] += coupling * y[k]
-            t = inverse[j]
-            for k in range(6):
-                t[k] = inverse[i, k]
-            if pinned[i]:
-                sandwich(normal[i], t, y)
-            if pinned[j]:
-                sandwich(normal[j], t, y)
-            for k in range(6):
-                s[k] -= coupling * coupling * t[k]
-        if not invert(s, inverse[j]):
+            eliminate(matrix, normal, pinned, j, x)
+        if not invert(matrix.block, matrix.inverse[j]):
             return False
     for j in range(n - 2, 0, -1):
-        if j < n - 2:
-            for k in range(3):
-                y[k] = x[j + 1, k]
-            if pinned[j + 1]:
-                project(normal[j + 1], y)
-            if pinned[j]:
-                project(normal[j], y)
-            for k in range(3):
-                x[j, k] += coupling * y[k]
-        for k in range(3):
-            y[k] = x[j, k]
-        times(inverse[j], y, x[j])
+        substitute(matrix, normal, pinned, j, x)
     return True
 
 
-@njit(cache=True)
-def factor(diagonal, coupling, pivots):
-    """Pivots' inverses of the scalar matrix with `diagonal` and -coupling beside it; free particles 1 to n - 2."""
-    last = 0.0
-    for j in range(1, len(pivots) - 1):
-        last = 1.0 / (diagonal - coupling * coupling * last)
-        pivots[j] = last
+@njit(inline="always", cache=True)
+def eliminate(matrix, normal, pinned, j, x):
+    """Eliminate particle j - 1 from the equations of particle j: its right side, and `matrix.block`."""
+    i = j - 1
+    s, y, coupling, inverse = matrix.block, matrix.vector, matrix.coupling, matrix.inverse
+    times(inverse[i], x[i], y)
+    project_between(i, j, normal, pinned, y)
+    for k in range(3):
+        x[j, k] += coupling * y[k]
+    t = inverse[j]
+    for k in range(6):
+        t[k] = inverse[i, k]
+    if pinned[i]:
+        sandwich(normal[i], t, y)
+    if pinned[j]:
+        sandwich(normal[j], t, y)
+    for k in range(6):
+        s[k] -= coupling * coupling * t[k]
+
+
+@njit(inline="always", cache=True)
+def substitute(matrix, normal, pinned, j, x):
+    """Find the velocity of particle j from that of particle j + 1."""
+    y = matrix.vector
+    if j < len(x) - 2:
+        for k in range(3):
+            y[k] = x[j + 1, k]
+        project_between(j + 1, j, normal, pinned, y)
+        for k in range(3):
+            x[j, k] += matrix.coupling * y[k]
+    for k in range(3):
+        y[k] = x[j, k]
+    times(matrix.inverse[j], y, x[j])
 
 
 @njit(cache=True)
-def solve_free(coupling, pivots, x):
-    """Solve with the factors of `factor` in place of the right sides x (n, 3)."""
+def solve_free(matrix, x):
+    """Solve where no particle is touched, in place of the right sides x (n, 3)."""
     n = len(x)
+    coupling, pivots = matrix.coupling, matrix.pivots
     for j in range(2, n - 1):
         for k in range(3):
             x[j, k] += coupling * pivots[j - 1] * x[j - 1, k]
@@ -126,9 +168,3 @@ def solve_free(coupling, pivots, x):
             if j < n - 2:
                 x[j, k] += coupling * x[j + 1, k]
             x[j, k] *= pivots[j]
-
-
-@njit(cache=True)
-def room(n):
-    """Work space of `solve`: diagonal, inverse, work."""
-    return np.zeros((n, 6)), np.empty((n, 6)), np.empty((2, 6))

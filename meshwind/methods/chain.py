@@ -1,58 +1,121 @@
-"""The chain of particles and springs in the parametric plane: what every on-surface scheme computes in a step.
-
-A chain is (X, uv, V, frames, normal, touching, clear): positions (n, 3); parameters (n, 2) of the particle or of
-its foot; velocities (n, 2) in the plane; frames (n, 6, 3) of which s, s_u, s_v are kept; outward normals (n, 3);
-whether it touches (n,); and for lifted particles a lower bound of the gap (n,).
-"""
+"""The chain of particles and springs in the parametric plane: what every on-surface scheme computes in a step."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
+from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.path.kernels.newton import held
 from meshwind.surface.evaluate import SU, SV, S, frame, tangents, unit_normal
 
 EVALUATIONS, FEET, SOLVES, STEPS = range(4)
-"""Places of a run's counters."""
+"""Entries of a run's counters."""
+
+LENGTH, RESIDUAL, ANGLE = range(3)
+"""Columns of a run's history."""
 
 CONVERGED, STOPPED, DIVERGED = range(3)
-"""As in `meshwind.methods.run.Ending`."""
+"""As in `meshwind.methods.motion.Ending`."""
 
 GROWTH = 100.0
 """A run diverges once its energy exceeds this times the initial one: no true motion of springs gains any."""
 
-
 TINY = 1e-300
-"""Stands for no length: a closed fibre that shrinks to its fixed point."""
+"""Keeps quotients finite, such as those by the length of a closed fibre that has shrunk to a point."""
 
 
 class Physics(NamedTuple):
-    """Time step h, spring constant over mass K/m, damping over mass beta/m, and friction mu."""
+    """What the particles obey.
+
+    step: time step h; stiffness: spring constant over mass K/m; damping: damping over mass beta/m; friction:
+    coefficient mu; inertial: whether the velocity term J-dot V of (4.10) is kept.
+    """
 
     step: float
-    stiff: float
-    damp: float
+    stiffness: float
+    damping: float
     friction: float
+    inertial: bool
+
+
+class Chain(NamedTuple):
+    """The particles and their state.
+
+    X (n, 3): positions; uv (n, 2): parameters of the particles or of their feet; V (n, 2): velocities in the parametric
+    plane; frames (n, 6, 3), of which s, s_u, s_v are kept, with `inertial` the second derivatives too; normal (n, 3):
+    outward unit normals; touching (n,): whether a particle touches the surface; clearance (n,): a lower bound of a
+    lifted particle's gap; before, after (n,): the nearest touching neighbours, as `link` finds them.
+    """
+
+    X: Floats
+    uv: Floats
+    V: Floats
+    frames: Floats
+    normal: Floats
+    touching: Bools
+    clearance: Floats
+    before: Ints
+    after: Ints
+
+
+def chain_at_rest(uv: Floats) -> Chain:
+    """A chain without velocity whose particles all touch at parameters uv (n, 2); `put_on_surface` places them."""
+    n = len(uv)
+    return Chain(
+        X=np.empty((n, 3)),
+        uv=uv,
+        V=np.zeros((n, 2)),
+        frames=np.empty((n, 6, 3)),
+        normal=np.empty((n, 3)),
+        touching=np.ones(n, np.bool_),
+        clearance=np.zeros(n),
+        before=np.zeros(n, np.int64),
+        after=np.zeros(n, np.int64),
+    )
+
+
+class Forces(NamedTuple):
+    """Forces on the touching particles, per unit of spring constant; each array is filled by contact.
+
+    particle (n,): index of the contact's particle; held (n,): bits of the directions in which it is held at a rim or an
+    edge; metric (n, 3): J'J as uu, uv, vv; force (n, 2): J'F; press (n,): F . n.
+    """
+
+    particle: Ints
+    held: Ints
+    metric: Floats
+    force: Floats
+    press: Floats
 
 
 @njit(cache=True)
-def place(spline, chain, contacts, count, bends):
-    """Put the contacts on the surface at their parameters; with `bends` their frames have second derivatives too."""
-    X, uv, V, frames, normal, touching, clear = chain
+def forces_for(n):
+    """Work space for the forces on n particles."""
+    return Forces(np.empty(n, np.int64), np.zeros(n, np.int64), np.empty((n, 3)), np.empty((n, 2)), np.empty(n))
+
+
+@njit(cache=True)
+def put_on_surface(spline, chain, particles, count, curvature):
+    """Put the first `count` of `particles` on the surface at their parameters.
+
+    With `curvature` their frames include the second derivatives.
+    """
+    uv, frames = chain.uv, chain.frames
     for c in range(count):
-        i = contacts[c]
-        if bends:
+        i = particles[c]
+        if curvature:
             frame(spline, uv[i, 0], uv[i, 1], frames[i])
         else:
             tangents(spline, uv[i, 0], uv[i, 1], frames[i])
-        unit_normal(frames[i], normal[i])
+        unit_normal(frames[i], chain.normal[i])
         for k in range(3):
-            X[i, k] = frames[i, S, k]
+            chain.X[i, k] = frames[i, S, k]
 
 
 @njit(cache=True)
 def link(touching, before, after):
-    """Fill each touching particle's nearest touching neighbours; the two ends always count as touching."""
+    """Fill in each touching particle's nearest touching neighbours; the two ends always count as touching."""
     n = len(touching)
     last = 0
     for i in range(1, n):
@@ -62,33 +125,20 @@ def link(touching, before, after):
             last = i
 
 
-@njit(inline="always", cache=True)
-def held(uv, i, periodic, fu, fv):
-    """Bit 1: the force pushes particle i out over an edge in u; bit 2: out over a rim in v."""
-    bits = 0
-    if not periodic and ((uv[i, 0] <= 0.0 and fu < 0.0) or (uv[i, 0] >= 1.0 and fu > 0.0)):
-        bits |= 1
-    if (uv[i, 1] <= 0.0 and fv < 0.0) or (uv[i, 1] >= 1.0 and fv > 0.0):
-        bits |= 2
-    return bits
-
-
 @njit(cache=True)
-def gather(chain, periodic, friction, contacts, before, after, forces):
-    """Forces (4.1, with lifted particles 5.2) on the touching particles, per unit of spring constant.
+def gather(chain, periodic, friction, forces):
+    """Fill in the forces (4.1, with lifted particles 5.2) on the touching particles.
 
-    forces is (bits, metric, force, press): held directions (n,); J'J (n, 3); J'F (n, 2); F . n (n,), each by
-    contact.  A held direction drops out.  Returns the number of contacts and the largest tangential force beyond
-    what friction holds.
+    Forces and velocities in a held direction become 0.  Returns the number of contacts and the largest tangential force
+    beyond what friction holds.
     """
-    X, uv, V, frames, normal, touching, clear = chain
-    bits, metric, force, press = forces
+    X, frames, normal, V = chain.X, chain.frames, chain.normal, chain.V
     n = len(X)
     count = 0
     worst = 0.0
-    i = after[0]
+    i = chain.after[0]
     while i < n - 1:
-        p, q = before[i], after[i]
+        p, q = chain.before[i], chain.after[i]
         a, b = 1.0 / (i - p), 1.0 / (q - i)
         fu = fv = fn = guu = guv = gvv = 0.0
         for k in range(3):
@@ -100,16 +150,16 @@ def gather(chain, periodic, friction, contacts, before, after, forces):
             guu += su * su
             guv += su * sv
             gvv += sv * sv
-        bit = held(uv, i, periodic, fu, fv)
-        if bit:
+        bits = held(chain.uv, i, periodic, fu, fv)
+        if bits:
             guv = 0.0
-            if bit & 1:
+            if bits & 1:
                 fu = V[i, 0] = 0.0
-            if bit & 2:
+            if bits & 2:
                 fv = V[i, 1] = 0.0
-        contacts[count], bits[count], press[count] = i, bit, fn
-        metric[count, 0], metric[count, 1], metric[count, 2] = guu, guv, gvv
-        force[count, 0], force[count, 1] = fu, fv
+        forces.particle[count], forces.held[count], forces.press[count] = i, bits, fn
+        forces.metric[count, 0], forces.metric[count, 1], forces.metric[count, 2] = guu, guv, gvv
+        forces.force[count, 0], forces.force[count, 1] = fu, fv
         det = guu * gvv - guv * guv
         if det > 0.0:
             square = max(fu * fu * gvv - 2.0 * fu * fv * guv + fv * fv * guu, 0.0) / det
@@ -120,17 +170,16 @@ def gather(chain, periodic, friction, contacts, before, after, forces):
 
 
 @njit(cache=True)
-def rub(chain, physics, contacts, count, metric, press, move):
+def slow_by_friction(chain, physics, forces, count, move):
     """Scale each velocity and move by friction (4.19); return the kinetic energy over the mass."""
-    V = chain[2]
-    h, stiff, damp, friction = physics
+    V, metric = chain.V, forces.metric
     kinetic = 0.0
     for c in range(count):
-        i = contacts[c]
+        i = forces.particle[c]
         square = metric[c, 0] * V[i, 0] ** 2 + 2.0 * metric[c, 1] * V[i, 0] * V[i, 1] + metric[c, 2] * V[i, 1] ** 2
-        if friction > 0.0:
+        if physics.friction > 0.0:
             speed = np.sqrt(max(square, 0.0))
-            loss = h * friction * stiff * abs(press[c])
+            loss = physics.step * physics.friction * physics.stiffness * abs(forces.press[c])
             share = 1.0 - loss / speed if speed > loss else 0.0
             for a in range(2):
                 V[i, a] *= share
@@ -141,26 +190,26 @@ def rub(chain, physics, contacts, count, metric, press, move):
 
 
 @njit(cache=True)
-def carry(spline, chain, contacts, count, move, bends):
-    """Move the contacts by `move`, stopping them at the rims (and edges); return the longest move in the plane."""
-    uv, V = chain[1], chain[2]
+def move_contacts(spline, chain, particles, count, move, curvature):
+    """Move the contacts by `move` (count, 2), stopping them at rims and edges; return the longest move in the plane."""
+    uv = chain.uv
     longest = 0.0
     for c in range(count):
-        i = contacts[c]
+        i = particles[c]
         longest = max(longest, abs(move[c, 0]), abs(move[c, 1]))
         for a in range(2):
             x = uv[i, a] + move[c, a]
             if (a == 1 or not spline.periodic) and not 0.0 <= x <= 1.0:
                 x = min(max(x, 0.0), 1.0)
-                V[i, a] = 0.0
+                chain.V[i, a] = 0.0
             uv[i, a] = x
-    place(spline, chain, contacts, count, bends)
+    put_on_surface(spline, chain, particles, count, curvature)
     return longest
 
 
 @njit(cache=True)
-def stretch(X):
-    """The springs' energy 1/2 sum |P_{i+1} - P_i|^2 over K, and the length."""
+def energy_and_length(X):
+    """The springs' energy 1/2 sum |P_{i+1} - P_i|^2 over K, and the polyline's length."""
     energy = 0.0
     length = 0.0
     for i in range(len(X) - 1):
@@ -174,7 +223,7 @@ def stretch(X):
 
 @njit(cache=True)
 def sag(X, after):
-    """Largest distance of a lifted particle from its even place on the chord."""
+    """Largest distance of a lifted particle from where it should be: spread evenly on the chord between contacts."""
     worst = 0.0
     i, n = 0, len(X)
     while i < n - 1:
@@ -205,7 +254,7 @@ def mean_angle(X, normal, touching):
             span += chord * chord
             whole += bend * bend
             press += bend * normal[i, k]
-        side = max(whole - press * press - along * along / max(span, 1e-300), 0.0)
+        side = max(whole - press * press - along * along / max(span, TINY), 0.0)
         total += np.arctan2(np.sqrt(side), abs(press))
         count += 1
     return total / max(count, 1)

@@ -10,7 +10,7 @@ from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV
 
 
 @njit(inline="always", cache=True)
-def turning(frame, u, v):
+def velocity_term(frame, u, v):
     """J' times the velocity term J-dot V of (4.4), as two numbers."""
     fu = fv = 0.0
     for k in range(3):
@@ -21,32 +21,33 @@ def turning(frame, u, v):
 
 
 @njit(cache=True)
-def accelerate(chain, physics, contacts, count, forces, inertial, out):
+def accelerate(chain, physics, forces, count, out):
     """Accelerations (count, 2) in the plane: (4.8) with damping (4.7), with `inertial` also the term J-dot V."""
-    V, frames = chain[2], chain[3]
-    bits, metric, force, press = forces
     for c in range(count):
-        i = contacts[c]
-        u, v = V[i, 0], V[i, 1]
-        fu, fv = physics.stiff * force[c, 0], physics.stiff * force[c, 1]
-        if inertial:
-            tu, tv = turning(frames[i], u, v)
-            fu -= 0.0 if bits[c] & 1 else tu
-            fv -= 0.0 if bits[c] & 2 else tv
-        a, b, d = metric[c, 0], metric[c, 1], metric[c, 2]
+        i = forces.particle[c]
+        u, v = chain.V[i, 0], chain.V[i, 1]
+        fu, fv = physics.stiffness * forces.force[c, 0], physics.stiffness * forces.force[c, 1]
+        if physics.inertial:
+            tu, tv = velocity_term(chain.frames[i], u, v)
+            fu -= 0.0 if forces.held[c] & 1 else tu
+            fv -= 0.0 if forces.held[c] & 2 else tv
+        a, b, d = forces.metric[c, 0], forces.metric[c, 1], forces.metric[c, 2]
         det = a * d - b * b
         share = 1.0 / det if det > 0.0 else 0.0  # nothing moves where the surface is singular
-        out[c, 0] = share * (d * fu - b * fv) - physics.damp * u
-        out[c, 1] = share * (a * fv - b * fu) - physics.damp * v
+        out[c, 0] = share * (d * fu - b * fv) - physics.damping * u
+        out[c, 1] = share * (a * fv - b * fu) - physics.damping * v
 
 
 @njit(cache=True)
-def step(chain, physics, contacts, count, forces, inertial, symplectic, gain, move):
-    """New velocities, and the moves they make: with the old ones (4.10) or with the new ones."""
-    V, h = chain[2], physics.step
-    accelerate(chain, physics, contacts, count, forces, inertial, gain)
+def step(chain, physics, forces, count, symplectic, gain, move):
+    """New velocities, and the moves they make: with the old ones (4.10) or, symplectic, with the new ones.
+
+    gain (n, 2) is work space for the accelerations.
+    """
+    V, h = chain.V, physics.step
+    accelerate(chain, physics, forces, count, gain)
     for c in range(count):
-        i = contacts[c]
+        i = forces.particle[c]
         for a in range(2):
             old = V[i, a]
             V[i, a] = old + h * gain[c, a]

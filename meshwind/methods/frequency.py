@@ -6,7 +6,7 @@ from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats, floats
 from meshwind.core.errors import BadInputError
-from meshwind.methods.run import Method
+from meshwind.methods.motion import Method
 from meshwind.surface.evaluate import SU, SUU, SUV, SVV, S
 from meshwind.surface.surface import Surface
 
@@ -47,7 +47,7 @@ def _banded(blocks: Floats, links: Floats) -> Floats:
 def stable_step(method: str, frequency: float, *, damping: float = 0.0, mass: float = 1.0) -> float:
     """Largest stable step size of a scheme for modes up to the angular `frequency`, in units of time.
 
-    With c = damping / mass, explicit Euler needs h < min(c / omega^2, 2 / c): nothing holds it undamped.  Its
+    With c = damping / mass, explicit Euler needs h < min(c / omega^2, 2 / c): undamped it has no stable step.  Its
     symplectic form has 2 / omega undamped, Runge-Kutta 2.83 / omega.  The implicit schemes have no limit: infinity.
     """
     scheme, c = Method(method), damping / mass

@@ -1,77 +1,85 @@
 """The KKT method: springs in space with bilateral contact constraints, dropped where they would pull (7.2 to 7.9).
 
 (7.8) should read G M^-1 G' lambda = G M^-1 f, which is dense.  The same velocities and multipliers come from (7.7)
-in O(n) on the constraints' null space: P M P w = P f with P = I - n n' at each contact, a block tridiagonal system.
+in O(n) on the constraints' null space: P M P v = P f with P = I - n n' at each contact, a block tridiagonal system.
 """
 
 from numba import njit
 
 from meshwind.methods.blocks import XX, YY, ZZ, solve, solve_free
 from meshwind.methods.chain import SOLVES
-from meshwind.methods.collide import pulls
+from meshwind.methods.strand import spring_forces
 
 
 @njit(cache=True)
-def step(strand, physics, stabilisation, system, pivots, force, right, loose, tally):
+def step(strand, physics, stabilisation, work, tally):
     """New velocities of the strand; contacts whose multiplier would pull inwards are let go.
 
     stabilisation: share of a contact's gap that a step takes back, as n . v = -stabilisation gap / h in (7.3).
     Multipliers of the wrong sign are set to 0 and the velocities found again by (7.9), with the others as they are.
     """
-    X, W, uv, frames, normal, touching, gap = strand
-    diagonal, inverse, work = system
-    n, h = len(X), physics.step
-    coupling = h * h * physics.stiff
-    free = 1.0 + h * physics.damp + 2.0 * coupling
-    pulls(X, force)
+    V, normal, touching = strand.V, strand.normal, strand.touching
+    n, h = len(V), physics.step
+    spring_forces(strand.X, work.force)
     for i in range(1, n - 1):
-        diagonal[i, XX] = diagonal[i, YY] = diagonal[i, ZZ] = free
         for k in range(3):
-            right[i, k] = W[i, k] + h * physics.stiff * force[i, k]
+            work.right[i, k] = V[i, k] + h * physics.stiffness * work.force[i, k]
     back = -stabilisation / h
-    for i in range(1, n - 1):  # right side P (f - M b), b the velocities along the normals that are prescribed
-        for k in range(3):
-            W[i, k] = right[i, k]
-            for j in (i - 1, i + 1):
-                if touching[j] and 0 < j < n - 1:
-                    W[i, k] += coupling * back * gap[j] * normal[j, k]
-        if touching[i]:
-            dot = W[i, 0] * normal[i, 0] + W[i, 1] * normal[i, 1] + W[i, 2] * normal[i, 2]
-            for k in range(3):
-                W[i, k] -= dot * normal[i, k]
+    set_up(strand, back, work)
     tally[SOLVES] += 1
-    solve(diagonal, coupling, normal, touching, W, inverse, work)
+    solve(work.matrix, normal, touching, V)
     for i in range(1, n - 1):
         if touching[i]:
             for k in range(3):
-                W[i, k] += back * gap[i] * normal[i, k]
-    if release(strand, free, coupling, right, loose):
+                V[i, k] += back * strand.gap[i] * normal[i, k]
+    if release(strand, work):
         tally[SOLVES] += 1
         for i in range(1, n - 1):
             for k in range(3):
-                W[i, k] = right[i, k]
-        solve_free(coupling, pivots, W)
+                V[i, k] = work.right[i, k]
+        solve_free(work.matrix, V)
 
 
 @njit(cache=True)
-def release(strand, free, coupling, right, loose):
-    """Take the constraint forces that push, and no others, off `right` (7.9); returns whether any would pull.
+def set_up(strand, back, work):
+    """The diagonal, and the right side P (f - M b) in place of the velocities.
 
-    The multiplier is lambda = n . (f - M v); contacts where it is positive are `loose` (n,).
+    b are the prescribed velocities along the normals: `back` times the gap.
     """
-    X, W, uv, frames, normal, touching, gap = strand
-    n = len(X)
+    V, normal, touching = strand.V, strand.normal, strand.touching
+    n, matrix = len(V), work.matrix
+    for i in range(1, n - 1):
+        matrix.diagonal[i, XX] = matrix.diagonal[i, YY] = matrix.diagonal[i, ZZ] = matrix.free
+        for k in range(3):
+            V[i, k] = work.right[i, k]
+            for j in (i - 1, i + 1):
+                if touching[j] and 0 < j < n - 1:
+                    V[i, k] += matrix.coupling * back * strand.gap[j] * normal[j, k]
+        if touching[i]:
+            dot = V[i, 0] * normal[i, 0] + V[i, 1] * normal[i, 1] + V[i, 2] * normal[i, 2]
+            for k in range(3):
+                V[i, k] -= dot * normal[i, k]
+
+
+@njit(cache=True)
+def release(strand, work):
+    """Subtract the constraint forces that push, and no others, from `work.right` (7.9); returns whether any would pull.
+
+    The multiplier is lambda = n . (f - M v); contacts where it is positive become loose.
+    """
+    V, normal = strand.V, strand.normal
+    n, right, free, coupling = len(V), work.right, work.matrix.free, work.matrix.coupling
     pulled = False
     for i in range(1, n - 1):
-        loose[i] = False
-        if not touching[i]:
+        strand.loose[i] = False
+        if not strand.touching[i]:
             continue
         multiplier = 0.0
         for k in range(3):
-            beside = (W[i - 1, k] if i > 1 else 0.0) + (W[i + 1, k] if i < n - 2 else 0.0)
-            multiplier += normal[i, k] * (right[i, k] - free * W[i, k] + coupling * beside)
+            beside = (V[i - 1, k] if i > 1 else 0.0) + (V[i + 1, k] if i < n - 2 else 0.0)
+            multiplier += normal[i, k] * (right[i, k] - free * V[i, k] + coupling * beside)
         if multiplier > 0.0:
-            loose[i] = True
+            strand.loose[i] = True
             pulled = True
         else:
             for k in range(3):

@@ -12,15 +12,15 @@ PULL = 1e-9
 
 
 @njit(cache=True)
-def lift(chain, weighted, slack, before, after):
+def lift(chain, weighted, slack):
     """Algorithm 1: release every touching particle that its touching neighbours pull off, until none is.
 
     The test is the source's unweighted (P- - 2 P + P+) . n > 0; `weighted` takes the force of (5.2) instead, which
     has the right sign where the gaps on the two sides differ.
     """
-    X, normal, touching, clear = chain[0], chain[4], chain[5], chain[6]
+    X, normal, before, after = chain.X, chain.normal, chain.before, chain.after
     n = len(X)
-    link(touching, before, after)
+    link(chain.touching, before, after)
     released = True
     while released:
         released = False
@@ -32,20 +32,20 @@ def lift(chain, weighted, slack, before, after):
             for k in range(3):
                 pull += (a * (X[p, k] - X[i, k]) + b * (X[q, k] - X[i, k])) * normal[i, k]
             if pull > slack:
-                touching[i] = False
-                clear[i] = 0.0
+                chain.touching[i] = False
+                chain.clearance[i] = 0.0
                 after[p], before[q] = q, p
                 released = True
             i = q
 
 
 @njit(cache=True)
-def straighten(chain, after):
+def straighten(chain):
     """Spread the lifted particles evenly between touching ones (section 5.2)."""
-    X, clear = chain[0], chain[6]
+    X = chain.X
     i, n = 0, len(X)
     while i < n - 1:
-        j = after[i]
+        j = chain.after[i]
         for m in range(i + 1, j):
             t = (m - i) / (j - i)
             moved = 0.0
@@ -53,49 +53,52 @@ def straighten(chain, after):
                 x = (1.0 - t) * X[i, k] + t * X[j, k]
                 moved += (x - X[m, k]) ** 2
                 X[m, k] = x
-            clear[m] -= np.sqrt(moved)
+            chain.clearance[m] -= np.sqrt(moved)
         i = j
 
 
 @njit(cache=True)
 def land(spline, chain, tally):
-    """Algorithm 2: lifted particles below the surface land on their feet, found by Newton (5.4 to 5.7).
+    """Algorithm 2: lifted particles below the surface land on their feet, found by Newton's method (5.4 to 5.7).
 
-    Newton starts at the last foot, which is where (5.10) keeps the shadow particle.  The gap shrinks by no more
-    than the particle moves, so most need no foot.  What lands has lost its velocity.
+    It starts at the last foot, which is where (5.10) keeps the shadow particle.  The gap shrinks by no more than the
+    particle moves, so most need no foot.  A particle that lands has no velocity.
     """
-    X, uv, V, frames, normal, touching, clear = chain
+    X, V, frames, normal = chain.X, chain.V, chain.frames, chain.normal
     for m in range(1, len(X) - 1):
-        if touching[m] or clear[m] > 0.0:
+        if chain.touching[m] or chain.clearance[m] > 0.0:
             continue
         tally[FEET] += 1
-        tally[EVALUATIONS] += foot(spline, X[m], uv[m], frames[m])
+        tally[EVALUATIONS] += foot(spline, X[m], chain.uv[m], frames[m])
         unit_normal(frames[m], normal[m])
         height = square = 0.0
         for k in range(3):
             r = X[m, k] - frames[m, S, k]
             height += r * normal[m, k]
             square += r * r
-        clear[m] = np.sqrt(square)
+        chain.clearance[m] = np.sqrt(square)
         if height <= 0.0:
-            touching[m] = True
+            chain.touching[m] = True
             V[m, 0] = V[m, 1] = 0.0
             for k in range(3):
                 X[m, k] = frames[m, S, k]
 
 
 @njit(cache=True)
-def contact(spline, chain, weighted, slack, before, after, kept, tally):
-    """Lift, straighten, land; returns whether the set of touching particles has changed."""
-    touching = chain[5]
+def update_touching(spline, chain, weighted, slack, former, tally):
+    """Lift, straighten, land; returns whether the set of touching particles has changed.
+
+    former (n,) is work space for the set before.
+    """
+    touching = chain.touching
     n = len(touching)
     for i in range(n):
-        kept[i] = touching[i]
-    lift(chain, weighted, slack, before, after)
-    straighten(chain, after)
+        former[i] = touching[i]
+    lift(chain, weighted, slack)
+    straighten(chain)
     land(spline, chain, tally)
-    link(touching, before, after)
+    link(touching, chain.before, chain.after)
     changed = False
     for i in range(n):
-        changed = changed or kept[i] != touching[i]
+        changed = changed or former[i] != touching[i]
     return changed

@@ -7,29 +7,23 @@ from numba import njit
 
 from meshwind.methods.blocks import XX, XY, XZ, YY, YZ, ZZ, solve
 from meshwind.methods.chain import SOLVES
-from meshwind.methods.collide import pulls
+from meshwind.methods.strand import spring_forces
 
 
 @njit(cache=True)
-def step(strand, physics, width, push, pinned, system, force, tally):
-    """New velocities of the strand; width is epsilon_PF, push is k_PF over the mass; pinned (n,) must be False.
-
-    Returns whether the matrix kept its digits; the velocities are lost where not.
-    """
-    X, W, uv, frames, normal, touching, gap = strand
-    diagonal, inverse, work = system
-    h = physics.step
-    coupling = h * h * physics.stiff
-    free = 1.0 + h * physics.damp + 2.0 * coupling
-    slope = h * h * push / width
-    pulls(X, force)
+def step(strand, physics, rules, work, tally):
+    """New velocities of the strand; returns whether the matrix kept its digits: the velocities are lost where not."""
+    X, V, normal, gap = strand.X, strand.V, strand.normal, strand.gap
+    h, width, matrix, force = physics.step, rules.width, work.matrix, work.force
+    slope = h * h * rules.penalty / width
+    spring_forces(X, force)
     for i in range(1, len(X) - 1):
-        s = diagonal[i]
-        s[XX] = s[YY] = s[ZZ] = free
+        s = matrix.diagonal[i]
+        s[XX] = s[YY] = s[ZZ] = matrix.free
         s[XY] = s[XZ] = s[YZ] = 0.0
         press = 0.0
-        if touching[i]:
-            press = push * min((width - gap[i]) / width, 1.0)
+        if strand.touching[i]:
+            press = rules.penalty * min((width - gap[i]) / width, 1.0)
             if gap[i] > 0.0:
                 a, b, c = normal[i, 0], normal[i, 1], normal[i, 2]
                 s[XX] += slope * a * a
@@ -39,6 +33,6 @@ def step(strand, physics, width, push, pinned, system, force, tally):
                 s[YZ] += slope * b * c
                 s[ZZ] += slope * c * c
         for k in range(3):
-            W[i, k] += h * (physics.stiff * force[i, k] + press * normal[i, k])
+            V[i, k] += h * (physics.stiffness * force[i, k] + press * normal[i, k])
     tally[SOLVES] += 1
-    return solve(diagonal, coupling, normal, pinned, W, inverse, work)
+    return solve(matrix, normal, work.unpinned, V)

@@ -1,4 +1,4 @@
-"""What a run of one of the literature's schemes gives."""
+"""The motion of one path by one of the literature's schemes: what a run returns."""
 
 from dataclasses import dataclass
 from enum import IntEnum, StrEnum
@@ -37,7 +37,7 @@ class Ending(IntEnum):
 
 
 _ADVICE = {
-    Ending.CONVERGED: "at rest to the tolerance asked",
+    Ending.CONVERGED: "at rest to the given tolerance",
     Ending.STOPPED: "the steps ran out before the fibre was at rest: allow more, or another step size or damping",
     Ending.DIVERGED: "the motion gained energy without bound: use a smaller step size, more damping or backward Euler",
 }
@@ -47,7 +47,7 @@ _ADVICE = {
 class History:
     """Measures of the state before each step and of the last one, each (steps + 1,).
 
-    length in the surface's units; residual as in `Run`; angle: mean over the touching particles of the angle
+    length in the surface's units; residual as in `Motion`; angle: mean over the touching particles of the angle
     between the curve's and the surface's normals (3.15), radians.
     """
 
@@ -57,13 +57,31 @@ class History:
 
 
 @dataclass(frozen=True)
-class Run:
+class Motion:
     """One path of n particles as a scheme left it; after DIVERGED the last state of bounded energy.
 
-    points (n, 3); uv (n, 2) parametric position of the particle or of its foot, u unwrapped; on_surface (n,);
-    gap (n,) signed distance to the surface, 0 where held on it by the scheme itself; length of the polyline;
-    residual: largest tangential force that is not balanced, nor held by friction, over the tension; status an
-    `Ending`; counters as for `Paths`, iterations being the steps taken; history where asked for.
+    Attributes
+    ----------
+    method : Method
+        The scheme.
+    points : array (n, 3)
+        Positions, in the surface's units.
+    uv : array (n, 2)
+        Parameters of the particles or of their feet, u unwrapped.
+    on_surface : array (n,)
+        Whether a particle touches the surface.
+    gap : array (n,)
+        Signed distance to the surface, in its units; 0 where the scheme itself keeps a particle there.
+    length : float
+        Length of the polyline, in the surface's units.
+    residual : float
+        Largest tangential force that neither springs nor friction balance, over the tension.
+    status : Ending
+        How the run ended.
+    counters : Counters
+        As for `Paths`; iterations are the steps taken.
+    history : History or None
+        Measures of every step, if the run was to keep them.
     """
 
     method: Method
