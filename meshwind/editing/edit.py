@@ -53,7 +53,7 @@ class Edit:
         return lifted_share(self.paths.gap, self.threshold)
 
 
-def edit(
+def edit(  # noqa: PLR0913
     surface: Surface,
     *,
     revolutions: float,

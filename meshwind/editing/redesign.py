@@ -112,7 +112,7 @@ class Redesign:
         return self.after.bridged
 
 
-def redesign(
+def redesign(  # noqa: PLR0913
     mesh: str | PathLike[str] | Mesh,
     *,
     revolutions: float | str,

@@ -30,7 +30,7 @@ RK4_STEP = 1e-3
 FINEST, COARSEST = 1e-14, 1e-2
 
 
-def trace(
+def trace(  # noqa: PLR0913
     surface: Surface,
     start: ArrayLike,
     direction: ArrayLike,
@@ -88,7 +88,7 @@ def trace(
     )[0]
 
 
-def traces(
+def traces(  # noqa: PLR0913
     surface: Surface,
     start: ArrayLike,
     direction: ArrayLike,

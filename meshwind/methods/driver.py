@@ -31,7 +31,7 @@ WIDTHS = {Method.PENALTY: 1e-3, Method.KKT: 1e-5}
 """Default contact width over the surface's size."""
 
 
-def run(
+def run(  # noqa: PLR0913
     method: str,
     surface: Surface,
     start: ArrayLike,

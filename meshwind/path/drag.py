@@ -35,7 +35,7 @@ HALVINGS = 5
 """Times that a step is halved where the fibre does not follow."""
 
 
-def drag(
+def drag(  # noqa: PLR0913
     surface: Surface,
     start: ArrayLike,
     end: ArrayLike,

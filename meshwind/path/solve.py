@@ -53,7 +53,7 @@ def straight(start: Floats, end: Floats, particles: int) -> Floats:
     return np.asarray((1.0 - t) * start[:, None] + t * end[:, None])
 
 
-def solve(
+def solve(  # noqa: PLR0913
     surface: Surface,
     start: ArrayLike,
     end: ArrayLike,

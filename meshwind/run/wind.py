@@ -164,7 +164,7 @@ class Result(Winding):
         return _write(self, _folder(out), render, overwrite, Clock())
 
 
-def wind(
+def wind(  # noqa: PLR0913
     mesh: str | PathLike[str] | Mesh,
     *,
     paths: int = 12,
