@@ -60,12 +60,17 @@ def test_check(tmp_path: Path) -> None:
     assert read(done)["problem"] in done.stderr
 
 
-def test_export_and_render(tmp_path: Path) -> None:
+def test_export(tmp_path: Path) -> None:
     waisted_results(tmp_path)
     told = read(meshwind("export", tmp_path, "--to", "fibers,inp", "--json"))
     assert {Path(file).name for file in told["files"]} == {"fibers.vtu", "fibers.vtk", "shell.inp", "shell_s4r.inp"}
     assert all(Path(file).is_file() for file in told["files"])
     assert any("elements" in note for note in told["notes"])
+
+
+@pytest.mark.usefixtures("opengl")
+def test_render(tmp_path: Path) -> None:
+    waisted_results(tmp_path)
     done = meshwind("render", tmp_path, "--only", "coverage", "--size", "320x240", "--quiet")
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     assert (tmp_path / "coverage.png").is_file()

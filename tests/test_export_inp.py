@@ -1,7 +1,6 @@
 """The shell decks, and what CalculiX makes of one."""
 
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -126,7 +125,7 @@ def axial_modulus(angle: float) -> float:
     return float(1.0 / np.linalg.inv(laminate)[0, 0])
 
 
-@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is missing: apt-get install calculix-ccx")
+@pytest.mark.usefixtures("calculix")
 def test_calculix_stretches_a_cylinder_as_laminate_theory_says(tmp_path: Path) -> None:
     results = plain_results(tmp_path)
     deck = deck_of(results, regular(results.surface, 300), layer=0.01)

@@ -62,7 +62,7 @@ def pixels(picture: Path) -> Floats:
 
 
 @pytest.fixture(scope="module")
-def drawn(waist: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def drawn(waist: Path, tmp_path_factory: pytest.TempPathFactory, opengl: None) -> Path:  # noqa: ARG001
     out = tmp_path_factory.mktemp("drawn")
     render(waist, page=SMALL, out=out)
     return out
@@ -85,7 +85,7 @@ def test_pictures_are_full_and_cut_nothing_off(drawn: Path, name: str) -> None:
 
 
 @pytest.fixture(scope="module")
-def pages(waist: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def pages(waist: Path, tmp_path_factory: pytest.TempPathFactory, opengl: None) -> Path:  # noqa: ARG001
     """The winding on pages of all kinds, by one process."""
     out = tmp_path_factory.mktemp("pages")
     kinds = {
@@ -179,6 +179,7 @@ def test_without_a_driver_nothing_is_written(waist: Path, tmp_path: Path, monkey
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.usefixtures("opengl")
 def test_the_movie_lays_all_fibre(waist: Path, tmp_path: Path) -> None:
     told: list[tuple[int, int]] = []
     done = render(
@@ -235,6 +236,7 @@ def test_a_sheet_has_a_cell_for_each_picture(count: int) -> None:
     assert columns * (rows - 1) < count <= columns * rows
 
 
+@pytest.mark.usefixtures("opengl")
 def test_a_redesign_shows_what_moved(tmp_path: Path) -> None:
     on = grid(cylinder(64))
     faces = np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]])
@@ -249,6 +251,7 @@ def test_a_redesign_shows_what_moved(tmp_path: Path) -> None:
         draw_redesign(tmp_path / "redesign.png", on.points, moves[1:], faces, "tube")
 
 
+@pytest.mark.usefixtures("opengl")
 def test_the_command_line(waist: Path, tmp_path: Path) -> None:
     def run(*more: str) -> subprocess.CompletedProcess[str]:
         command = [sys.executable, "-m", "meshwind", "render", str(waist), "--out", str(tmp_path / "o"), *more]

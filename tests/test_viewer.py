@@ -4,7 +4,6 @@ import json
 from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
-from shutil import which
 
 import numpy as np
 import pytest
@@ -44,13 +43,15 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def browser(page: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chrome]:
+def browser(
+    page: Path, tmp_path_factory: pytest.TempPathFactory, chromium: tuple[str, str]
+) -> Iterator[webdriver.Chrome]:
     options = webdriver.ChromeOptions()
     for flag in (*FLAGS.split(), f"--user-data-dir={tmp_path_factory.mktemp('chromium')}"):
         options.add_argument(flag)
-    options.binary_location = which("chromium") or ""
+    options.binary_location, its_driver = chromium
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(which("chromedriver")))
+    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(its_driver))
     try:
         driver.get(page.as_uri())
         WebDriverWait(driver, 60).until(lambda seen: seen.find_elements(By.CSS_SELECTOR, "body[data-ready=yes]"))
