@@ -11,8 +11,14 @@ from meshwind.appearance.looks import DIVERGING, MAPS, Scale, round_below
 from meshwind.core.cast import Floats
 from meshwind.pictures.bodies import FAMILY
 from meshwind.pictures.layup_scenes import ANGLE
+from meshwind.results.schema import SURFACE
 
 finite = st.floats(-1e6, 1e6)
+
+
+def test_every_scalar_map_of_the_surface_has_a_look() -> None:
+    scalars = {field: field.unit.replace("2", "²") for field in SURFACE.point_data if field.columns == 1}
+    assert {name: look.unit for name, look in MAPS.items()} == scalars
 
 
 def lab(colours: Floats) -> Floats:
