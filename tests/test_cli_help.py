@@ -11,14 +11,16 @@ import pytest
 import typer
 
 from meshwind.appearance.view import NAMED
-from meshwind.cli import names
+from meshwind.cli import export, render
 from meshwind.cli.main import app
+from meshwind.core.option import options_of
 from meshwind.core.units import MILLIMETRES
 from meshwind.export.formats import FORMATS
 from meshwind.export.targets import GRID, QUADS, TARGETS
 from meshwind.mesh.opening.ends import parse
-from meshwind.results.schema import MOVIES, PICTURES, REDESIGN, SHEET
+from meshwind.workflow.options import Options
 
+OPTIONS = options_of(Options)
 COMMANDS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
 EXAMPLES = {line.strip() for command in (typer.main.get_command(app), *COMMANDS.values())
             for line in (command.epilog or "").splitlines() if line.strip().startswith("meshwind")}  # fmt: skip
@@ -42,7 +44,7 @@ def test_help_ends_with_examples(name: str | None) -> None:
 def test_options_stand_in_groups() -> None:
     help_ = shown("wind")
     for group, option in (("The part", "--units"), ("The fibres", "--paths"), ("The surface", "--tolerance"),
-                          ("Files", "--config"), ("What is told", "--json")):  # fmt: skip
+                          ("Files", "--config"), ("What is printed", "--json")):  # fmt: skip
         section = help_.split(f"\n{group}:\n")[1].split("\n\n")[0]
         assert f"  {option}" in section
 
@@ -83,12 +85,10 @@ def test_completion(words: str, offered: list[str]) -> None:
 
 
 def test_the_names_are_those_of_the_library() -> None:
-    assert tuple(TARGETS) == names.TARGETS
-    assert tuple(FORMATS) == names.FORMATS
-    assert tuple(MILLIMETRES) == names.UNITS
-    assert (GRID, QUADS) == names.SHELLS
-    assert MOVIES == names.MOVIES
-    assert (*PICTURES, REDESIGN, SHEET) == names.PICTURES
-    assert ("auto", *NAMED) == names.VIEWS
-    for name in names.ENDS:
+    assert tuple(TARGETS) == export.TARGETS
+    assert tuple(FORMATS) == export.FORMATS
+    assert tuple(MILLIMETRES) == OPTIONS["units"].words
+    assert (GRID, QUADS) == export.SHELLS
+    assert ("auto", *NAMED) == render.VIEWS
+    for name in OPTIONS["ends"].words:
         parse(f"{name} 0 1" if name == "loops" else name)

@@ -78,7 +78,7 @@ def test_whatever_was_left_to_the_run_is_left_to_it_again(tmp_path: Path) -> Non
     ("path = 3", "my.toml: 'path' is no option; did you mean 'paths'?"),
     ("band_width = 3", "'band_width' is no option; did you mean 'band-width'?"),
     ("no-render = true", "'no-render' is no option; did you mean 'render'?"),
-    ("xyz = 3", "'xyz' is no option; give mesh, component, "), ("[wind]\npaths = 3", "'wind' is no option; give mesh"),
+    ("xyz = 3", "'xyz' is no option; give mesh, paths, "), ("[wind]\npaths = 3", "'wind' is no option; give mesh"),
     ("paths = 'many'", "paths is 'many'; give a whole number"), ("paths = 2.5", "paths is 2.5; give a whole number"),
     ("paths = true", "paths is True; give a whole number"), ("tolerance = '1'", "tolerance is '1'; give a number"),
     ("units = 3", "units is 3; give a text in quotes"), ("render = 'no'", "render is 'no'; give true or false"),

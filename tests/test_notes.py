@@ -9,7 +9,7 @@ import pytest
 
 import meshwind as mw
 from meshwind.appearance.words import power, quantity, ratio
-from meshwind.cli.summary import described
+from meshwind.cli.summary import run_lines
 from meshwind.core.cast import Floats, frozen
 from meshwind.workflow.notes import about_fit
 
@@ -106,7 +106,7 @@ def horned() -> mw.Mesh:
 def test_a_horn_is_warned_of_in_summary_and_report(tmp_path: Path) -> None:
     result = mw.wind(horned(), paths=3, revolutions=0.2, worst_fit=0.5, out=tmp_path, render=False)
     assert result.surface.error is not None
-    (line,) = [line for line in described(result.report()) if "does not resolve" in line]
+    (line,) = [line for line in run_lines(result.report()) if "does not resolve" in line]
     assert line.startswith("warning   the surface")
     assert f"({100 * result.surface.error.relative_max:.2g}% of the part)" in line
     (told,) = json.loads((tmp_path / "report.json").read_text())["notes"]

@@ -41,7 +41,7 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"pins": "pins.csv", "spacing": 1.0}, "give one of both"),
     ({"units": "milimeter"}, "units is 'milimeter'; give mm, cm, m, um, in, inch, ft, or"),
     ({"units": None}, "units is None; give mm, cm"),
-    ({"paths": 100000}, "100000 paths a family of 401 particles and 0.5 revolutions would need about 15,028 GB"),
+    ({"paths": 100000}, "100000 paths per family of 401 particles and 0.5 revolutions would need about 15,028 GB"),
     ({"particles": 10**9}, "would need about"),
 ]
 

@@ -11,7 +11,7 @@ from test_notes import horned
 
 import meshwind as mw
 from meshwind.appearance.view import around, place_view
-from meshwind.cli.summary import described
+from meshwind.cli.summary import run_lines
 from meshwind.core.cast import Floats, frozen
 from meshwind.layup.layup import assess
 from meshwind.mesh import mesh_from
@@ -186,7 +186,7 @@ def test_a_run_that_warns_of_the_fit_draws_it_and_says_so(tmp_path: Path) -> Non
     drawn = (tmp_path / FIT_PICTURE).is_file()
     assert drawn == (tmp_path / "winding.png").is_file()
     assert drawn != any(note.text == driver.NO_DRIVER for note in result.notes)
-    (line,) = [line for line in described(result.report()) if "does not resolve" in line]
+    (line,) = [line for line in run_lines(result.report()) if "does not resolve" in line]
     assert line.endswith("; see fit_error.png") == drawn
     assert ("see fit_error.png" in (tmp_path / "report.json").read_text()) == drawn
     worst = deviation(result.surface, result.chart.annulus).regions[0]

@@ -9,15 +9,19 @@ import trimesh
 from scipy import sparse
 
 import meshwind as mw
-from meshwind.editing import Outcome, edit, redesign
 from meshwind.editing.demands import Demands, press, reach
+from meshwind.editing.edit import edit
 from meshwind.editing.edited_mesh import displacement, within
 from meshwind.editing.freedom import free_moves, frozen_mask
+from meshwind.editing.options import EditOptions
 from meshwind.editing.program import ACCURACY, Solution, certified, minimise
+from meshwind.editing.redesign import redesign
+from meshwind.editing.result import Outcome
 from meshwind.editing.step import GIVE, Program, assembled, energy
 from meshwind.mesh import mesh_from
 from meshwind.mesh.geometry.measure import volume
 from meshwind.surface import Surface, shapes
+from meshwind.workflow.options import Options
 
 DATA = Path(__file__).parents[1] / "data"
 
@@ -115,7 +119,7 @@ def test_a_row_of_press_is_the_derivative_of_the_normal_curvature() -> None:
 
 def test_a_hyperboloid_becomes_a_barrel_that_the_fibres_press() -> None:
     surface = hyperboloid()
-    found = edit(surface, revolutions=0.0, paths=8, particles=121)
+    found = edit(surface, Options(8, 0.0, 121))
     assert found.outcome is Outcome.WINDABLE and len(found.rounds) <= 10
     assert found.bridged == 0.0 and found.paths.gap.max() <= found.threshold
     assert found.rounds[0].gap_before == pytest.approx(np.sqrt(1.81) - 1, rel=1e-3)
@@ -128,7 +132,7 @@ def test_a_hyperboloid_becomes_a_barrel_that_the_fibres_press() -> None:
 
 def test_the_inner_bend_of_an_elbow_comes_up_to_its_chord() -> None:
     surface = shapes.elbow(3.0, 1.0, np.pi / 4, (16, 16))
-    found = edit(surface, revolutions=0.0, paths=8, particles=121)
+    found = edit(surface, Options(8, 0.0, 121))
     assert found.outcome is Outcome.WINDABLE
     start, inner, end = np.hypot(*found.surface.points([[0.5, v] for v in (0.0, 0.5, 1.0)])[:, :2].T)
     chord = 2.0 * np.cos(np.pi / 8)  # from the bend's axis to the chord of the intrados, whose radius is 2
@@ -140,12 +144,12 @@ def test_frozen_control_points_do_not_move_and_impossible_demands_say_so() -> No
     surface = hyperboloid()
     mask = np.zeros(surface.control_points.shape[:2], dtype=bool)
     mask[:, 8:11] = True
-    found = edit(surface, revolutions=0.0, paths=8, particles=61, frozen=mask)
+    found = edit(surface, Options(8, 0.0, 61), EditOptions(frozen=mask))
     assert (found.surface.control_points[mask] == surface.control_points[mask]).all()
     assert found.outcome is Outcome.OUT_OF_REACH and "less of the part" in found.outcome.advice
     assert found.bridged > 0 and found.rounds[-1].shortfall > 0.3
     assert (found.surface.control_points == surface.control_points).all()  # what does not help is not done
-    low = edit(surface, revolutions=0.0, paths=8, particles=61, rounds=1, frozen=lambda at: at[:, 2] < -1.6)
+    low = edit(surface, Options(8, 0.0, 61), EditOptions(rounds=1, frozen=lambda at: at[:, 2] < -1.6))
     below = surface.control_points[..., 2] < -1.6
     assert (low.surface.control_points[below] == surface.control_points[below]).all()
     assert (low.surface.control_points[~below] != surface.control_points[~below]).any()
@@ -153,19 +157,19 @@ def test_frozen_control_points_do_not_move_and_impossible_demands_say_so() -> No
 
 def test_the_bound_holds_and_is_used() -> None:
     surface = hyperboloid()
-    options = dict(revolutions=0.0, paths=8, particles=61)
-    free = edit(surface, **options)  # type: ignore[arg-type]
-    held = edit(surface, bound=0.375, **options)  # type: ignore[arg-type]
+    winding = Options(8, 0.0, 61)
+    free = edit(surface, winding)
+    held = edit(surface, winding, EditOptions(bound=0.375))
     far, near = (np.linalg.norm(e.surface.control_points - surface.control_points, axis=2).max() for e in (free, held))
     assert far > 0.38 and 0.37 < near <= 0.375
     assert held.outcome is Outcome.WINDABLE
-    assert edit(surface, bound=0.1, **options).outcome is Outcome.OUT_OF_REACH  # type: ignore[arg-type]
+    assert edit(surface, winding, EditOptions(bound=0.1)).outcome is Outcome.OUT_OF_REACH
 
 
 @pytest.mark.parametrize("order", [4, 16])
 def test_symmetry_is_kept_to_round_off(order: int) -> None:
     surface = hyperboloid()
-    found = edit(surface, revolutions=0.1, paths=3, particles=61, symmetry=order, rounds=2)
+    found = edit(surface, Options(3, 0.1, 61), EditOptions(symmetry=order, rounds=2))
     net, turn = found.surface.control_points, 2 * np.pi / order
     turned = net @ np.array([[np.cos(turn), np.sin(turn), 0], [-np.sin(turn), np.cos(turn), 0], [0, 0, 1.0]])
     assert np.abs(np.roll(net, -(16 // order), axis=0) - turned).max() < 1e-12
@@ -174,13 +178,13 @@ def test_symmetry_is_kept_to_round_off(order: int) -> None:
 
 @pytest.mark.parametrize("order", [8, 16])
 def test_a_symmetry_of_high_order_costs_no_rounds(order: int) -> None:
-    found = edit(hyperboloid(), revolutions=0.05, paths=6, particles=101, symmetry=order)
+    found = edit(hyperboloid(), Options(6, 0.05, 101), EditOptions(symmetry=order))
     assert found.outcome is Outcome.WINDABLE and len(found.rounds) <= 3
 
 
 def test_a_part_that_presses_everywhere_is_left_alone() -> None:
     surface = shapes.ellipsoid(1.0, 1.0, 1.5, 0.8, 2.3, (24, 24))
-    found = edit(surface, revolutions=0.2, paths=4, particles=61)
+    found = edit(surface, Options(4, 0.2, 61))
     assert found.rounds == () and found.outcome is Outcome.WINDABLE
     assert (found.surface.control_points == surface.control_points).all()
 
@@ -188,8 +192,7 @@ def test_a_part_that_presses_everywhere_is_left_alone() -> None:
 def test_the_same_part_in_other_units_gives_the_same_edit() -> None:
     surface = hyperboloid()
     large = Surface(1000.0 * surface.control_points)
-    options = dict(revolutions=0.05, paths=4, particles=61, rounds=1)
-    one, other = edit(surface, **options), edit(large, **options)  # type: ignore[arg-type]
+    one, other = (edit(each, Options(4, 0.05, 61), EditOptions(rounds=1)) for each in (surface, large))
     change = one.surface.control_points - surface.control_points
     assert other.surface.control_points - large.control_points == pytest.approx(1000.0 * change, abs=1e-2)
 
@@ -207,7 +210,7 @@ def test_the_same_part_in_other_units_gives_the_same_edit() -> None:
 )
 def test_wrong_options_are_refused_with_advice(wrong: dict[str, object], words: str) -> None:
     with pytest.raises(mw.BadInputError, match=words):
-        edit(hyperboloid(), revolutions=0.1, **wrong)  # type: ignore[arg-type]
+        edit(hyperboloid(), Options(revolutions=0.1), EditOptions(**wrong))  # type: ignore[arg-type]
 
 
 def test_the_edited_vase_winds_from_its_file_without_bridges(tmp_path: Path) -> None:

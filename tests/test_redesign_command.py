@@ -93,7 +93,7 @@ def test_what_must_not_move_does_not_and_an_impossible_demand_exits_3(tmp_path: 
     ("wrong", "says"),
     [
         (("--freeze", "w<3"), "ranges of u, v, x, y or z"),
-        (("--freeze", "x>1e9"), "holds nothing of the part"),
+        (("--freeze", "x>1e9"), "contains no point of the part"),
         (("--rounds", "-1"), "rounds"),
         (("--bound", "0"), "bound"),
         (("--symmetry", "7"), "symmetry"),

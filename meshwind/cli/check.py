@@ -1,11 +1,13 @@
 """`meshwind check`: what a mesh is and what `wind` would do with it; nothing is changed or written."""
 
 from dataclasses import asdict
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
-from meshwind.cli.arguments import AsJson, Component, Ends, MeshFile, Opening, Quiet
-from meshwind.cli.outcome import tell
+from meshwind.cli.arguments import MeshFile, Printed
+from meshwind.cli.output import print_report
+from meshwind.cli.signature import Pick, with_records
 from meshwind.core.errors import BadInputError
+from meshwind.workflow.options import Options
 
 if TYPE_CHECKING:
     from meshwind.mesh.opening.findings import Findings, Piece, Rim
@@ -20,39 +22,32 @@ EXAMPLES = """
     # the numbers, for a script
     meshwind check part.stl --json
 """
-_MOST = 12  # pieces or rims that are listed one by one
+_MOST = 12
+"""Pieces or rims that are listed one by one."""
 
 
-def check(
-    mesh: MeshFile,
-    ends: Ends = "auto",
-    opening: Opening = None,
-    component: Component = 0,
-    as_json: AsJson = False,
-    quiet: Quiet = False,
-) -> int:
-    """Tell what MESH is, its pieces, rims and faults, and what `wind` would do with it.  Writes nothing.
+@with_records
+def check(mesh: MeshFile, options: Annotated[Options, Pick(("component", "ends", "opening"))], printed: Printed) -> int:
+    """Describe MESH, its pieces, rims and faults, and what `wind` would do with it.  Writes nothing.
 
     Exit status: 0 it has two ends and can be wound; 2 it cannot, and one line says why.
     """
     from meshwind.mesh import inspect
 
-    if component < 0:
-        raise BadInputError(f"component is {component}; give a whole number from 0 up")
-    findings = inspect(mesh, ends, opening, component)
-    tell(_lines(findings), asdict(findings), as_json, quiet)
+    findings = inspect(mesh, options.ends, options.opening, options.component)
+    print_report(_lines(findings), asdict(findings), printed)
     if findings.problem:
         raise BadInputError(findings.problem)
     return 0
 
 
 def _lines(found: "Findings") -> list[str]:
-    """The findings for a person, a label before each line."""
+    """The findings, one per line, each after a label."""
     return [*described(found), *(f"repair    {act}" for act in found.repairs), *_verdict(found)]
 
 
 def described(found: "Findings") -> list[str]:
-    """What the mesh is, before anything is done to it."""
+    """The mesh as it is in its file."""
     size = " x ".join(f"{length:.4g}" for length in found.size)
     rims = _count(len(found.rims), "open rim") if found.rims else "open"
     shape = ["closed" if found.closed else rims]
@@ -101,7 +96,7 @@ def _rim(rim: "Rim", diagonal: float) -> str:
 
 
 def _listed(label: str, rows: list[str], count: int) -> list[str]:
-    """The rows, a label before each; of many only the first."""
+    """The rows, each after the label; of many only the first."""
     more = [f"{label:10}and {count - _MOST} more"] if count > _MOST else []
     return [f"{label:10}{row}" for row in rows[:_MOST]] + more
 

@@ -1,13 +1,14 @@
-"""`meshwind export`: from a results folder to what solvers, robots and CAD take."""
+"""`meshwind export`: from a results folder to files for solvers, robots and CAD."""
 
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
 
-from meshwind.cli.arguments import AsJson, OtherFolder, Quiet, ResultsFolder
-from meshwind.cli.help import one_of, some_of
-from meshwind.cli.names import FORMATS, SHELLS, TARGETS
-from meshwind.cli.outcome import tell_files
+from meshwind.cli.arguments import OtherFolder, Printed, ResultsFolder
+from meshwind.cli.help import one_of, some_of, split_names
+from meshwind.cli.output import print_files
+from meshwind.cli.signature import with_records
 
 EXAMPLES = """
     # a shell deck for CalculiX and Abaqus, fibre directions for ParaView
@@ -22,83 +23,107 @@ EXAMPLES = """
     # all results as Gmsh and PLY
     meshwind export part-wound --formats gmsh,ply
 """
+TARGETS = "inp", "fibers", "frames", "step", "viewer"
+FORMATS = "vtu", "vtk", "xdmf", "ply", "obj", "gmsh"
+SHELLS = "grid", "quads"
+"""Names for help and completion: the modules that define them take long to import."""
 _WHAT, _SHELL, _FRAMES = "What is written", "Elements of inp and fibers", "Frames"
 
 
-def export(
-    folder: ResultsFolder,
+@dataclass(frozen=True)
+class What:
+    """What is written."""
+
     to: Annotated[
         str,
         typer.Option(
             metavar="LIST",
-            help="What to write, by commas: inp, fibers, frames, step, viewer.",
+            help=f"Exports to write, separated by commas: {', '.join(TARGETS)}.",
             autocompletion=some_of(*TARGETS),
             rich_help_panel=_WHAT,
         ),
-    ] = "",
+    ] = ""
     formats: Annotated[
         str,
         typer.Option(
             metavar="LIST",
-            help="Mesh formats for all results, by commas: vtu, vtk, xdmf, ply, obj, gmsh.",
+            help=f"Mesh formats to write all results in, separated by commas: {', '.join(FORMATS)}.",
             autocompletion=some_of(*FORMATS),
             rich_help_panel=_WHAT,
         ),
-    ] = "",
+    ] = ""
     band_width: Annotated[
         float | None,
         typer.Option(
-            help="Of the band, in the mesh's units.  [default: that of the run's coverage]", rich_help_panel=_WHAT
+            help="Width of the fibre band, in the mesh's units.  [default: that of the run's coverage]",
+            rich_help_panel=_WHAT,
         ),
-    ] = None,
+    ] = None
+
+
+@dataclass(frozen=True)
+class Shell:
+    """The elements of a shell deck and of a field of fibre directions."""
+
     thickness: Annotated[
         float | None,
         typer.Option(
-            help="Of one layer of band, in the mesh's units.  [default: 1e-3 of the part's diagonal]",
+            help="Thickness of one layer of band, in the mesh's units.  [default: 1e-3 of the part's diagonal]",
             rich_help_panel=_SHELL,
         ),
-    ] = None,
+    ] = None
     shell: Annotated[
         str,
         typer.Option(
             metavar="KIND",
-            help="Those of a grid, or quads for the quad mesh on the crossings.",
+            help="Elements: grid for a regular grid, quads for the quad mesh on the crossings.",
             autocompletion=one_of(*SHELLS),
             rich_help_panel=_SHELL,
         ),
-    ] = "grid",
+    ] = "grid"
     elements: Annotated[
         int | None,
-        typer.Option(help="Elements of the grid, about.  [default: inp 1000, fibers 10000]", rich_help_panel=_SHELL),
-    ] = None,
+        typer.Option(
+            help="Approximate number of elements of the grid.  [default: inp 1000, fibers 10000]",
+            rich_help_panel=_SHELL,
+        ),
+    ] = None
+
+
+@dataclass(frozen=True)
+class Frames:
+    """The frames for robots."""
+
     step: Annotated[
         float | None,
         typer.Option(
-            help="Longest step, in the mesh's units.  [default: 2 % of the part's diagonal]", rich_help_panel=_FRAMES
+            help="Largest distance between frames, in the mesh's units.  [default: 2 % of the part's diagonal]",
+            rich_help_panel=_FRAMES,
         ),
-    ] = None,
+    ] = None
     angle: Annotated[
         float | None,
         typer.Option(help="Largest turn from frame to frame, in degrees.  [default: 5]", rich_help_panel=_FRAMES),
-    ] = None,
-    out: OtherFolder = None,
-    as_json: AsJson = False,
-    quiet: Quiet = False,
-) -> int:
-    """Write results for other programs; nothing is wound again.
+    ] = None
 
-    inp: shell.inp for CalculiX, shell_s4r.inp for Abaqus.  fibers: fibers.vtu and .vtk, the fibre directions a cell.
+
+@with_records
+def export(
+    *, folder: ResultsFolder, what: What, shell: Shell, frames: Frames, out: OtherFolder = None, printed: Printed
+) -> int:
+    """Write the results of a run for other programs; nothing is wound again.
+
+    inp: shell.inp for CalculiX, shell_s4r.inp for Abaqus.  fibers: fibers.vtu and .vtk, the fibre directions per cell.
     frames: frames/*.csv for robots, in mm.  step: surface.step for CAD (needs meshwind[cad]).
-    viewer: viewer.html, one page that a browser turns offline (needs meshwind[viewer]).
+    viewer: viewer.html, a page for any browser, without a network (needs meshwind[viewer]).
     """
     from meshwind.export.targets import Wishes
     from meshwind.export.targets import export as write
 
-    wishes = Wishes(thickness, band_width, step, angle, shell, elements, _names(formats))
-    done = write(folder, _names(to), out, wishes)
-    tell_files(done.files, done.notes, as_json, quiet)
+    formats = split_names(what.formats)
+    wishes = Wishes(
+        shell.thickness, what.band_width, frames.step, frames.angle, shell.shell, shell.elements, formats
+    )  # fmt: skip
+    done = write(folder, split_names(what.to), out, wishes)
+    print_files(done.files, done.notes, printed)
     return 0
-
-
-def _names(text: str) -> list[str]:
-    return [name.strip().lower() for name in text.split(",") if name.strip()]

@@ -1,4 +1,4 @@
-"""How the commands' help looks: options in groups, and examples at the end."""
+"""Layout of the commands' help: options in groups, and examples at the end."""
 
 import inspect
 from collections.abc import Callable
@@ -6,16 +6,21 @@ from typing import Any
 
 from typer.core import TyperCommand, TyperGroup
 
-PART, FIBRES, SURFACE, FILES, TOLD = "The part", "The fibres", "The surface", "Files", "What is told"
-"""Groups of options."""
+from meshwind.editing.options import EDIT
+from meshwind.workflow.options import FIBRES, PART, SURFACE
+
+FILES, PRINTED = "Files", "What is printed"
+"""Groups of options that all commands share."""
+FIRST, LAST = ("Arguments", PART, EDIT, FIBRES, SURFACE), (FILES, PRINTED)
+"""Groups that come first and last, in this order; between them are others in the order of their options."""
 
 
 class Command(TyperCommand):
     """A command whose options are listed by their groups, and whose epilog, its examples, keeps its lines."""
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
-        """Write arguments and options, a section a group; those without one are the last."""
-        groups: dict[str, list[tuple[str, str]]] = {"Arguments": []}
+        """Write arguments and options, a section per group; those without a group come last."""
+        groups: dict[str, list[tuple[str, str]]] = {group: [] for group in FIRST}
         others: list[tuple[str, str]] = []
         for parameter in self.get_params(ctx):
             record = parameter.get_help_record(ctx)
@@ -24,7 +29,8 @@ class Command(TyperCommand):
             is_argument = parameter.param_type_name == "argument"
             group = "Arguments" if is_argument else getattr(parameter, "rich_help_panel", None)
             (others if group is None else groups.setdefault(group, [])).append(record)
-        for group, records in (*groups.items(), ("Options" if len(groups) == 1 else "Other options", others)):
+        last = [(group, groups.pop(group, [])) for group in LAST]
+        for group, records in (*groups.items(), *last, ("Other options", others)):
             if records:
                 with formatter.section(group):
                     formatter.write_dl(records)
@@ -36,7 +42,7 @@ class Command(TyperCommand):
 
 
 class Group(TyperGroup):
-    """The command of all commands, with examples like theirs."""
+    """The main command, with examples like those of its subcommands."""
 
     def format_epilog(self, ctx: Any, formatter: Any) -> None:
         """Write the examples."""
@@ -45,10 +51,15 @@ class Group(TyperGroup):
 
 
 def _write_examples(lines: str, formatter: Any) -> None:
-    """Line by line, as they are."""
+    """Write the examples line by line, as they are."""
     with formatter.section("Examples"):
         for line in inspect.cleandoc(lines).splitlines():
             formatter.write(f"  {line}".rstrip() + "\n")
+
+
+def split_names(text: str) -> list[str]:
+    """The names in a text that separates them by commas."""
+    return [name.strip().lower() for name in text.split(",") if name.strip()]
 
 
 def one_of(*names: str) -> Callable[[str], list[str]]:
@@ -61,7 +72,7 @@ def one_of(*names: str) -> Callable[[str], list[str]]:
 
 
 def some_of(*names: str) -> Callable[[str], list[str]]:
-    """Completion of an option that takes some of the names, by commas: the last is completed."""
+    """Completion of an option that takes names separated by commas: the last one is completed."""
 
     def complete(incomplete: str) -> list[str]:
         before, comma, last = incomplete.rpartition(",")

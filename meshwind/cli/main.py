@@ -1,24 +1,28 @@
-"""The `meshwind` command: subcommands, and one line for whatever a user can mend."""
+"""The `meshwind` command: its subcommands, and a line for each error that a user can mend."""
 
 import errno
 import json
 import os
+import re
 import sys
 from contextlib import suppress
+from pathlib import Path
 from typing import NoReturn
 
 import typer
 
 from meshwind.cli import check, export, info, redesign, render, sweep, wind
 from meshwind.cli.help import Command, Group
-from meshwind.cli.usage import told
 from meshwind.core.errors import BadInputError
 
-UNPRINTED = 1
+NOT_PRINTED = 1
 BAD_INPUT = 2
 INTERRUPTED = 130
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EPIPE, errno.EBADF}
-"""What a stream says that takes no more; it names no file, and all files of a run are guarded elsewhere."""
+"""Errors of a stream that takes no more; they name no file, and those of a run's files are handled elsewhere."""
+_NUMBERS = re.compile(r"Input should be a valid (integer|number).*")
+_COMMAND = re.compile(r"No such command '(.*?)'$")
+_EXTRA = "Got unexpected extra argument"
 
 EXAMPLES = """
     # what is this part, and can it be wound?
@@ -44,14 +48,14 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.command(cls=Command, short_help="Wind a mesh: mesh in, paths out.", epilog=wind.EXAMPLES)(wind.wind)
-app.command(cls=Command, short_help="Tell whether a mesh can be wound, and how.", epilog=check.EXAMPLES)(check.check)
+app.command(cls=Command, short_help="Check whether a mesh can be wound, and how.", epilog=check.EXAMPLES)(check.check)
 app.command(cls=Command, short_help="Change a mesh until no fibre bridges.", epilog=redesign.EXAMPLES)(
     redesign.redesign
 )
 app.command(cls=Command, short_help="Wind many cases from one study.", epilog=sweep.EXAMPLES)(sweep.sweep)
 app.command(cls=Command, short_help="Draw the pictures of a run.", epilog=render.EXAMPLES)(render.render)
 app.command(cls=Command, short_help="Write results for solvers, robots and CAD.", epilog=export.EXAMPLES)(export.export)
-app.command(cls=Command, short_help="Tell of a mesh, a run or this installation.", epilog=info.EXAMPLES)(info.info)
+app.command(cls=Command, short_help="Describe a mesh, a run or this installation.", epilog=info.EXAMPLES)(info.info)
 
 
 def _version(wanted: bool) -> None:
@@ -73,7 +77,7 @@ def main() -> None:
     """Run the command line.
 
     Exits with 0 when done, 1 when standard output could not be written, 2 on bad input or usage, and 3 when done
-    but not every path came to rest.
+    but not every path converged.
     """
     try:
         code = app(standalone_mode=False)
@@ -81,7 +85,7 @@ def main() -> None:
             sys.stdout.flush()
     except typer.TyperException as error:
         commands = [command.callback.__name__ for command in app.registered_commands if command.callback]
-        _fail(told(error, sys.argv[1:], commands))
+        _fail(_usage_error(error, sys.argv[1:], commands))
     except typer.Abort:
         sys.exit(INTERRUPTED)
     except BadInputError as error:
@@ -95,6 +99,20 @@ def main() -> None:
     sys.exit(code if isinstance(code, int) else 0)
 
 
+def _usage_error(error: typer.TyperException, typed: list[str], commands: list[str]) -> str:
+    """One line that says what to type instead; typed: the words after `meshwind`, commands: the names of all."""
+    line = error.format_message().rstrip(".")
+    line = _NUMBERS.sub(lambda kind: "give a whole number" if kind[1] == "integer" else "give a number", line)
+    wrong = _COMMAND.search(line)
+    if wrong and Path(wrong[1]).suffix:
+        return f"{line}; to wind a mesh type `meshwind wind {wrong[1]}`"
+    if line.startswith(_EXTRA):
+        line += "; put a value with spaces in quotes"
+    context = getattr(error, "ctx", None)
+    command = f"meshwind {typed[0]}" if typed and typed[0] in commands else "meshwind"
+    return f"{line}; see `{context.command_path if context else command} --help`"
+
+
 def _fail(line: str, code: int = BAD_INPUT) -> NoReturn:
     with suppress(OSError):
         print(_error(" ".join(line.split()), code), file=sys.stderr, flush=True)  # noqa: T201
@@ -102,7 +120,7 @@ def _fail(line: str, code: int = BAD_INPUT) -> NoReturn:
 
 
 def _error(line: str, code: int) -> str:
-    """An error for a person or, where the command line asks for JSON, for a script."""
+    """An error as a line or, with --json, as JSON."""
     options = sys.argv[1 : sys.argv.index("--")] if "--" in sys.argv else sys.argv[1:]
     if "--json" in options:
         return json.dumps({"error": line, "exit_status": code})
@@ -110,9 +128,9 @@ def _error(line: str, code: int) -> str:
 
 
 def _give_up_printing(error: OSError) -> NoReturn:
-    """End in one line where standard output takes no more, quietly where its reader has gone."""
-    # what is still in the buffer goes nowhere, or the interpreter would complain of it on its way out
+    """End with one line where standard output takes no more, and without one where its reader has gone."""
+    # the rest of the buffer is discarded: the interpreter would report a second error when it exits
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     if isinstance(error, BrokenPipeError):
-        sys.exit(UNPRINTED)
-    _fail(f"cannot write to standard output: {error.strerror}; send it elsewhere", UNPRINTED)
+        sys.exit(NOT_PRINTED)
+    _fail(f"cannot write to standard output: {error.strerror}; send it elsewhere", NOT_PRINTED)

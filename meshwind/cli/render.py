@@ -1,14 +1,16 @@
 """`meshwind render`: pictures and movies from a results folder."""
 
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
 
-from meshwind.cli.arguments import AsJson, OtherFolder, Quiet, ResultsFolder
-from meshwind.cli.display import counter
-from meshwind.cli.help import one_of, some_of
-from meshwind.cli.names import MOVIES, PICTURES, VIEWS
-from meshwind.cli.outcome import tell_files
+from meshwind.cli.arguments import OtherFolder, Printed, ResultsFolder
+from meshwind.cli.help import one_of, some_of, split_names
+from meshwind.cli.output import counter, print_files
+from meshwind.cli.signature import with_records
+from meshwind.results.schema import MOVIES, REDESIGN, SHEET
+from meshwind.results.schema import PICTURES as DRAWN
 
 EXAMPLES = """
     # every picture, and a contact sheet of them
@@ -23,69 +25,82 @@ EXAMPLES = """
     # the winding in motion
     meshwind render part-wound --animate gif,mp4 --seconds 8
 """
+PICTURES = (*DRAWN, REDESIGN, SHEET)
+VIEWS = "auto", "x", "-x", "y", "-y", "z", "-z", "iso"
+"""Names for help and completion: the module that defines them takes long to import."""
 _WHAT, _LOOK = "What is drawn", "How it looks"
 
 
-def render(
-    folder: ResultsFolder,
+@dataclass(frozen=True)
+class What:
+    """What is drawn."""
+
     only: Annotated[
         str,
         typer.Option(
             metavar="NAMES",
-            help="By commas: winding, crossings, coverage, windability, slip, fit, unrolled, quads, redesign, sheet.  "
-            "[default: all]",
+            help=f"Pictures to draw, separated by commas: {', '.join(PICTURES)}.  [default: all]",
             autocompletion=some_of(*PICTURES),
             rich_help_panel=_WHAT,
         ),
-    ] = "",
+    ] = ""
     animate: Annotated[
         str,
         typer.Option(
             metavar="KINDS",
-            help="Draw the winding in motion instead, by commas: gif, mp4.",
+            help=f"Draw the winding in motion instead, as a movie of these kinds, separated by commas: "
+            f"{', '.join(MOVIES)}.",
             autocompletion=some_of(*MOVIES),
             rich_help_panel=_WHAT,
         ),
-    ] = "",
-    seconds: Annotated[
-        float, typer.Option(help="How long the fibres take to be laid in a movie.", rich_help_panel=_WHAT)
-    ] = 5.0,
+    ] = ""
+    seconds: Annotated[float, typer.Option(help="Time to lay all fibres in a movie.", rich_help_panel=_WHAT)] = 5.0
+
+
+@dataclass(frozen=True)
+class Look:
+    """How it is drawn."""
+
     size: Annotated[
         str,
-        typer.Option(metavar="WxH", help="Pixels.  [default: 1600x1200, of movies 960x720]", rich_help_panel=_LOOK),
-    ] = "",
+        typer.Option(
+            metavar="WxH",
+            help="Width and height in pixels.  [default: 1600x1200, movies 960x720]",
+            rich_help_panel=_LOOK,
+        ),
+    ] = ""
     view: Annotated[
         str,
         typer.Option(
             metavar="SIDE",
-            help="Side to look from: auto for the best, x, -x, y, -y, z, -z, iso.",
+            help="Side to look from: x, -x, y, -y, z, -z, iso, or auto for the best.",
             autocompletion=one_of(*VIEWS),
             rich_help_panel=_LOOK,
         ),
-    ] = "auto",
+    ] = "auto"
     transparent: Annotated[
-        bool, typer.Option("--transparent", help="Without paper behind the part.", rich_help_panel=_LOOK)
-    ] = False,
+        bool, typer.Option("--transparent", help="Leave the background transparent.", rich_help_panel=_LOOK)
+    ] = False
     parallel: Annotated[
         bool,
         typer.Option(
             "--parallel/--perspective",
-            help="Projection; lengths are true in parallel only.",
+            help="Projection; lengths are true in parallel projection only.",
             rich_help_panel=_LOOK,
         ),
-    ] = True,
+    ] = True
     scale_bar: Annotated[
         bool | None,
         typer.Option(
             "--scale-bar/--no-scale-bar",
-            help="A bar of a round length.  [default: with --parallel]",
+            help="Draw a scale bar.  [default: with --parallel]",
             rich_help_panel=_LOOK,
         ),
-    ] = None,
-    out: OtherFolder = None,
-    as_json: AsJson = False,
-    quiet: Quiet = False,
-) -> int:
+    ] = None
+
+
+@with_records
+def render(*, folder: ResultsFolder, what: What, look: Look, out: OtherFolder = None, printed: Printed) -> int:
     """Draw the pictures of a run; nothing is wound again.
 
     NAME.png for each picture, sheet.png with all of them, winding.gif and winding.mp4 with --animate.
@@ -93,14 +108,11 @@ def render(
     from meshwind.pictures.page import Page, parse_size
     from meshwind.pictures.render import render as draw
 
-    kinds, names = _names(animate), _names(only)
-    width, height = parse_size(size) if size else ((960, 720) if kinds and not names else (1600, 1200))
-    page = Page(width, height, transparent, not parallel, scale_bar, view.strip().lower())
-    with counter("drawing", quiet or as_json) as tell:
-        done = draw(folder, names, page, kinds, seconds, out, tell)
-    tell_files(done.files, (), as_json, quiet)
+    kinds, names = split_names(what.animate), split_names(what.only)
+    usual = (960, 720) if kinds and not names else (1600, 1200)
+    width, height = parse_size(look.size) if look.size else usual
+    page = Page(width, height, look.transparent, not look.parallel, look.scale_bar, look.view.strip().lower())
+    with counter("drawing", printed) as progress:
+        done = draw(folder, names, page, kinds, what.seconds, out, progress)
+    print_files(done.files, (), printed)
     return 0
-
-
-def _names(text: str) -> list[str]:
-    return [name.strip().lower() for name in text.split(",") if name.strip()]

@@ -1,11 +1,12 @@
-"""The closing summary: what a person wants to know of a run, in a few lines."""
+"""The closing summary of a run and of a redesign: their reports in a few lines."""
 
 from typing import Any
 
+from meshwind.appearance.words import quantity, ratio
 from meshwind.core.units import unit_told
 
 
-def described(report: dict[str, Any]) -> list[str]:
+def run_lines(report: dict[str, Any]) -> list[str]:
     """A run's report in a few lines; raises LookupError or TypeError where a figure is missing."""
     part = report["mesh"]
     units = unit_told(part["units"])
@@ -14,23 +15,21 @@ def described(report: dict[str, Any]) -> list[str]:
         *_surface(report["surface"], part["diagonal"], units),
         *_paths(report["paths"], units),
         *_layup(report, units),
-        *_unsettled(report["paths"]["not_converged"]),
+        *_not_converged(report["paths"]["not_converged"]),
         *(f"repair    {act}" for act in part["repairs"]),
         *(note_line(note) for note in report["notes"]),
         "seconds   " + ", ".join(f"{stage} {value:.2f}" for stage, value in report["seconds"].items()),
     ]
 
 
-def note_line(told: str) -> str:
-    """A note of a report as a line, which warns where it does."""
-    text = told.removeprefix("warning: ")
-    return f"{'note' if text == told else 'warning':<10}{text}"
+def note_line(note: str) -> str:
+    """A note of a report as a line of a summary."""
+    text = note.removeprefix("warning: ")
+    return f"{'note' if text == note else 'warning':<10}{text}"
 
 
 def _surface(surface: dict[str, Any], size: float, units: str) -> list[str]:
-    """The fit's errors both ways, each also over the part's diagonal."""
-    from meshwind.appearance.words import quantity, ratio
-
+    """The errors of the fit in both directions, also over the part's diagonal."""
     around, along = surface["control_points"]
     vertices, facets = surface["fit_error"]["to_surface"]["max"], surface["fit_error"]["to_mesh"]["max"]
     return [
@@ -41,13 +40,11 @@ def _surface(surface: dict[str, Any], size: float, units: str) -> list[str]:
 
 
 def _paths(paths: dict[str, Any], units: str) -> list[str]:
-    from meshwind.appearance.words import quantity
-
     failed = len(paths["not_converged"])
-    whose = f"; {'these' if paths['converged'] else 'all'}" if failed else ""
+    which = f"; {'these' if paths['converged'] else 'all'}" if failed else ""
     bridged = f"bridged {100 * paths['bridged_fraction']:.1f} %" if paths["bridges"] else "no bridges"
     lines = [
-        f"paths     {paths['converged']} of {paths['converged'] + failed} at rest{whose}: length "
+        f"paths     {paths['converged']} of {paths['converged'] + failed} at rest{which}: length "
         f"{quantity(paths['length_total'], units)}, {bridged}"
     ]
     if paths["bridges"]:
@@ -60,8 +57,6 @@ def _paths(paths: dict[str, Any], units: str) -> list[str]:
 
 def _layup(report: dict[str, Any], units: str) -> list[str]:
     """Coverage and spacing; the fibre's mass where it is known."""
-    from meshwind.appearance.words import quantity
-
     cover, near, fibre = report["coverage"], report["spacing"]["neighbours"], report["fibre"]
     shares = ", ".join(f"{name} {100.0 * cover[name]:.0f} %" for name in ("bare", "once", "twice", "more"))
     lines = [f"coverage  band {quantity(cover['band_width'], units, 3)}: {shares}"]
@@ -72,8 +67,8 @@ def _layup(report: dict[str, Any], units: str) -> list[str]:
     return lines
 
 
-def _unsettled(failures: list[dict[str, object]]) -> list[str]:
-    """One line a reason, with how many paths it holds for."""
+def _not_converged(failures: list[dict[str, object]]) -> list[str]:
+    """One line per reason, with the number of paths that it applies to."""
     reasons: dict[str, list[object]] = {}
     for failure in failures:
         reasons.setdefault(str(failure["why"]), []).append(failure["path"])
@@ -82,3 +77,55 @@ def _unsettled(failures: list[dict[str, object]]) -> list[str]:
         f"(path {', '.join(map(str, paths[:8]))}{', ...' * (len(paths) > 8)})"
         for why, paths in reasons.items()
     ]
+
+
+def redesign_lines(report: dict[str, Any]) -> list[str]:
+    """A redesign's report in a few lines; raises LookupError or TypeError where a figure is missing."""
+    units = unit_told(report["mesh"]["units"])
+    return [
+        *_edited_part(report),
+        *(_round(each, units) for each in report["rounds"]),
+        *_edit(report["redesign"], units),
+        *_warnings(report),
+    ]
+
+
+def _edited_part(report: dict[str, Any]) -> list[str]:
+    part, winding = report["mesh"], report["winding"]
+    return [
+        f"part      {part['name']}: {part['vertices']} vertices, {part['faces']} faces",
+        f"winding   {winding['revolutions']:.4g} revolutions, {winding['why']}; "
+        f"{winding['paths_per_family']} paths per family",
+    ]
+
+
+def _round(figures: dict[str, Any], units: str) -> str:
+    bridged, gap = figures["bridged"], figures["max_gap"]
+    return (
+        f"round {figures['stage']}.{figures['round']} bridged {100 * bridged['before']:.2g} % to "
+        f"{100 * bridged['after']:.2g} %, gap {quantity(gap['before'], units, 3)} to {quantity(gap['after'], units, 3)}"
+    )
+
+
+def _edit(figures: dict[str, Any], units: str) -> list[str]:
+    """What the edit came to, on the mesh that was fitted and wound again."""
+    bridged, gap, moved, volume = figures["bridged"], figures["max_gap"], figures["displacement"], figures["volume"]
+    return [
+        f"wound     from the edited mesh: bridged {100 * bridged['before']:.3g} % before, "
+        f"{100 * bridged['after']:.3g} % after; largest gap {quantity(gap['before'], units, 3)} before, "
+        f"{quantity(gap['after'], units, 3)} after (gaps below {quantity(figures['threshold'], units, 2)} are ignored)",
+        f"moved     up to {quantity(moved['max'], units, 3)}, {quantity(moved['mean'], units, 3)} on average; "
+        + (f"volume {100 * volume['relative']:+.2g} %" if volume["relative"] is not None else "volume unknown"),
+    ]
+
+
+def _warnings(report: dict[str, Any]) -> list[str]:
+    """Warnings and notes, and how the redesign ended."""
+    figures, failed = report["redesign"], report["wound"]["after"]["not_converged"]
+    lines = []
+    if figures["faces_turned_over"]:
+        lines.append(f"warning   the edit turned {figures['faces_turned_over']} faces over; give a --bound")
+    if failed:
+        lines.append(f"warning   {len(failed)} paths do not converge on the edited part: {failed[0]['why']}")
+    lines += [note_line(note) for note in report["notes"]]
+    return [*lines, f"{'outcome' if figures['windable'] else 'warning'}   {figures['advice']}"]

@@ -1,15 +1,16 @@
-"""The rounds of the redesign on a surface: wind, move the control points, wind again (section 6.4)."""
+"""The rounds of an edit on one surface: wind, move the control points, wind again (section 6.4)."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy import sparse
 
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.editing.demands import press, reach
 from meshwind.editing.edited_mesh import within
-from meshwind.editing.freedom import Frozen, free_moves, frozen_mask
+from meshwind.editing.freedom import free_moves, frozen_mask
+from meshwind.editing.options import EditOptions
 from meshwind.editing.program import ACCURACY
 from meshwind.editing.result import Outcome, Round
 from meshwind.editing.step import Step, energy, step
@@ -17,24 +18,19 @@ from meshwind.path import Paths, solve
 from meshwind.path.lengths import lifted_share
 from meshwind.planning.families import families
 from meshwind.surface.surface import Surface
+from meshwind.workflow.clock import Progress
+from meshwind.workflow.options import Options
 
-FAIRNESS = 0.4
-"""Wave length over the part's size at which a change of the net costs as much by its bending as by its size."""
-PRESSING = 0.2
-"""Least normal curvature along the fibres, times the part's size: a bow of 1/40 of a chord as long as the part.
-
-A refit of the edited mesh moves the surface by its fit error over waves of some spans; with this much the fibres of
-the sample parts lift off again by less than that error.
-"""
 FIRM = 0.3
-"""Of the threshold: the rounds go on while a gap is above this, so that what is left has room for the refit."""
+"""Of the threshold: the rounds go on while a gap is above this, so that there is room for the error of the refit."""
 LEAST_GAP = 1e-6
 """Threshold over the part's size where the surface carries no fit error."""
 FAR_SHORT = 0.5
 """Of the largest gap: a surface that is left further below the fibre cannot reach it, and such an edit is not made."""
-PATIENCE = 2
-
-Tell = Callable[[str], None]
+MAX_IDLE_ROUNDS = 2
+"""Rounds in succession without a gain after which the edit stops."""
+UNSOLVED = 1e3 * ACCURACY
+"""KKT residual above which a round's program counts as not solved."""
 
 
 @dataclass(frozen=True)
@@ -53,84 +49,123 @@ class Edit:
         return lifted_share(self.paths.gap, self.threshold)
 
 
-def edit(  # noqa: PLR0913
-    surface: Surface,
-    *,
-    revolutions: float,
-    paths: int = 12,
-    particles: int = 401,
-    rounds: int = 10,
-    frozen: Frozen = None,
-    bound: float | None = None,
-    symmetry: int = 1,
-    fairness: float = FAIRNESS,
-    pressing: float = PRESSING,
-    threshold: float | None = None,
-    progress: Tell | None = None,
+@dataclass(frozen=True)
+class _State:
+    """A surface with the paths on it."""
+
+    surface: Surface
+    paths: Paths
+
+    @property
+    def gap(self) -> float:
+        """Largest gap of the paths."""
+        return float(self.paths.gap.max())
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """What is the same in all rounds: the surface before them, the free moves and their cost, and the limits."""
+
+    first: Surface
+    moves: sparse.csr_array
+    cost: sparse.csr_array
+    curvature: float
+    bound: float | None
+    threshold: float
+
+    def moved(self, surface: Surface) -> Floats:
+        """How far the control points of a surface have been moved (m, 3)."""
+        return np.asarray((surface.control_points - self.first.control_points).reshape(-1, 3))
+
+    def step(self, now: _State) -> Step:
+        """Solve for the change of the control points that the paths demand."""
+        demands = reach(now.paths), press(now.paths, self.curvature)
+        return step(*demands, self.cost, self.moves, self.moved(now.surface), self.bound, self.threshold)
+
+    def after(self, now: _State, found: Step) -> _State:
+        """Change the control points, and lay the paths again from where they were."""
+        # round-off may leave the bound's ball
+        moves = within(self.moved(now.surface) + found.change, self.bound)
+        net = self.first.control_points
+        surface, uv = replace(self.first, control_points=net + moves.reshape(net.shape)), np.array(now.paths.uv)
+        laid = solve(surface, uv[:, 0], uv[:, -1], family=now.paths.family, particles=uv.shape[1], initial=uv)
+        return _State(surface, laid)
+
+    def merit(self, state: _State) -> tuple[float, float]:
+        """Bridged share and largest gap, in this order: less is better."""
+        return lifted_share(state.paths.gap, self.threshold), state.gap
+
+    def figures(self, before: _State, after: _State, found: Step) -> Round:
+        """The figures of a round."""
+        return Round(
+            threshold=self.threshold,
+            bridged_before=lifted_share(before.paths.gap, self.threshold),
+            bridged_after=lifted_share(after.paths.gap, self.threshold),
+            gap_before=before.gap,
+            gap_after=after.gap,
+            change=float(np.linalg.norm(self.moved(after.surface), axis=1).max()),
+            objective=found.objective,
+            shortfall=found.shortfall,
+            primal=found.solution.primal,
+            dual=found.solution.dual,
+            rows=found.rows,
+            iterations=found.solution.iterations,
+        )
+
+
+def edit(
+    surface: Surface, winding: Options, options: EditOptions | None = None, progress: Progress | None = None
 ) -> Edit:
     """Move the control points as little as possible until no path of two families bridges.
 
-    paths, revolutions, particles: as in `families` and `solve`.  Between the paths asked for others are wound, no
-    further apart than the control points, so that the part does not depend on where the first one starts.
-    rounds: at most so many; frozen: mask (nu, nv) of control points that stay, or a function from their places
-    (m, 3) to one (m,); bound: largest displacement in the surface's units; symmetry: the order about u that is
-    kept; fairness, pressing: see FAIRNESS and PRESSING, 0 for (6.12) alone; threshold: a gap up to this is none, by
-    default the largest distance of a vertex to the fitted surface.
+    winding: numbers of paths, revolutions and particles.  Between these paths others are wound, no further apart than
+    the control points, so that the result does not depend on where the first path starts.  progress: called with a
+    line before each round.
     """
-    check(rounds, bound, fairness, pressing, threshold)
-    limit = threshold_of(surface, threshold)
-    moves = free_moves(surface, frozen_mask(surface, frozen), symmetry)
+    options = options or EditOptions()
+    limit = threshold_of(surface, options.threshold)
+    moves = free_moves(surface, frozen_mask(surface, options.frozen), options.symmetry)
     if moves.shape[1] == 0:
         raise BadInputError("every control point is frozen; leave some free to move")
-    cost = energy(surface, fairness)
-    asked = families(surface, paths, revolutions)
-    between = -(-surface.control_points.shape[0] // paths)
-    ends = families(surface, paths * between, revolutions)
+    cost = energy(surface, options.fairness)
+    problem = _Problem(surface, moves, cost, options.pressing / surface.size, options.bound, limit)
+    revolutions, particles = float(winding.revolutions), winding.particles
+    per_gap = -(-surface.control_points.shape[0] // winding.paths)
+    ends = families(surface, winding.paths * per_gap, revolutions)
     laid = solve(surface, ends.start, ends.end, family=ends.family, particles=particles)
-    now, figures, best, idle = surface, list[Round](), (surface, laid), 0
-    outcome = Outcome.WINDABLE if laid.gap.max() <= limit else Outcome.ROUNDS_SPENT
-    for number in range(rounds):
-        if laid.gap.max() <= FIRM * limit:
+    best, outcome, figures = _rounds(problem, _State(surface, laid), options.rounds, progress)
+    own = families(surface, winding.paths, revolutions)
+    curves = np.array(best.paths.uv[np.arange(2 * winding.paths) * per_gap])
+    final = solve(best.surface, own.start, own.end, family=own.family, particles=particles, initial=curves)
+    return Edit(figures, best.surface, final, outcome, limit)
+
+
+def _rounds(
+    problem: _Problem, now: _State, most: int, progress: Progress | None
+) -> tuple[_State, Outcome, tuple[Round, ...]]:
+    """Do up to so many rounds; returns the best state, the outcome, and the figures of the rounds."""
+    limit, best, idle, figures = problem.threshold, now, 0, list[Round]()
+    outcome = Outcome.ROUNDS_SPENT
+    for number in range(most):
+        if now.gap <= FIRM * limit:
             break
         if progress is not None:
-            progress(
-                f"round {number + 1}: {100 * lifted_share(laid.gap, limit):.2g}% bridged, gap {laid.gap.max():.3g}"
-            )
-        moved = (now.control_points - surface.control_points).reshape(-1, 3)
-        curvature = pressing / surface.size
-        found = step(reach(laid), press(laid, curvature), cost, moves, moved, bound, limit)
-        if found.shortfall > max(limit, FAR_SHORT * float(laid.gap.max())):
+            share = lifted_share(now.paths.gap, limit)
+            progress(f"round {number + 1}: {100 * share:.2g}% bridged, gap {now.gap:.3g}")
+        found = problem.step(now)
+        if found.shortfall > max(limit, FAR_SHORT * now.gap):
             outcome = Outcome.OUT_OF_REACH
-            figures.append(_figures(laid, laid, found, now, surface, limit))
+            figures.append(problem.figures(now, now, found))
             break
-        now = _moved(surface, moved + found.change, bound)
-        after = _rewound(now, laid, particles)
-        figures.append(_figures(laid, after, found, now, surface, limit))
-        laid = after
-        better = _worst(laid, limit) < _worst(best[1], limit)
-        idle = 0 if better else idle + 1
-        best = (now, laid) if better else best
-        outcome = _outcome(laid, found, limit, idle)
+        after = problem.after(now, found)
+        figures.append(problem.figures(now, after, found))
+        now = after
+        better = problem.merit(now) < problem.merit(best)
+        best, idle = (now, 0) if better else (best, idle + 1)
+        outcome = _outcome(now, found, limit, idle)
         if outcome != Outcome.ROUNDS_SPENT and (outcome != Outcome.WINDABLE or not better):
             break
-    now, laid = best
-    if laid.gap.max() <= limit:
-        outcome = Outcome.WINDABLE
-    mine = np.arange(2 * paths) * between
-    own = solve(now, asked.start, asked.end, family=asked.family, particles=particles, initial=np.array(laid.uv[mine]))
-    return Edit(tuple(figures), now, own, outcome, limit)
-
-
-def check(rounds: int, bound: float | None, fairness: float, pressing: float, threshold: float | None) -> None:
-    """Raise BadInputError for a number that makes no sense."""
-    if not isinstance(rounds, int | np.integer) or rounds < 0:
-        raise BadInputError(f"rounds is {rounds}; give a whole number from 0 up")
-    for name, value, least in (("bound", bound, "above 0"), ("threshold", threshold, "above 0")):
-        if value is not None and not (np.isfinite(value) and value > 0):
-            raise BadInputError(f"{name} is {value}; give a length {least}, or None")
-    for name, value in (("fairness", fairness), ("pressing", pressing)):
-        if not (np.isfinite(value) and value >= 0):
-            raise BadInputError(f"{name} is {value}; give a number from 0 up")
+    return best, Outcome.WINDABLE if best.gap <= limit else outcome, tuple(figures)
 
 
 def threshold_of(surface: Surface, given: float | None = None) -> float:
@@ -141,42 +176,9 @@ def threshold_of(surface: Surface, given: float | None = None) -> float:
     return max(error, LEAST_GAP * surface.size)
 
 
-def _moved(surface: Surface, moved: Floats, bound: float | None) -> Surface:
-    """The surface with its control points moved by `moved` (m, 3), pulled back to the bound's ball by round-off."""
-    moves = within(moved, bound).reshape(surface.control_points.shape)
-    return replace(surface, control_points=surface.control_points + moves)
-
-
-def _rewound(surface: Surface, laid: Paths, particles: int) -> Paths:
-    """The paths laid again from where they were."""
-    uv = np.array(laid.uv)
-    return solve(surface, uv[:, 0], uv[:, -1], family=laid.family, particles=particles, initial=uv)
-
-
-def _worst(paths: Paths, threshold: float) -> tuple[float, float]:
-    return lifted_share(paths.gap, threshold), float(paths.gap.max())
-
-
-def _figures(before: Paths, after: Paths, found: Step, now: Surface, first: Surface, limit: float) -> Round:
-    return Round(
-        threshold=limit,
-        bridged_before=lifted_share(before.gap, limit),
-        bridged_after=lifted_share(after.gap, limit),
-        gap_before=float(before.gap.max()),
-        gap_after=float(after.gap.max()),
-        change=float(np.linalg.norm(now.control_points - first.control_points, axis=2).max()),
-        objective=found.objective,
-        shortfall=found.shortfall,
-        primal=found.solution.primal,
-        dual=found.solution.dual,
-        rows=found.rows,
-        iterations=found.solution.iterations,
-    )
-
-
-def _outcome(laid: Paths, found: Step, limit: float, idle: int) -> Outcome:
-    if laid.gap.max() <= limit:
+def _outcome(now: _State, found: Step, limit: float, idle: int) -> Outcome:
+    if now.gap <= limit:
         return Outcome.WINDABLE
-    if max(found.solution.primal, found.solution.dual) > 1e3 * ACCURACY:
+    if max(found.solution.primal, found.solution.dual) > UNSOLVED:
         return Outcome.NOT_SOLVED
-    return Outcome.NO_GAIN if idle >= PATIENCE else Outcome.ROUNDS_SPENT
+    return Outcome.NO_GAIN if idle >= MAX_IDLE_ROUNDS else Outcome.ROUNDS_SPENT

@@ -1,50 +1,24 @@
-"""A mesh fitted and wound as a run from its file does: the proof of a redesign, and what it starts from."""
+"""A mesh fitted and wound as `wind` does it: what a redesign starts from, and the proof that it worked."""
 
 from dataclasses import dataclass
 
-from meshwind.chart import Chart, flatten
+from meshwind.chart import Chart
 from meshwind.core.cast import Bools
 from meshwind.editing.edit import threshold_of
-from meshwind.mesh import Mesh, annulus
-from meshwind.path import Paths, solve
+from meshwind.mesh import Mesh
+from meshwind.path import Paths
 from meshwind.path.lengths import lifted_share
 from meshwind.path.paths import converged_or_all
-from meshwind.planning.families import families
-from meshwind.surface import Surface, fit
-
-
-def fitted(mesh: Mesh, ends: str, opening: float | None, tolerance: float) -> tuple[Chart, Surface]:
-    """A mesh's chart and surface."""
-    chart = flatten(annulus(mesh, ends=ends, opening=opening))
-    return chart, fit(chart, tolerance)
+from meshwind.surface import Surface
+from meshwind.workflow.clock import Clock
+from meshwind.workflow.options import Options
+from meshwind.workflow.part import Part, Source, fit_part
+from meshwind.workflow.winding import lay
 
 
 @dataclass(frozen=True)
-class Winding:
-    """What is wound on each mesh, and how it is opened and fitted: as in `wind`; threshold as in `redesign`."""
-
-    revolutions: float
-    paths: int
-    particles: int
-    threshold: float | None
-    ends: str
-    opening: float | None
-    tolerance: float
-
-    def fitted(self, mesh: Mesh) -> tuple[Chart, Surface]:
-        """The mesh's chart and surface."""
-        return fitted(mesh, self.ends, self.opening, self.tolerance)
-
-    def wound(self, chart: Chart, surface: Surface) -> "Wound":
-        """The paths on a surface."""
-        rims = families(surface, self.paths, self.revolutions)
-        laid = solve(surface, rims.start, rims.end, family=rims.family, particles=self.particles)
-        return Wound(chart, surface, laid, threshold_of(surface, self.threshold))
-
-
-@dataclass(frozen=True)
-class Wound:
-    """A mesh's chart, surface and paths; a gap up to the threshold is none."""
+class Proof:
+    """A mesh's chart, surface and paths; gaps up to the threshold count as none."""
 
     chart: Chart
     surface: Surface
@@ -53,7 +27,7 @@ class Wound:
 
     @property
     def counted(self) -> Bools:
-        """The paths (p,) whose gaps count: those at rest, or all where none is."""
+        """Mask (p,) of the paths whose gaps count: the converged ones, or all where none is."""
         return converged_or_all(self.paths.status)
 
     @property
@@ -67,6 +41,18 @@ class Wound:
         return lifted_share(self.paths.gap[self.counted], self.threshold)
 
     @property
-    def sound(self) -> bool:
+    def windable(self) -> bool:
         """Whether no such path bridges."""
         return self.gap <= self.threshold
+
+
+def prove(mesh: Mesh, winding: Options, threshold: float | None) -> Proof:
+    """Fit and wind a mesh; threshold as in `redesign`."""
+    return prove_fitted(fit_part(Source(mesh), winding, Clock()), winding, threshold)
+
+
+def prove_fitted(part: Part, winding: Options, threshold: float | None) -> Proof:
+    """Wind a part that is fitted; the number of revolutions must be given."""
+    surface = part.surface
+    laid = lay(surface, winding, float(winding.revolutions))
+    return Proof(part.chart, surface, laid, threshold_of(surface, threshold))

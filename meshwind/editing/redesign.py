@@ -1,34 +1,38 @@
 """From a mesh to the nearest one that can be wound: the automatic surface editing of section 6.4."""
 
-from dataclasses import dataclass
-from os import PathLike, fspath
-from typing import Any
+from dataclasses import dataclass, replace
+from os import PathLike
 
 import numpy as np
 
 from meshwind.core.cast import Floats
 from meshwind.core.cast import frozen as immutable
 from meshwind.core.errors import BadInputError
-from meshwind.core.parsing import AUTO
-from meshwind.editing.edit import FAIRNESS, PRESSING, Edit, Tell, check, edit
+from meshwind.editing.edit import Edit, edit
 from meshwind.editing.edited_mesh import displaced, displacement, turned_over, volume_change, within
 from meshwind.editing.freedom import Frozen
-from meshwind.editing.proof import Winding, Wound, fitted
-from meshwind.editing.region import Region, parse
+from meshwind.editing.options import REVOLUTIONS, EditOptions
+from meshwind.editing.proof import Proof, prove, prove_fitted
+from meshwind.editing.region import FrozenPart, frozen_part
 from meshwind.editing.result import Outcome, Round
-from meshwind.mesh import Mesh, read
+from meshwind.mesh import Mesh
 from meshwind.mesh.geometry.measure import volume
-from meshwind.mesh.io.scalars import Scalars, read_scalars
 from meshwind.path import Paths, Status
-from meshwind.planning.revolutions import Revolutions, choose_revolutions
-from meshwind.surface import Surface
+from meshwind.planning.revolutions import Revolutions
+from meshwind.workflow.clock import Clock, Progress
+from meshwind.workflow.options import Options
+from meshwind.workflow.part import fit_part, read_source
+from meshwind.workflow.winding import chosen_revolutions
 
 STAGES = 3
-"""So often a mesh is edited at most: fitted anew, it is not quite the surface that was edited, and may bridge again."""
+"""Largest number of surfaces that are edited: the one fitted to an edited mesh is not quite the edited one, and fibres
+may bridge on it again."""
 FIRMER, TIGHTER, MORE_ROUNDS = 1.5, 0.1, 2
-"""How a later stage is asked: so much more pressing, so much of the threshold, and at most so many rounds.  On the
-sample cast the refit lifts fibres by 0.003 mm, within its fit error; one such stage moves the part by 1.2 mm more, and
-no fibre leaves it."""
+"""Of each later stage: the factor of the pressing, the factor of the threshold, and the largest number of rounds.
+
+On the sample cast the refit lifts fibres by 0.003 mm, within its fit error; one such stage moves the part by 1.2 mm
+more, and no fibre leaves it.
+"""
 LEAST_LEFT = 0.02
 """Of the bound: what a later stage may always move, as the sum is cut down to the bound afterwards."""
 
@@ -45,7 +49,7 @@ class Redesign:
         Edited mesh, with the vertices and faces of `part` in their order.
     displacement : ndarray of float, shape (n, 3)
         Displacements of the vertices, in the mesh's unit.
-    before, after : Wound
+    before, after : Proof
         Chart, surface and paths of `part` and of `mesh`, each fitted and wound as by `wind`.
     stages : tuple of tuple of Round
         Figures of each round, for each of the fitted surfaces that were edited.
@@ -73,8 +77,8 @@ class Redesign:
     part: Mesh
     mesh: Mesh
     displacement: Floats
-    before: Wound
-    after: Wound
+    before: Proof
+    after: Proof
     stages: tuple[tuple[Round, ...], ...]
     outcome: Outcome
     revolutions: float
@@ -115,21 +119,21 @@ class Redesign:
 def redesign(  # noqa: PLR0913
     mesh: str | PathLike[str] | Mesh,
     *,
-    revolutions: float | str,
-    paths: int = 12,
-    particles: int = 401,
-    rounds: int = 10,
-    frozen: Frozen | str = None,
-    bound: float | None = None,
-    symmetry: int = 1,
-    fairness: float = FAIRNESS,
-    pressing: float = PRESSING,
-    threshold: float | None = None,
-    component: int = 0,
-    ends: str = "auto",
-    opening: float | None = None,
-    tolerance: float = 1e-5,
-    progress: Tell | None = None,
+    revolutions: float | str = REVOLUTIONS,
+    paths: int = Options.paths,
+    particles: int | None = Options.particles,
+    rounds: int = EditOptions.rounds,
+    frozen: Frozen | str = EditOptions.frozen,
+    bound: float | None = EditOptions.bound,
+    symmetry: int = EditOptions.symmetry,
+    fairness: float = EditOptions.fairness,
+    pressing: float = EditOptions.pressing,
+    threshold: float | None = EditOptions.threshold,
+    component: int = Options.component,
+    ends: str = Options.ends,
+    opening: float | None = Options.opening,
+    tolerance: float = Options.tolerance,
+    progress: Progress | None = None,
 ) -> Redesign:
     """Change a part as little as possible until no path of two families bridges.
 
@@ -140,7 +144,7 @@ def redesign(  # noqa: PLR0913
     ----------
     mesh : str, PathLike or Mesh
         Mesh, or the path of its file.
-    revolutions : float or str
+    revolutions : float or str, default "auto"
         Revolutions of the winding, or "auto" to have them chosen.
     paths : int, default 12
         Number of paths per family.
@@ -191,154 +195,120 @@ def redesign(  # noqa: PLR0913
     >>> edited.outcome.advice
     'no fibre bridges any more'
     """
-    if not isinstance(mesh, str | PathLike | Mesh):
-        raise BadInputError(f"mesh is of type {type(mesh).__name__}; give the path of a mesh file or a meshwind.Mesh")
-    tell: Tell = progress if progress is not None else _silent
-    check(rounds, bound, fairness, pressing, threshold)
-    held = _held(frozen, mesh)
-    tell("fit")
-    part = mesh if isinstance(mesh, Mesh) else read(mesh, component)
-    chart, surface = fitted(part, ends, opening, tolerance)
-    chosen = _chosen(surface, revolutions, paths, particles, tell)
-    turns = chosen.choice if chosen is not None else float(revolutions)
-    winding = Winding(turns, paths, particles, threshold, ends, opening, tolerance)
-    settings = {
-        "revolutions": turns, "paths": paths, "particles": particles, "symmetry": symmetry, "fairness": fairness,
-        "pressing": pressing, "threshold": threshold, "progress": progress,
-    }  # fmt: skip
-    first = winding.wound(chart, surface)
-    best, stages, outcome = _edited(part, first, winding, _Limits(rounds, bound, held), settings, tell)
+    options = EditOptions(bound, frozen, symmetry, threshold, rounds, fairness, pressing)
+    winding = Options(
+        paths, revolutions, particles, component=component, ends=ends, opening=opening, tolerance=tolerance
+    )  # fmt: skip
+    if winding.particles is None:
+        raise BadInputError("particles is None; give a whole number, the same for all rounds of an edit")
+    report = progress or _ignore
+    region = frozen_part(frozen, mesh)
+    report("fit")
+    source = read_source(mesh, winding)
+    part = fit_part(source, winding, Clock())
+    chosen = chosen_revolutions(part.surface, winding, Clock(progress), further=False)
+    if chosen is not None:
+        winding = replace(winding, revolutions=chosen.choice)
+    first = prove_fitted(part, winding, threshold)
+    run = _Run(source.mesh, winding, options, region, report)
+    best, stages, outcome = _edit_in_stages(run, _Candidate(np.zeros_like(source.mesh.vertices), first))
+    vertices, faces = source.mesh.vertices, source.mesh.faces
     return Redesign(
-        part=part,
-        mesh=displaced(part, best.moves),
+        part=source.mesh,
+        mesh=displaced(source.mesh, best.moves),
         displacement=immutable(best.moves),
         before=first,
-        after=best.wound,
+        after=best.proof,
         stages=stages,
         outcome=outcome,
-        revolutions=turns,
+        revolutions=float(winding.revolutions),
         chosen=chosen,
-        volume=volume(part.vertices, part.faces),
-        volume_change=volume_change(part, best.moves),
-        turned_over=turned_over(part, best.moves),
+        volume=volume(vertices, faces),
+        volume_change=volume_change(source.mesh, best.moves),
+        turned_over=turned_over(source.mesh, best.moves),
     )
 
 
-def _silent(_: str) -> None:
-    """Say nothing."""
-
-
-def _chosen(surface: Surface, revolutions: float | str, paths: int, particles: int, tell: Tell) -> Revolutions | None:
-    """The revolutions, where they are to be chosen."""
-    if not isinstance(revolutions, str):
-        return None
-    if revolutions != AUTO:
-        raise BadInputError(f"revolutions is {revolutions!r}; give a number from 0 up, or {AUTO!r}")
-    tell("choose")
-    return choose_revolutions(surface, paths=paths, particles=particles, further=False)
+def _ignore(_: str) -> None:
+    """Report no progress."""
 
 
 @dataclass(frozen=True)
-class _Held:
-    """What must not move: as it was given, or a region with the field that it may be told by."""
-
-    given: Frozen
-    region: Region | None = None
-    scalars: Scalars | None = None
-
-    def on(self, wound: Wound) -> Frozen:
-        """The same on a surface."""
-        if self.region is None:
-            return self.given
-        return self.region.control_points(wound.surface, wound.chart.uv, self.scalars)
-
-    @property
-    def lasts(self) -> bool:
-        """Whether it can be told on another control net."""
-        return self.region is not None or self.given is None or callable(self.given)
-
-
-def _held(frozen: Frozen | str, mesh: str | PathLike[str] | Mesh) -> _Held:
-    if not isinstance(frozen, str):
-        return _Held(frozen)
-    region = parse(frozen)
-    if not region.field:
-        return _Held(None, region)
-    if isinstance(mesh, Mesh):
-        raise BadInputError(f"frozen is {frozen!r} but the mesh is no file; give a mask of control points")
-    return _Held(None, region, read_scalars(fspath(mesh), region.field))
-
-
-@dataclass(frozen=True)
-class _Limits:
-    """At most so many rounds in all, the largest displacement in all, and what must not move."""
-
-    rounds: int
-    bound: float | None
-    held: _Held
-
-
-@dataclass(frozen=True)
-class _Moved:
-    """A mesh whose vertices were moved by `moves` (n, 3), fitted and wound."""
+class _Candidate:
+    """The mesh with its vertices moved by `moves` (n, 3), fitted and wound."""
 
     moves: Floats
-    wound: Wound
+    proof: Proof
 
     @property
     def merit(self) -> tuple[float, float]:
-        """The less the better."""
-        return self.wound.bridged, self.wound.gap
+        """Bridged share and largest gap, in this order: less is better."""
+        return self.proof.bridged, self.proof.gap
 
 
-def _edited(
-    part: Mesh, first: Wound, winding: Winding, limits: _Limits, settings: dict[str, Any], tell: Tell
-) -> tuple[_Moved, tuple[tuple[Round, ...], ...], Outcome]:
+@dataclass(frozen=True)
+class _Run:
+    """What is the same in all stages: the mesh, its winding, the options as given, and what must not move."""
+
+    mesh: Mesh
+    winding: Options
+    options: EditOptions
+    frozen: FrozenPart
+    progress: Progress
+
+    def stage(self, now: _Candidate, number: int, rounds: int) -> Edit:
+        """Edit the surface of a candidate; each stage after the first is tighter than the one before."""
+        given = self.options
+        options = replace(given, rounds=rounds, frozen=self.frozen.on(now.proof.surface, now.proof.chart.uv),
+                          bound=_bound_left(given.bound, now.moves))  # fmt: skip
+        if number > 0:
+            pressing, threshold = given.pressing * FIRMER**number, TIGHTER * now.proof.threshold
+            options = replace(options, rounds=min(rounds, MORE_ROUNDS), pressing=pressing, threshold=threshold)
+        return edit(now.proof.surface, self.winding, options, self.progress)
+
+    def after(self, now: _Candidate, found: Edit) -> _Candidate:
+        """Move the vertices as the surface was moved, then fit and wind the mesh."""
+        self.progress("fit")
+        more = displacement(now.proof.chart, now.proof.surface, found.surface)
+        moves = within(now.moves + more, self.options.bound)
+        return _Candidate(moves, prove(displaced(self.mesh, moves), self.winding, self.options.threshold))
+
+    def wants_more(self, proof: Proof) -> bool:
+        """Whether a fibre bridges, or leaves the surface at all where the user did not say how far it may."""
+        return not proof.windable or (self.options.threshold is None and proof.gap > 0.0)
+
+    def can_go_on(self, proof: Proof) -> bool:
+        """Whether what must not move and the symmetry can be kept on the control net of another surface."""
+        around = proof.surface.control_points.shape[0]
+        return self.frozen.on_any_surface and around % self.options.symmetry == 0
+
+
+def _edit_in_stages(run: _Run, first: _Candidate) -> tuple[_Candidate, tuple[tuple[Round, ...], ...], Outcome]:
     """Edit the fitted surface, and again the one that is fitted to the edited mesh while fibres leave that."""
-    best = now = _Moved(np.zeros_like(part.vertices), first)
-    found = _stage(now, limits, limits.rounds, settings)
-    stages, outcome, left = list[tuple[Round, ...]](), found.outcome, limits.rounds
+    best = now = first
+    left = run.options.rounds
+    found = run.stage(now, 0, left)
+    stages, outcome = list[tuple[Round, ...]](), found.outcome
     while found.rounds:
         stages.append(found.rounds)
         left -= len(found.rounds)
-        tell("fit")
-        more = displacement(now.wound.chart, now.wound.surface, found.surface)
-        moves = within(now.moves + more, limits.bound)
-        now = _Moved(moves, winding.wound(*winding.fitted(displaced(part, moves))))
+        now = run.after(now, found)
         gains = now.merit < best.merit
         best = min(now, best, key=lambda each: each.merit)
-        if not (gains and outcome == Outcome.WINDABLE and _wants_more(now.wound, winding)):
+        if not (gains and outcome == Outcome.WINDABLE and run.wants_more(now.proof)):
             break
-        if len(stages) == STAGES or not (left and limits.held.lasts and _symmetric(now.wound, settings["symmetry"])):
+        if len(stages) == STAGES or not (left and run.can_go_on(now.proof)):
             break
-        firmer = settings["pressing"] * FIRMER ** len(stages)
-        tighter = settings | {"pressing": firmer, "threshold": TIGHTER * now.wound.threshold}
-        found = _stage(now, limits, min(left, MORE_ROUNDS), tighter)
-    if best.wound.sound:
+        found = run.stage(now, len(stages), left)
+    if best.proof.windable:
         outcome = Outcome.WINDABLE
     elif outcome == Outcome.WINDABLE:
         outcome = Outcome.NOT_KEPT if left > 0 else Outcome.ROUNDS_SPENT
     return best, tuple(stages), outcome
 
 
-def _stage(now: _Moved, limits: _Limits, rounds: int, settings: dict[str, Any]) -> Edit:
-    """Edit the surface as it is now."""
-    bound = _rest(limits.bound, now.moves)
-    return edit(now.wound.surface, rounds=rounds, frozen=limits.held.on(now.wound), bound=bound, **settings)
-
-
-def _wants_more(wound: Wound, winding: Winding) -> bool:
-    """Whether a fibre bridges, or leaves the surface at all where the user did not say how far it may."""
-    return not wound.sound or (winding.threshold is None and wound.gap > 0.0)
-
-
-def _rest(bound: float | None, moves: Floats) -> float | None:
-    """What of the bound is left after the moves (n, 3) so far."""
+def _bound_left(bound: float | None, moves: Floats) -> float | None:
+    """What is left of the bound after the moves (n, 3) so far."""
     if bound is None:
         return None
     return max(bound - float(np.linalg.norm(moves, axis=1).max()), LEAST_LEFT * bound)
-
-
-def _symmetric(wound: Wound, order: int) -> bool:
-    """Whether a symmetry of that order can be kept on another control net."""
-    return wound.surface.control_points.shape[0] % order == 0

@@ -1,4 +1,4 @@
-"""A part of the surface in words, "v<0.1, z>20": where a redesign must change nothing."""
+"""What a redesign must not move: control points, or a region of the surface in words such as "v<0.1, z>20"."""
 
 import re
 from dataclasses import dataclass
@@ -8,18 +8,19 @@ from scipy.spatial import cKDTree
 
 from meshwind.core.cast import Bools, Floats
 from meshwind.core.errors import BadInputError
+from meshwind.editing.freedom import Frozen
 from meshwind.editing.stencil import weights
 from meshwind.mesh.io.scalars import Scalars
 from meshwind.surface.surface import Surface
+from meshwind.workflow.options import FIELD
+from meshwind.workflow.part import MeshLike, read_field
 
-FIELD = "field:"
-"""Before the name of a scalar of the mesh file: the region is where it is above 0."""
-PER_SPAN = 6
-"""Samples of the surface a span and direction: a control point that moves any sample of the region stays."""
+SAMPLES_PER_SPAN = 6
+"""Samples of the surface per span and direction: a control point that moves any sample of the region is frozen."""
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
 _RANGE = re.compile(rf"(?:({_NUMBER})<)?([uvxyz])(?:([<>])({_NUMBER}))?", re.IGNORECASE)
 _ADVICE = (
-    'give ranges of u, v, x, y or z by commas, as in "v<0.1, 20<z<35", or field:NAME for a scalar of the mesh file'
+    f'give ranges of u, v, x, y or z by commas, as in "v<0.1, 20<z<35", or {FIELD}NAME for a scalar of the mesh file'
 )
 
 
@@ -31,8 +32,8 @@ class Range:
     low: float
     high: float
 
-    def holds(self, uv: Floats, points: Floats) -> Bools:
-        """Mask (k,) of the places uv (k, 2), at points (k, 3), that lie in it."""
+    def contains(self, uv: Floats, points: Floats) -> Bools:
+        """Mask (k,) of the points (k, 3), with parameters uv (k, 2), that lie in it."""
         value = uv[:, 0] % 1.0 if self.name == "u" else uv[:, 1] if self.name == "v" else None
         value = points[:, "xyz".index(self.name)] if value is None else value
         return np.asarray((value > self.low) & (value < self.high))
@@ -40,9 +41,9 @@ class Range:
 
 @dataclass(frozen=True)
 class Region:
-    """All places that lie in one of the ranges, or where a field of the mesh file is above 0; text is how it was told.
+    """All points that lie in one of the ranges, or where a scalar of the mesh file is above 0.
 
-    field: name of the scalar, "" without one.
+    field: name of the scalar, "" without one; text: the region as it was given.
     """
 
     ranges: tuple[Range, ...]
@@ -50,33 +51,33 @@ class Region:
     text: str
 
     def control_points(self, surface: Surface, uv: Floats, scalars: Scalars | None = None) -> Bools:
-        """Mask (nu, nv) of the control points that the surface within the region hangs on.
+        """Mask (nu, nv) of the control points that the surface within the region depends on.
 
-        uv (n, 2): places that count beside a lattice over the whole surface, such as the vertices'.  Raises
-        BadInputError where the region is empty.
+        uv (n, 2): parameters of points that are looked at beside a lattice over the whole surface, such as the mesh's
+        vertices.  Raises BadInputError where the region is empty.
         """
-        around, along = (PER_SPAN * spans for spans in surface.spans)
+        around, along = (SAMPLES_PER_SPAN * spans for spans in surface.spans)
         u, v = np.meshgrid(np.arange(around) / around, np.linspace(0.0, 1.0, along + 1), indexing="ij")
-        places = np.concatenate([np.stack([u.ravel(), v.ravel()], axis=1), uv])
-        inside = self._holds(places, surface.points(places), scalars)
+        samples = np.concatenate([np.stack([u.ravel(), v.ravel()], axis=1), uv])
+        inside = self._contains(samples, surface.points(samples), scalars)
         if not inside.any():
-            raise BadInputError(f"freeze {self.text!r} holds nothing of the part; {_ADVICE}")
-        which, _ = weights(surface, places[inside], ((0, 0),))
+            raise BadInputError(f"freeze {self.text!r} contains no point of the part; {_ADVICE}")
+        which, _ = weights(surface, samples[inside], ((0, 0),))
         mask = np.zeros(surface.control_points.shape[:2], dtype=bool)
         mask.reshape(-1)[which] = True
         return mask
 
-    def _holds(self, uv: Floats, points: Floats, scalars: Scalars | None) -> Bools:
+    def _contains(self, uv: Floats, points: Floats, scalars: Scalars | None) -> Bools:
         inside = np.zeros(len(uv), dtype=bool)
         for each in self.ranges:
-            inside |= each.holds(uv, points)
+            inside |= each.contains(uv, points)
         if scalars is not None:
             inside |= scalars.values[cKDTree(scalars.points).query(points)[1]] > 0.0
         return inside
 
 
 def parse(text: str) -> Region:
-    """The region that a text tells of; raises BadInputError with what may be said."""
+    """Understand ranges and a field, separated by commas; raises BadInputError for anything else."""
     if not isinstance(text, str):
         raise BadInputError(f"freeze is {text!r}; {_ADVICE}")
     ranges, field = [], ""
@@ -95,3 +96,31 @@ def _range(term: str, text: str) -> Range:
     bound = float(found[4]) if found[3] else np.inf
     low = float(found[1]) if found[1] else bound if found[3] == ">" else -np.inf
     return Range(found[2].lower(), low, np.inf if found[3] == ">" else bound)
+
+
+@dataclass(frozen=True)
+class FrozenPart:
+    """What must not move: as it was given, or a region with the scalars of its field."""
+
+    given: Frozen
+    region: Region | None = None
+    scalars: Scalars | None = None
+
+    def on(self, surface: Surface, uv: Floats) -> Frozen:
+        """The same for the control points of a surface; uv as in `Region.control_points`."""
+        return self.given if self.region is None else self.region.control_points(surface, uv, self.scalars)
+
+    @property
+    def on_any_surface(self) -> bool:
+        """Whether it means something on another control net, as a mask does not."""
+        return self.region is not None or self.given is None or callable(self.given)
+
+
+def frozen_part(frozen: Frozen | str, mesh: MeshLike) -> FrozenPart:
+    """Understand what must not move; reads the mesh's file where that is a scalar of it."""
+    if not isinstance(frozen, str):
+        return FrozenPart(frozen)
+    region = parse(frozen)
+    if not region.field:
+        return FrozenPart(None, region)
+    return FrozenPart(None, region, read_field(mesh, region.field, "give a mask of control points"))

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats, Ints, floats, frozen
+from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
 from meshwind.methods import in_space, on_surface
 from meshwind.methods.chain import STEPS, Chain, Physics, chain_at_rest
@@ -37,7 +38,7 @@ def run(  # noqa: PLR0913
     start: ArrayLike,
     end: ArrayLike,
     *,
-    particles: int = 401,
+    particles: int = PARTICLES,
     steps: int,
     step_size: float,
     damping: float = 0.0,

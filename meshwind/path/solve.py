@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats, floats, frozen, ints
+from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
 from meshwind.path.batch import Batch, Setting
 from meshwind.path.friction import Friction, friction_of
@@ -58,7 +59,7 @@ def solve(  # noqa: PLR0913
     start: ArrayLike,
     end: ArrayLike,
     *,
-    particles: int | None = 401,
+    particles: int | None = PARTICLES,
     family: ArrayLike | None = None,
     friction: "float | Friction | Callable[[Floats], Floats] | Floats" = 0.0,
     initial: ArrayLike | None = None,

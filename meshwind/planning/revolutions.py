@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.core.cast import Floats
+from meshwind.core.defaults import PARTICLES, STEPS_PER_TURN
 from meshwind.core.errors import BadInputError
 from meshwind.path.friction import Friction, friction_of
 from meshwind.planning.holding import Holding, Wound, holding, hoop_revolutions, opened, square_revolutions
@@ -30,9 +31,6 @@ _GAIN = 3.0
 """So many times the bound is as far as it is looked for with friction."""
 FRICTION, WIDER = 0.2, 1.5
 """What more would allow: this friction (a wet fibre's), and openings so many times as wide."""
-
-STEPS_A_TURN = 8
-"""Fewest steps of a path in a turn: with fewer a polyline is no picture of the fibre."""
 
 Intervals = tuple[tuple[float, float], ...]
 
@@ -79,7 +77,7 @@ def choose_revolutions(
     surface: Surface,
     *,
     paths: int = PATHS,
-    particles: int | None = 401,
+    particles: int | None = PARTICLES,
     friction: float | Friction = 0.0,
     most: float | None = None,
     further: bool = True,
@@ -129,7 +127,7 @@ def choose_revolutions(
         raise BadInputError(f"paths is {paths}; give a whole number of paths a family, at least 1")
     if most is None:
         most = hoop_revolutions(surface)
-        most = most if particles is None else min(most, (particles - 1) / STEPS_A_TURN)
+        most = most if particles is None else min(most, (particles - 1) / STEPS_PER_TURN)
     elif not 0.0 < most < np.inf:
         raise BadInputError(f"most is {most}; give a largest number of revolutions above 0")
     tried = min(paths, _TRIED)

@@ -7,19 +7,16 @@ from pathlib import Path
 
 from meshwind.results.schema import CONFIG
 
-_LEFT_OPEN = {"particles": "auto"}
-"""What is written for an option that was left to the run; any other has no line of its own."""
-
 
 def write_config(path: Path, out: Path, options: Mapping[str, object], version: str, command: str = "wind") -> None:
-    """Write options by their long names; paths (Path) are relative to `out`, the folder of the file."""
+    """Write options by their long names; paths (Path) are written relative to `out`, the folder of the file."""
     lines = [
         f"# meshwind {version}: repeat this run with `meshwind {command} --config {CONFIG}`",
         "# paths are relative to this file",
     ]
     for name, value in options.items():
         key = name.replace("_", "-")
-        given = _LEFT_OPEN.get(name) if value is None else _from(value, out) if isinstance(value, Path) else value
+        given = _from(value, out) if isinstance(value, Path) else value
         lines.append(f"# {key}: not given" if given is None else f"{key} = {_toml(given)}")
     path.write_text("\n".join(lines) + "\n", encoding="utf-8", errors="replace")
 

@@ -1,6 +1,6 @@
 """Wind a mesh and write the results with their pictures into a folder."""
 
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import dataclass, fields, replace
 from os import PathLike, fsencode, fspath
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -167,20 +167,20 @@ class Result(Winding):
 def wind(  # noqa: PLR0913
     mesh: str | PathLike[str] | Mesh,
     *,
-    paths: int = 12,
-    revolutions: float | str = 0.5,
-    friction: float | str = 0.0,
-    component: int = 0,
-    ends: str = "auto",
-    opening: float | None = None,
-    tolerance: float = 1e-5,
-    worst_fit: float = 0.1,
-    units: str = "",
-    particles: int | None = 401,
-    spacing: float | None = None,
-    band_width: float | None = None,
-    linear_density: float | None = None,
-    pins: str | PathLike[str] | None = None,
+    paths: int = Options.paths,
+    revolutions: float | str = Options.revolutions,
+    friction: float | str = Options.friction,
+    component: int = Options.component,
+    ends: str = Options.ends,
+    opening: float | None = Options.opening,
+    tolerance: float = Options.tolerance,
+    worst_fit: float = Options.worst_fit,
+    units: str = Options.units,
+    particles: int | None = Options.particles,
+    spacing: float | None = Options.spacing,
+    band_width: float | None = Options.band_width,
+    linear_density: float | None = Options.linear_density,
+    pins: str | PathLike[str] | None = Options.pins,
     out: str | PathLike[str] | None = None,
     overwrite: bool = False,
     render: bool = True,
@@ -263,8 +263,6 @@ def wind(  # noqa: PLR0913
         paths, revolutions, particles, friction, component, ends, opening, tolerance, worst_fit, units,
         spacing, band_width, linear_density, pinned,
     )  # fmt: skip
-    if not isinstance(mesh, str | PathLike | Mesh):
-        raise BadInputError(f"mesh is of type {type(mesh).__name__}; give the path of a mesh file or a meshwind.Mesh")
     clock = Clock(progress)
     target = None if out is None else _folder(out)
     if target is not None:
@@ -309,9 +307,8 @@ def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: Cloc
 
 def _used(result: Result, out: Path, render: bool) -> dict[str, object]:
     """All options as used, for another run like this one."""
-    options = asdict(result.options)
     pins = None if result.options.pins is None else Path(result.options.pins)
-    return {"mesh": result.source, "out": out} | options | {"pins": pins, "render": render}
+    return {"mesh": result.source, "out": out} | result.options.written() | {"pins": pins, "render": render}
 
 
 def _draw(result: Result, out: Path) -> str:

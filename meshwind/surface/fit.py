@@ -7,6 +7,7 @@ from threadpoolctl import ThreadpoolController
 
 from meshwind.chart.chart import Chart
 from meshwind.chart.measure import speeds
+from meshwind.core.defaults import FIT_TOLERANCE
 from meshwind.core.errors import BadInputError
 from meshwind.surface import normal_equations
 from meshwind.surface.certify import certify, to_mesh
@@ -50,7 +51,7 @@ class _Fitted:
         return max(self.rms, float(np.sqrt(np.mean(to_mesh(self.surface, self.samples)[0] ** 2))))
 
 
-def fit(chart: Chart, tolerance: float = 1e-5) -> Surface:
+def fit(chart: Chart, tolerance: float = FIT_TOLERANCE) -> Surface:
     """Fit a bicubic surface to a flattened mesh.
 
     The control net is the coarsest one that meets the tolerance or that the mesh supports.  The vertices are fitted,

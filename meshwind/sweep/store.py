@@ -11,7 +11,6 @@ not run again.
 import csv
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -92,9 +91,7 @@ def _stored_row(record: Path, key: str) -> Row | None:
 
 def _row(case: Case, done: Done) -> Row:
     """The options of a case, its status and its figures."""
-    given = {
-        name: "auto" if name == "particles" and value is None else value for name, value in asdict(case.options).items()
-    }
+    given = case.options.written()
     pins = None if case.options.pins is None else Path(case.options.pins).name
     refused = bool(done.reason)
     settled = not refused and done.figures["at_rest"] == done.figures["paths"]

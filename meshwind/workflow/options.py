@@ -1,89 +1,180 @@
-"""What a run is asked to do, checked whole before anything is read."""
+"""What a run is to do: its options, checked as a whole before anything is read.
 
-from dataclasses import dataclass
+The record `Options` is the one place that says what options there are and what each means by default: the command
+line with its help, configuration files, studies, `meshwind.wind` and meshwind.toml take them from it.
+"""
+
+from dataclasses import dataclass, field, fields
 from math import isfinite
 from numbers import Integral, Real
 
+from meshwind.core.defaults import FIT_TOLERANCE, PARTICLES, STEPS_PER_TURN
 from meshwind.core.errors import BadInputError
-from meshwind.core.parsing import AUTO, shortened
-from meshwind.core.units import check_units
-from meshwind.mesh.opening.ends import parse
-from meshwind.planning.revolutions import STEPS_A_TURN
+from meshwind.core.option import option
+from meshwind.core.parsing import AUTO, count, shortened, turns
+from meshwind.core.units import MILLIMETRES, check_units
 
 FIELD = "field:"
 """Before the name of a scalar field in a mesh file."""
 MEMORY = 4e9
 """Most bytes that a run may take."""
-_BYTES_A_PARTICLE, _BYTES_A_CROSSING = 350, 1500
+_BYTES_PER_PARTICLE, _BYTES_PER_CROSSING = 350, 1500
 """Peak memory of a run, measured from 3e5 to 1.6e6 particles and 2e4 to 5e5 crossings."""
 _MOST_CHOSEN = 1601
-"""Particles a path that memory is checked for where their number is left open."""
+"""Particles per path that memory is checked for where their number is left open."""
+
+PART, FIBRES, SURFACE = "The part", "The fibres", "The surface"
+"""Groups of the options."""
+IN_MESH_UNITS = "in the mesh's units"
+OVER_DIAGONAL = "over the part's diagonal"
+
+FILE_DEFAULTS = {"units": "mm"}
+"""Defaults of the command line and of studies that are not the library's.
+
+They wind meshes from files, most of which are in millimetres and say nothing of it.  A mesh that a program makes is
+in the program's own unit, so the library names none unless it is given.
+"""
 
 
 @dataclass(frozen=True)
 class Options:
-    """Options of a run; one that cannot be used raises BadInputError with its value and what it may be.
+    """Options of a run; raises BadInputError for one that cannot be used, with its value and what it may be.
 
-    paths: a family; revolutions: turns from end to end, or "auto"; particles: a path, None to have them chosen;
-    friction: coefficient, or "field:NAME" for a scalar of the mesh file; component: the piece of the mesh by its
-    rank of area; ends: "auto", "x", "y", "z", two points "x,y,z x,y,z" or two rims "loops 0 1"; opening: radius at a
-    closed end in the mesh's units; tolerance: largest distance of a vertex from the surface over the mesh's diagonal;
-    worst_fit: largest distance between surface and mesh over the diagonal that is wound at all; units: the name of
-    the mesh's unit, "" if unknown; spacing: largest distance between neighbours, paths are added until it is kept;
-    band_width: of the fibre; linear_density: mass over length of the fibre, per unit of length; pins: a CSV file of
-    the paths' ends.
+    The fields say what each option means; `particles` is None where their number is to be chosen.
     """
 
-    paths: int = 12
-    revolutions: float | str = 0.5
-    particles: int | None = 401
-    friction: float | str = 0.0
-    component: int = 0
-    ends: str = "auto"
-    opening: float | None = None
-    tolerance: float = 1e-5
-    worst_fit: float = 0.1
-    units: str = ""
-    spacing: float | None = None
-    band_width: float | None = None
-    linear_density: float | None = None
-    pins: str | None = None
+    paths: int = field(default=12, metadata=option("Number of paths per family", FIBRES))
+    revolutions: float | str = field(
+        default=0.5,
+        metadata=option(
+            "Turns of a path from end to end, as in 0.5 or 5/12; auto picks the value with stable paths and least "
+            "bridging",
+            FIBRES,
+            metavar="TURNS",
+            words=(AUTO,),
+            read=turns,
+        ),
+    )
+    particles: int | None = field(
+        default=PARTICLES,
+        metadata=option(
+            "Number of particles per path; auto picks as many as an error of the lengths of 1e-5 needs",
+            FIBRES,
+            metavar="COUNT",
+            words=(AUTO,),
+            read=count,
+        ),
+    )
+    friction: float | str = field(
+        default=0.0,
+        metadata=option(
+            f"Coefficient of friction between fibre and part, or {FIELD}NAME for a scalar of the mesh file",
+            FIBRES,
+            metavar="MU",
+            read=str,
+        ),
+    )
+    component: int = field(
+        default=0, metadata=option("Piece of the mesh file to take, by decreasing area; 0 is the largest", PART)
+    )
+    ends: str = field(
+        default=AUTO,
+        metadata=option(
+            'Where the ends are: auto, x, y, z, two points "x,y,z x,y,z", or two rims "loops 0 1"',
+            PART,
+            metavar="ENDS",
+            words=(AUTO, "x", "y", "z", "loops"),
+        ),
+    )
+    opening: float | None = field(
+        default=None,
+        metadata=option("Radius of the opening at a closed end", PART, unit=IN_MESH_UNITS, otherwise="from the part"),
+    )
+    tolerance: float = field(
+        default=FIT_TOLERANCE,
+        metadata=option("Largest distance of a mesh vertex from the fitted surface", SURFACE, unit=OVER_DIAGONAL),
+    )
+    worst_fit: float = field(
+        default=0.1,
+        metadata=option(
+            "Largest distance between surface and mesh that is accepted at all", SURFACE, unit=OVER_DIAGONAL
+        ),
+    )
+    units: str = field(
+        default="",
+        metadata=option(
+            "Unit of the mesh: mm, cm, m, um, in, ft; nothing is converted",
+            PART,
+            metavar="UNIT",
+            words=tuple(MILLIMETRES),
+        ),
+    )
+    spacing: float | None = field(
+        default=None,
+        metadata=option(
+            "Largest distance between neighbouring paths: paths are added until it is kept", FIBRES, unit=IN_MESH_UNITS
+        ),
+    )
+    band_width: float | None = field(
+        default=None,
+        metadata=option("Width of the fibre band", FIBRES, unit=IN_MESH_UNITS, otherwise="one layer per family"),
+    )
+    linear_density: float | None = field(
+        default=None,
+        metadata=option("Mass of the fibre per unit of its length, from which its mass is computed", FIBRES),
+    )
+    pins: str | None = field(
+        default=None,
+        metadata=option(
+            "CSV file of the paths' ends, with the columns u0,v0,u1,v1 or x0,y0,z0,x1,y1,z1", FIBRES, is_file=True
+        ),
+    )
 
     def __post_init__(self) -> None:
+        from meshwind.mesh.opening.ends import parse  # late: help shows these fields without loading NumPy
+
         set_ = object.__setattr__
         set_(self, "paths", _whole(self.paths, "paths", 1))
         if self.particles is not None:
             set_(self, "particles", _whole(self.particles, "particles", 3))
-        most = ((self.particles or _MOST_CHOSEN) - 1) / STEPS_A_TURN
         if self.revolutions != AUTO:
             set_(self, "revolutions", _number(self.revolutions, "revolutions", 0.0))
-        if not isinstance(self.revolutions, str) and self.revolutions > most:
-            raise BadInputError(
-                f"revolutions is {_told(self.revolutions)}; give a number from 0 to {most:g}, which is as many as "
-                f"{self.particles or _MOST_CHOSEN} particles a path can follow, or more particles"
-            )
+        _check_resolution(self.revolutions, self.particles or _MOST_CHOSEN)
         set_(self, "friction", _friction(self.friction))
         set_(self, "component", _whole(self.component, "component", 0))
         parse(self.ends)
-        if self.opening is not None:
-            set_(self, "opening", _number(self.opening, "opening", 0.0, above=True))
         set_(self, "tolerance", _number(self.tolerance, "tolerance", 1e-12, 1.0))
         set_(self, "worst_fit", _number(self.worst_fit, "worst_fit", 0.0, above=True))
         check_units(self.units)
-        for name in ("spacing", "band_width", "linear_density"):
+        for name in ("opening", "spacing", "band_width", "linear_density"):
             if getattr(self, name) is not None:
                 set_(self, name, _number(getattr(self, name), name, 0.0, above=True))
         if self.pins is not None and not (isinstance(self.pins, str) and self.pins.strip()):
-            raise BadInputError(f"pins is {_told(self.pins)}; give the path of a CSV file of the paths' ends")
+            raise BadInputError(f"pins is {_text(self.pins)}; give the path of a CSV file of the paths' ends")
         if self.pins is not None and self.spacing is not None:
             raise BadInputError("pins say where all paths end, and spacing adds paths between them; give one of both")
         _check_memory(
             self.paths, self.particles or _MOST_CHOSEN, 1.0 if isinstance(self.revolutions, str) else self.revolutions
         )
 
+    def written(self) -> dict[str, object]:
+        """The options by name, as they stand in files: "auto" for a number of particles that is to be chosen."""
+        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        return values | {"particles": AUTO if self.particles is None else self.particles}
+
+
+def _check_resolution(revolutions: float | str, particles: int) -> None:
+    """Raise BadInputError for more revolutions than the particles of a path can follow."""
+    most = (particles - 1) / STEPS_PER_TURN
+    if not isinstance(revolutions, str) and revolutions > most:
+        raise BadInputError(
+            f"revolutions is {_text(revolutions)}; give a number from 0 to {most:g}, the most that "
+            f"{particles} particles per path can follow, or more particles"
+        )
+
 
 def _friction(value: object) -> float | str:
-    """A coefficient, or the name of a field."""
+    """The coefficient, or the name of a field."""
     if not isinstance(value, str):
         return _number(value, "friction", 0.0, 10.0)
     if value.startswith(FIELD) and value.removeprefix(FIELD).strip():
@@ -99,7 +190,7 @@ def _friction(value: object) -> float | str:
 
 def _whole(value: object, name: str, least: int) -> int:
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
-        raise BadInputError(f"{name} is {_told(value)}; give a whole number from {least} up")
+        raise BadInputError(f"{name} is {_text(value)}; give a whole number from {least} up")
     return int(value)
 
 
@@ -110,20 +201,20 @@ def _number(value: object, name: str, low: float, high: float | None = None, abo
     if inside:
         return number
     allowed = f"above {low:g}" if above else f"from {low:g} up" if high is None else f"from {low:g} to {high:g}"
-    raise BadInputError(f"{name} is {_told(value)}; give a number {allowed}")
+    raise BadInputError(f"{name} is {_text(value)}; give a number {allowed}")
 
 
-def _told(value: object) -> str:
-    """The value as a few characters of text."""
+def _text(value: object) -> str:
+    """A value as a few characters of text."""
     text = f"{float(value):g}" if isinstance(value, Real) and not isinstance(value, bool) else repr(value)
     return shortened(text)
 
 
 def _check_memory(paths: int, particles: int, revolutions: float) -> None:
     crossings = 2.0 * revolutions * float(paths) ** 2
-    needed = 2.0 * paths * particles * _BYTES_A_PARTICLE + crossings * _BYTES_A_CROSSING
+    needed = 2.0 * paths * particles * _BYTES_PER_PARTICLE + crossings * _BYTES_PER_CROSSING
     if needed > MEMORY:
         raise BadInputError(
-            f"{paths} paths a family of {particles} particles and {revolutions:g} revolutions would need about "
+            f"{paths} paths per family of {particles} particles and {revolutions:g} revolutions would need about "
             f"{needed / 1e9:,.0f} GB of memory, and {MEMORY / 1e9:.0f} are allowed; give fewer paths"
         )

@@ -36,6 +36,8 @@ class Part:
 
 def read_source(mesh: MeshLike, options: Options) -> Source:
     """Read a mesh and, where the friction is a field, its scalars; raises BadInputError where one cannot be read."""
+    if not isinstance(mesh, str | PathLike | Mesh):
+        raise BadInputError(f"mesh is of type {type(mesh).__name__}; give the path of a mesh file or a meshwind.Mesh")
     file = None if isinstance(mesh, Mesh) else Path(mesh)
     taken = mesh if isinstance(mesh, Mesh) else read(mesh, options.component)
     if not isinstance(options.friction, str):

@@ -42,7 +42,7 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock) -> Windi
     with clock.stage("fit"):
         notes = about_fit(surface, part.chart, options.tolerance, options.worst_fit, options.units)
         friction = _friction(part, options)
-    chosen = _chosen(surface, options, friction, clock)
+    chosen = chosen_revolutions(surface, options, clock, friction)
     revolutions = float(options.revolutions) if chosen is None else chosen.choice
     with clock.stage("wind"):
         laid = lay(surface, options, revolutions, friction)
@@ -78,9 +78,12 @@ def _friction(part: Part, options: Options) -> float | Friction:
     return 0.0 if scalars is None else friction_from(part.surface, scalars.points, scalars.values)
 
 
-def _chosen(surface: Surface, options: Options, friction: float | Friction, clock: Clock) -> Revolutions | None:
-    """The choice of the revolutions, where they are to be chosen."""
+def chosen_revolutions(
+    surface: Surface, options: Options, clock: Clock, friction: float | Friction = 0.0, further: bool = True
+) -> Revolutions | None:
+    """Choose the revolutions, where that is asked for; further as in `choose_revolutions`."""
     if options.revolutions != AUTO:
         return None
+    paths, particles = options.paths, options.particles
     with clock.stage("choose"):
-        return choose_revolutions(surface, paths=options.paths, particles=options.particles, friction=friction)
+        return choose_revolutions(surface, paths=paths, particles=particles, friction=friction, further=further)

@@ -1,0 +1,8 @@
+"""Defaults that several functions share."""
+
+PARTICLES = 401
+"""Particles per path: lengths are then right to 1e-5 on paths of up to about one turn."""
+FIT_TOLERANCE = 1e-5
+"""Largest distance of a vertex from the fitted surface, over the mesh's diagonal: no more than lengths are off by."""
+STEPS_PER_TURN = 8
+"""Fewest steps of a path per turn: with fewer, a polyline does not show the course of the fibre."""

@@ -1,0 +1,69 @@
+"""The options of a redesign beside those of its winding."""
+
+from dataclasses import dataclass, field
+from math import isfinite
+from numbers import Integral
+from typing import Any
+
+from meshwind.core.errors import BadInputError
+from meshwind.core.option import option
+from meshwind.core.parsing import AUTO
+from meshwind.workflow.options import FIELD, IN_MESH_UNITS
+
+EDIT = "The edit"
+"""Group of these options."""
+REVOLUTIONS = AUTO
+"""Default of a redesign's revolutions: the number that bridges least leaves the least to edit."""
+
+
+@dataclass(frozen=True)
+class EditOptions:
+    """Options of an edit; raises BadInputError for one that cannot be used, with its value and what it may be.
+
+    bound: largest displacement, None for any; frozen: what must not move (see `redesign`), as a mask (nu, nv) of
+    control points or a function from their positions (m, 3) to a mask (m,) where a surface is edited by itself;
+    symmetry: order of rotation about u that is kept; threshold: a gap up to this is none, None for the largest
+    distance of a vertex from the fitted surface; rounds: largest number of them; fairness: wave length over the part's
+    size at which a change of the net costs as much by its bending as by its size, 0 for (6.12) alone; pressing: least
+    normal curvature along the fibres times the part's size.
+    """
+
+    bound: float | None = field(
+        default=None,
+        metadata=option("Largest displacement", EDIT, unit=IN_MESH_UNITS, otherwise="none"),
+    )
+    frozen: Any = field(
+        default=None,
+        metadata=option(
+            f'Region that must not move, as in "v<0.1, z>20", or {FIELD}NAME for a scalar of the mesh file',
+            EDIT,
+            metavar="WHERE",
+            read=str,
+            name="freeze",
+        ),
+    )
+    symmetry: int = field(default=1, metadata=option("Order of the rotational symmetry that is kept", EDIT))
+    threshold: float | None = field(
+        default=None,
+        metadata=option("Ignore gaps smaller than this", EDIT, unit=IN_MESH_UNITS, otherwise="the fit's error"),
+    )
+    rounds: int = field(default=10, metadata=option("Maximum number of rounds of editing and winding again", EDIT))
+    fairness: float = 0.4
+    pressing: float = 0.2
+    """A bow of 1/40 of a chord as long as the part.
+
+    A refit of the edited mesh moves the surface by its fit error over waves of some spans; with this much the fibres
+    of the sample parts lift off again by less than that error.
+    """
+
+    def __post_init__(self) -> None:
+        if isinstance(self.rounds, bool) or not isinstance(self.rounds, Integral) or self.rounds < 0:
+            raise BadInputError(f"rounds is {self.rounds}; give a whole number from 0 up")
+        for name in ("bound", "threshold"):
+            value = getattr(self, name)
+            if value is not None and not (isfinite(value) and value > 0):
+                raise BadInputError(f"{name} is {value}; give a length above 0, or None")
+        for name in ("fairness", "pressing"):
+            value = getattr(self, name)
+            if not (isfinite(value) and value >= 0):
+                raise BadInputError(f"{name} is {value}; give a number from 0 up")
