@@ -75,6 +75,7 @@ def test_every_package_is_named() -> None:
     assert rooms <= set(re.findall(r"`([a-z]+)`", section))
 
 
+@pytest.mark.usefixtures("opengl")
 def test_snippets_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """All Python of the README, one after the other, as a reader would type it."""
     (tmp_path / "data").symlink_to(ROOT / "data")

@@ -24,7 +24,7 @@ so that it holds on no, one or two intervals of n_rev >= 0.  The source takes n_
 of the surface share.  Departures in meshwind: both families must press, +n_rev and -n_rev, so that the middle term
 becomes ``-2 n_rev |s_uv . n|``; points count by the area that they stand for; and a number is used only if paths wound
 by it do not slide off a rim.  These are the *feasible revolutions*.  On a surface of revolution with the radius r and
-the winding angle alpha Clairaut's relation r sin(alpha) = constant bounds them, whatever (6.3) says.
+the winding angle alpha Clairaut's relation r sin(alpha) = constant bounds them, even where (6.3) holds.
 
 What is measured (section 6.2)
 ------------------------------
