@@ -9,7 +9,7 @@ from meshwind.layup.layup import assess
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.path.paths import Paths
 from meshwind.results.reading import Results, read_results
-from meshwind.results.report import report, write_report
+from meshwind.results.report import RunFacts, report, write_report
 from meshwind.results.write import write_files
 from meshwind.surface.grid import grid
 
@@ -20,7 +20,7 @@ def leave(folder: Path, paths: Paths, units: str = "mm") -> Results:
     on = grid(paths.surface)
     part = Mesh(on.points, np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]]), "part.stl")
     write_files(folder, layup, units=units)
-    write_report(folder / "report.json", report(layup, part, None, revolutions=0.25, units=units))
+    write_report(folder / "report.json", report(layup, part, None, RunFacts(0.25, units=units)))
     return read_results(folder)
 
 

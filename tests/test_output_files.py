@@ -15,7 +15,7 @@ from meshwind.layup.layup import Layup, assess
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.path.lengths import bridges, lengths
 from meshwind.results import schema
-from meshwind.results.report import plain, report, write_report
+from meshwind.results.report import RunFacts, plain, report, write_report
 from meshwind.results.write import write_files
 from meshwind.surface.grid import grid
 
@@ -227,7 +227,7 @@ def test_a_bridge_from_the_fixed_end_includes_it() -> None:
 
 def test_report_agrees_with_the_files(written: tuple[Layup, Path]) -> None:
     layup, out = written
-    write_report(out / "report.json", report(layup, part_of(layup), None, revolutions=1.0, seconds={"fit": 0.1}))
+    write_report(out / "report.json", report(layup, part_of(layup), None, RunFacts(1.0, seconds={"fit": 0.1})))
 
     def refuse(constant: str) -> None:
         raise AssertionError(f"{constant} is not JSON")
@@ -266,7 +266,7 @@ def test_report_names_every_path_that_failed() -> None:
     status = np.zeros(16, dtype=np.int64)
     status[[3, 7]] = [2, 4]
     paths = replace(layup.paths, status=status)
-    failed = report(assess(paths), part_of(layup), None, revolutions=1.0)["paths"]["not_converged"]
+    failed = report(assess(paths), part_of(layup), None, RunFacts(1.0))["paths"]["not_converged"]
     assert [(item["path"], item["status"], item["name"]) for item in failed] == [
         (3, 2, "slid_off_end"),
         (7, 4, "stalled"),

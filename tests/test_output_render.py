@@ -18,7 +18,7 @@ from meshwind.path.lengths import bridges
 from meshwind.pictures import driver
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import lifts, winding_scene
-from meshwind.results.report import report
+from meshwind.results.report import RunFacts, report
 from meshwind.surface import shapes
 from meshwind.surface.grid import grid
 
@@ -148,7 +148,7 @@ def test_picture_and_report_tell_the_same_figures(failed: list[int]) -> None:
     if len(failed) == 8:
         status[:] = 2
     layup = assess(replace(paths, status=status))
-    figures = report(layup, Mesh(np.eye(3), np.array([[0, 1, 2]])), None, revolutions=0.5)
+    figures = report(layup, Mesh(np.eye(3), np.array([[0, 1, 2]])), None, RunFacts(0.5))
     seen = winding_scene(subject(layup, "waist", "in"))
     told = figures["paths"]
     assert f"bridged {100 * told['bridged_fraction']:.1f} %" in seen["subtitle"]

@@ -57,10 +57,10 @@ def _run(folder: Path) -> tuple[list[str], dict[str, Any]]:
     from meshwind.results.reading import read_report
 
     report = read_report(folder)
-    described = redesign_lines if "redesign" in report else run_lines
     try:
+        lines = redesign_lines(report) if "redesign" in report else run_lines(report)
         run = f"run       {report['command'] or 'wound by the library'} (meshwind {report['meshwind']})"
-        return [run, *described(report)], report
+        return [run, *lines], dict(report)
     except (LookupError, TypeError, ValueError, AttributeError) as error:
         raise BadInputError(f"the report in {folder} lacks figures ({error}); make it again") from error
 

@@ -85,5 +85,5 @@ def redesign(
             | {name: getattr(edit, name) for name in ("bound", "symmetry", "threshold", "rounds")}
             | wound,
         )
-    print_report([*redesign_lines(report), f"files     {target}"], report | {"folder": str(target)}, printed)
+    print_report([*redesign_lines(report), f"files     {target}"], {**report, "folder": str(target)}, printed)
     return 0 if edited.windable and edited.settled else NOT_CONVERGED

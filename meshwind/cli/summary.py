@@ -1,12 +1,21 @@
 """The closing summary of a run and of a redesign: their reports in a few lines."""
 
-from typing import Any
+from collections.abc import Sequence
 
 from meshwind.appearance.words import quantity, ratio
 from meshwind.core.units import unit_told
+from meshwind.results.report_types import (
+    Failure,
+    PathsFigures,
+    RedesignFigures,
+    RedesignReport,
+    Report,
+    RoundFigures,
+    SurfaceFigures,
+)
 
 
-def run_lines(report: dict[str, Any]) -> list[str]:
+def run_lines(report: Report) -> list[str]:
     """A run's report in a few lines; raises LookupError or TypeError where a figure is missing."""
     part = report["mesh"]
     units = unit_told(part["units"])
@@ -28,18 +37,20 @@ def note_line(note: str) -> str:
     return f"{'note' if text == note else 'warning':<10}{text}"
 
 
-def _surface(surface: dict[str, Any], size: float, units: str) -> list[str]:
+def _surface(surface: SurfaceFigures, size: float, units: str) -> list[str]:
     """The errors of the fit in both directions, also over the part's diagonal."""
     around, along = surface["control_points"]
     vertices, facets = surface["fit_error"]["to_surface"]["max"], surface["fit_error"]["to_mesh"]["max"]
+    tolerance = surface["tolerance"]
+    fitted_to = "" if tolerance is None else f", tolerance {ratio(tolerance)}"
     return [
         f"surface   {around} x {along} control points; largest distance to the vertices {quantity(vertices, units, 2)} "
-        f"({ratio(vertices / size)} of the part, tolerance {ratio(surface['tolerance'])}), "
+        f"({ratio(vertices / size)} of the part{fitted_to}), "
         f"to the facets {quantity(facets, units, 2)} ({ratio(facets / size)})"
     ]
 
 
-def _paths(paths: dict[str, Any], units: str) -> list[str]:
+def _paths(paths: PathsFigures, units: str) -> list[str]:
     failed = len(paths["not_converged"])
     which = f"; {'these' if paths['converged'] else 'all'}" if failed else ""
     bridged = f"bridged {100 * paths['bridged_fraction']:.1f} %" if paths["bridges"] else "no bridges"
@@ -55,11 +66,12 @@ def _paths(paths: dict[str, Any], units: str) -> list[str]:
     return lines
 
 
-def _layup(report: dict[str, Any], units: str) -> list[str]:
+def _layup(report: Report, units: str) -> list[str]:
     """Coverage and spacing; the fibre's mass where it is known."""
     cover, near, fibre = report["coverage"], report["spacing"]["neighbours"], report["fibre"]
-    shares = ", ".join(f"{name} {100.0 * cover[name]:.0f} %" for name in ("bare", "once", "twice", "more"))
-    lines = [f"coverage  band {quantity(cover['band_width'], units, 3)}: {shares}"]
+    shares = {"bare": cover["bare"], "once": cover["once"], "twice": cover["twice"], "more": cover["more"]}
+    covered = ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in shares.items())
+    lines = [f"coverage  band {quantity(cover['band_width'], units, 3)}: {covered}"]
     if near["max"] is not None:
         lines[0] += f"; neighbours up to {quantity(near['max'], units, 3)} apart"
     if fibre["mass"] is not None:
@@ -67,11 +79,11 @@ def _layup(report: dict[str, Any], units: str) -> list[str]:
     return lines
 
 
-def _not_converged(failures: list[dict[str, object]]) -> list[str]:
+def _not_converged(failures: Sequence[Failure]) -> list[str]:
     """One line per reason, with the number of paths that it applies to."""
-    reasons: dict[str, list[object]] = {}
+    reasons: dict[str, list[int]] = {}
     for failure in failures:
-        reasons.setdefault(str(failure["why"]), []).append(failure["path"])
+        reasons.setdefault(failure["why"], []).append(failure["path"])
     return [
         f"warning   {len(paths)} path{'s' * (len(paths) > 1)} not at rest: {why} "
         f"(path {', '.join(map(str, paths[:8]))}{', ...' * (len(paths) > 8)})"
@@ -79,7 +91,7 @@ def _not_converged(failures: list[dict[str, object]]) -> list[str]:
     ]
 
 
-def redesign_lines(report: dict[str, Any]) -> list[str]:
+def redesign_lines(report: RedesignReport) -> list[str]:
     """A redesign's report in a few lines; raises LookupError or TypeError where a figure is missing."""
     units = unit_told(report["mesh"]["units"])
     return [
@@ -90,7 +102,7 @@ def redesign_lines(report: dict[str, Any]) -> list[str]:
     ]
 
 
-def _edited_part(report: dict[str, Any]) -> list[str]:
+def _edited_part(report: RedesignReport) -> list[str]:
     part, winding = report["mesh"], report["winding"]
     return [
         f"part      {part['name']}: {part['vertices']} vertices, {part['faces']} faces",
@@ -99,7 +111,7 @@ def _edited_part(report: dict[str, Any]) -> list[str]:
     ]
 
 
-def _round(figures: dict[str, Any], units: str) -> str:
+def _round(figures: RoundFigures, units: str) -> str:
     bridged, gap = figures["bridged"], figures["max_gap"]
     return (
         f"round {figures['stage']}.{figures['round']} bridged {100 * bridged['before']:.2g} % to "
@@ -107,7 +119,7 @@ def _round(figures: dict[str, Any], units: str) -> str:
     )
 
 
-def _edit(figures: dict[str, Any], units: str) -> list[str]:
+def _edit(figures: RedesignFigures, units: str) -> list[str]:
     """What the edit came to, on the mesh that was fitted and wound again."""
     bridged, gap, moved, volume = figures["bridged"], figures["max_gap"], figures["displacement"], figures["volume"]
     return [
@@ -119,7 +131,7 @@ def _edit(figures: dict[str, Any], units: str) -> list[str]:
     ]
 
 
-def _warnings(report: dict[str, Any]) -> list[str]:
+def _warnings(report: RedesignReport) -> list[str]:
     """Warnings and notes, and how the redesign ended."""
     figures, failed = report["redesign"], report["wound"]["after"]["not_converged"]
     lines = []

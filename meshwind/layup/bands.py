@@ -58,6 +58,11 @@ class Bands:
         """Share of the surface without any band."""
         return self.share(0)
 
+    @property
+    def more(self) -> float:
+        """Share of the surface under three bands or more."""
+        return max(1.0 - sum((self.bare, self.share(1), self.share(2))), 0.0)
+
     def at(self, uv: Floats) -> Ints:
         """Layers at uv (n, 2): those over the middle of the cell that each is in."""
         nu, nv = self.layers.shape

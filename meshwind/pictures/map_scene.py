@@ -29,11 +29,10 @@ def map_scene(of: Subject, name: str, title: str, subtitle: str) -> dict[str, An
 def coverage_scene(of: Subject) -> dict[str, Any]:
     """How many layers of fibre lie over each place."""
     bands = of.layup.bands
-    shares = [("bare", bands.bare), ("once", bands.share(1)), ("twice", bands.share(2))]
-    more = max(1.0 - sum(share for _, share in shares), 0.0)
-    told = ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in [*shares, ("more often", more)])
+    shares = ("bare", bands.bare), ("once", bands.share(1)), ("twice", bands.share(2)), ("more often", bands.more)
+    covered = ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in shares)
     width = quantity(bands.width, of.units, 3)
-    return map_scene(of, "coverage", "coverage", f"band {width} wide; area covered: {told}")
+    return map_scene(of, "coverage", "coverage", f"band {width} wide; area covered: {covered}")
 
 
 def fit_map_scene(of: Subject) -> dict[str, Any]:

@@ -137,5 +137,5 @@ def subject_in(
 
 def subject_of(results: Results, seen_from: str = "auto") -> Subject:
     """A results folder to draw."""
-    turns = results.report.get("winding", {}).get("revolutions")
+    turns = results.revolutions
     return subject_in(results.folder, results.layup, results.name, results.units, turns, seen_from, trusted=False)

@@ -1,7 +1,5 @@
 """Figures of the layup for report.json: crossings, coverage, spacing, windability, quads, fibre, revolutions."""
 
-from typing import Any
-
 import numpy as np
 
 from meshwind.core.cast import Floats
@@ -10,19 +8,29 @@ from meshwind.layup.layup import Layup
 from meshwind.layup.windability import CONCAVE, CONVEX, SADDLE, Windability
 from meshwind.planning.revolutions import FRICTION, WIDER, Revolutions
 from meshwind.planning.spacing import Spaced
+from meshwind.results.report_types import (
+    CoverageFigures,
+    CrossingFigures,
+    FibreFigures,
+    QuadFigures,
+    RevolutionFigures,
+    SpacingFigures,
+    Spread,
+    WindabilityFigures,
+)
 
 REGIONS = (4, 8)
 """Equal parts of u and of v in which crossings are counted."""
 
 
-def spread(values: Floats) -> dict[str, float | None]:
+def spread(values: Floats) -> Spread:
     """Smallest, median and largest; None of nothing."""
     if not len(values):
         return {"min": None, "median": None, "max": None}
     return {"min": float(values.min()), "median": float(np.median(values)), "max": float(values.max())}
 
 
-def crossing_figures(crossings: Crossings, own: int) -> dict[str, Any]:
+def crossing_figures(crossings: Crossings, own: int) -> CrossingFigures:
     """Angles in degrees, quality as |cos|, counts by region, and how often fibres cross their own family."""
     return {
         "count": len(crossings),
@@ -30,32 +38,33 @@ def crossing_figures(crossings: Crossings, own: int) -> dict[str, Any]:
         "quality": spread(np.abs(np.cos(crossings.angle))),
         "off_surface": int((~crossings.on_surface).sum()),
         "own_family": own,
-        "by_region": counts(crossings, *REGIONS),
+        "by_region": counts(crossings, *REGIONS).tolist(),
     }
 
 
-def coverage_figures(layup: Layup) -> dict[str, Any]:
+def coverage_figures(layup: Layup) -> CoverageFigures:
     """Layers by cells of a pitch, and shares of the area under no, one, two and more bands."""
     bands, cover = layup.bands, layup.coverage
-    shares = {"bare": bands.bare, "once": bands.share(1), "twice": bands.share(2)}
     return {
         "min": cover.min,
         "median": cover.median,
         "max": cover.max,
         "band_width": cover.width,
         "cells": list(cover.layers.shape),
-        **shares,
-        "more": max(1.0 - sum(shares.values()), 0.0),
+        "bare": bands.bare,
+        "once": bands.share(1),
+        "twice": bands.share(2),
+        "more": bands.more,
         "most_layers": int(bands.layers.max(initial=0)),
         "on_part": bands.balance,
         "bare_caps": list(bands.caps),
     }
 
 
-def spacing_figures(layup: Layup, spaced: Spaced | None) -> dict[str, Any]:
+def spacing_figures(layup: Layup, spaced: Spaced | None) -> SpacingFigures:
     """Distances between neighbours and between crossings; the gap and overlap that the band's width leaves."""
     largest, width = layup.neighbours.largest, layup.coverage.width
-    figures: dict[str, Any] = {
+    figures: SpacingFigures = {
         "neighbours": spread(largest),
         "d1": spread(layup.sides.d1),
         "d2": spread(layup.sides.d2),
@@ -63,24 +72,27 @@ def spacing_figures(layup: Layup, spaced: Spaced | None) -> dict[str, Any]:
         "neighbours_apart": float((largest > width).mean()) if len(largest) else None,
     }
     if spaced is not None:
-        figures |= {
-            "asked": spaced.spacing,
-            "kept": spaced.gap,
-            "paths_added": len(spaced.paths) - 2 * spaced.even,
-            "partings": spaced.partings,
-            "widest_parting": spaced.widest,
-        }
+        figures["asked"] = spaced.spacing
+        figures["kept"] = spaced.gap
+        figures["paths_added"] = len(spaced.paths) - 2 * spaced.even
+        figures["partings"] = spaced.partings.tolist()
+        figures["widest_parting"] = spaced.widest
     return figures
 
 
-def windability_figures(press: Windability) -> dict[str, Any]:
+def windability_figures(press: Windability) -> WindabilityFigures:
     """Shares of the area by kind, and of the directions that press."""
     share = float((press.share * press.weight).sum())
-    kinds = {name: press.area(kind) for name, kind in (("convex", CONVEX), ("saddle", SADDLE), ("concave", CONCAVE))}
-    return kinds | {"untouchable": press.untouchable, "directions": share}
+    return {
+        "convex": press.area(CONVEX),
+        "saddle": press.area(SADDLE),
+        "concave": press.area(CONCAVE),
+        "untouchable": press.untouchable,
+        "directions": share,
+    }
 
 
-def quad_figures(layup: Layup) -> dict[str, Any]:
+def quad_figures(layup: Layup) -> QuadFigures:
     """Counts and quality of the quad mesh."""
     mesh, quality = layup.quads, layup.quality
     return {
@@ -98,14 +110,14 @@ def quad_figures(layup: Layup) -> dict[str, Any]:
     }
 
 
-def fibre_figures(layup: Layup, linear_density: float | None) -> dict[str, Any]:
+def fibre_figures(layup: Layup, linear_density: float | None) -> FibreFigures:
     """Length of all fibres, and their mass where the linear density is known."""
     length = float(layup.paths.length.sum())
     mass = None if linear_density is None else linear_density * length
     return {"length": length, "linear_density": linear_density, "mass": mass}
 
 
-def revolution_figures(chosen: Revolutions) -> dict[str, Any]:
+def revolution_figures(chosen: Revolutions) -> RevolutionFigures:
     """The choice of revolutions and what it rests on; None for a bound stands for none."""
     held = chosen.holding
     return {

@@ -18,6 +18,7 @@ from meshwind.core.units import unit_told
 from meshwind.layup.layup import Layup, assess
 from meshwind.path.paths import Counters, Paths, Status
 from meshwind.results import schema
+from meshwind.results.report_types import RedesignReport, Report
 from meshwind.results.schema import EDITED, PATHS, REPORT, SPLINE, SURFACE
 from meshwind.results.staging import settle
 from meshwind.results.vtk_reading import Faces, Lines, read_faces, read_lines
@@ -35,7 +36,7 @@ _OFF, _OFF_GRID = 1e-5, 1e-9
 
 @dataclass(frozen=True)
 class Results:
-    """What a run left in `folder`: its paths on their fitted surface, and its report as a dictionary.
+    """What a run left in `folder`: its paths on their fitted surface, and its report.
 
     Some of `paths` is not in the files: `residual` is the report's largest at paths at rest and infinite at others,
     `holding_turns` and `holding_friction` are 0.
@@ -43,7 +44,7 @@ class Results:
 
     folder: Path
     paths: Paths
-    report: dict[str, Any]
+    report: Report
 
     @property
     def surface(self) -> Surface:
@@ -64,6 +65,12 @@ class Results:
     def diagonal(self) -> float:
         """Diagonal of the part, in its own units."""
         return float(_under(self.report, "mesh", "diagonal") or self.surface.size)
+
+    @property
+    def revolutions(self) -> float | None:
+        """Turns from end to end, None where the report has none."""
+        turns = _under(self.report, "winding", "revolutions")
+        return None if turns is None else float(turns)
 
     @property
     def band_width(self) -> float | None:
@@ -96,8 +103,8 @@ def read_results(folder: str | PathLike[str]) -> Results:
     return Results(source, paths, report)
 
 
-def read_report(folder: str | PathLike[str]) -> dict[str, Any]:
-    """Read the report in the folder of a run; raises BadInputError where there is none, or it cannot be read."""
+def read_report(folder: str | PathLike[str]) -> Report | RedesignReport:
+    """Read the report of a run or of a redesign; raises BadInputError where there is none, or it cannot be read."""
     return _report(_folder(folder, (REPORT,)) / REPORT)
 
 
@@ -151,7 +158,7 @@ def _folder(folder: str | PathLike[str], needed: tuple[str, ...]) -> Path:
     return path
 
 
-def _report(path: Path) -> dict[str, Any]:
+def _report(path: Path) -> Any:
     try:
         read = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
@@ -161,7 +168,7 @@ def _report(path: Path) -> dict[str, Any]:
     return read
 
 
-def _surface(path: Path, report: dict[str, Any]) -> Surface:
+def _surface(path: Path, report: Report) -> Surface:
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as held:
             control, periodic = held[schema.CONTROL_POINTS], bool(held[schema.PERIODIC_U])
@@ -173,7 +180,7 @@ def _surface(path: Path, report: dict[str, Any]) -> Surface:
     return Surface(points, periodic, _fit_error(report))
 
 
-def _fit_error(report: dict[str, Any]) -> FitError | None:
+def _fit_error(report: Report) -> FitError | None:
     diagonal = _under(report, "mesh", "diagonal")
     found = {
         f"{side}_{what}": _under(report, "surface", "fit_error", side, what)
@@ -185,7 +192,7 @@ def _fit_error(report: dict[str, Any]) -> FitError | None:
     return FitError(**{name: float(value) for name, value in found.items()}, diagonal=float(diagonal))
 
 
-def _paths(path: Path, surface: Surface, report: dict[str, Any]) -> Paths:
+def _paths(path: Path, surface: Surface, report: Report) -> Paths:
     lines = read_lines(path)
     sizes = np.diff(lines.starts)
     lacking: list[str] = [name for name in _AT_PARTICLES if name not in lines.point_data]
@@ -229,13 +236,13 @@ def _shaped(lines: Lines, field: schema.Field, count: int) -> NDArray[Any]:
     return frozen(lines.point_data[field].reshape(count, len(lines.points) // count, *shape))
 
 
-def _counters(report: dict[str, Any]) -> Counters:
+def _counters(report: Report) -> Counters:
     names = "surface_evaluations", "foot_points", "block_solves", "iterations"
     return Counters(*(int(_under(report, "model", name) or 0) for name in names))
 
 
-def _under(report: dict[str, Any], *names: str) -> Any:
-    """What the report holds under these names, None where it holds nothing."""
+def _under(report: Report, *names: str) -> Any:
+    """What the report has under these names, None where it has nothing: a file may lack anything."""
     here: Any = report
     for name in names:
         here = here.get(name) if isinstance(here, dict) else None

@@ -1,8 +1,9 @@
-"""report.json: the figures of a run as a plain dictionary."""
+"""report.json: the figures of a run as plain Python values."""
 
 import json
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -26,62 +27,69 @@ from meshwind.results.layup_figures import (
     spacing_figures,
     windability_figures,
 )
+from meshwind.results.report_types import (
+    Failure,
+    FitFigures,
+    MeshFigures,
+    ModelFigures,
+    PathsFigures,
+    Report,
+    SurfaceFigures,
+    WindingFigures,
+)
 from meshwind.surface.surface import Surface
 
 
-def report(
-    layup: Layup,
-    mesh: Mesh,
-    chart: Chart | None,
-    *,
-    revolutions: float,
-    command: str = "",
-    units: str = "",
-    tolerance: float | None = None,
-    seconds: Mapping[str, float] | None = None,
-    notes: Sequence[str] = (),
-    model: Mapping[str, Any] | None = None,
-    chosen: Revolutions | None = None,
-    spaced: Spaced | None = None,
-    linear_density: float | None = None,
-) -> dict[str, Any]:
+@dataclass(frozen=True)
+class RunFacts:
+    """What a report says of a run beside what it made.
+
+    tolerance: that of the fit; seconds: wall time per stage; notes: what the user should know; chosen, spaced: how
+    revolutions and spacing were found, where they were; linear_density: mass of the fibre over its length.
+    """
+
+    revolutions: float
+    command: str = ""
+    units: str = ""
+    tolerance: float | None = None
+    seconds: Mapping[str, float] = field(default_factory=dict)
+    notes: Sequence[str] = ()
+    chosen: Revolutions | None = None
+    spaced: Spaced | None = None
+    linear_density: float | None = None
+
+
+def report(layup: Layup, mesh: Mesh, chart: Chart | None, run: RunFacts) -> Report:
     """Gather all figures as plain Python values; lengths in the mesh's units, angles in degrees.
 
-    chart is None for a surface that was given rather than fitted; `tolerance` that the fit was asked for;
-    `seconds` per stage; `notes` for the user; `model` adds to or replaces what the paths themselves tell of the
-    model that the scene needed; chosen and spaced: how revolutions and spacing were found; linear_density: mass over
-    length of the fibre.  A figure that does not exist (NaN or infinite) is None.
+    chart is None for a surface that was given rather than fitted.  A figure that does not exist (NaN or infinite) is
+    None.
     """
     paths = layup.paths
-    figures = {
+    figures: Report = {
         "meshwind": version(),
-        "command": command,
-        "mesh": mesh_figures(mesh, units) | ({} if chart is None else {"ends": chart.annulus.ends}),
-        "surface": _surface(paths.surface, chart, tolerance),
-        "winding": {
-            "revolutions": revolutions,
-            "paths_per_family": int(max((paths.family == family).sum() for family in (1, -1))),
-            "particles": paths.gap.shape[1],
-            "friction": paths.friction,
-        },
+        "command": run.command,
+        "mesh": mesh_figures(mesh, run.units, chart),
+        "surface": _surface(paths.surface, chart, run.tolerance),
+        "winding": _winding(paths, run.revolutions),
         "paths": _paths(paths),
         "crossings": crossing_figures(layup.crossings, len(layup.own_crossings)),
         "coverage": coverage_figures(layup),
-        "spacing": spacing_figures(layup, spaced),
+        "spacing": spacing_figures(layup, run.spaced),
         "windability": windability_figures(layup.windability),
         "quads": quad_figures(layup),
-        "fibre": fibre_figures(layup, linear_density),
-        "model": _model(paths) | dict(model or {}),
-        "seconds": dict(seconds or {}),
-        "notes": list(notes),
+        "fibre": fibre_figures(layup, run.linear_density),
+        "model": _model(paths),
+        "seconds": dict(run.seconds),
+        "notes": list(run.notes),
     }
-    if chosen is not None:
-        figures["revolutions"] = revolution_figures(chosen)
-    told: dict[str, Any] = plain(figures)
-    return told
+    if run.chosen is not None:
+        figures["revolutions"] = revolution_figures(run.chosen)
+    result: Report = plain(figures)
+    return result
 
 
-def write_report(path: Path, figures: Mapping[str, Any]) -> None:
+def write_report(path: Path, figures: Mapping[str, object]) -> None:
     """Write figures as JSON; a figure that does not exist (NaN or infinite) is null."""
     path.write_text(json.dumps(plain(figures), indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
@@ -99,9 +107,9 @@ def plain(value: Any) -> Any:
     return value
 
 
-def mesh_figures(mesh: Mesh, units: str) -> dict[str, Any]:
-    """What a report says of the mesh that was read."""
-    return {
+def mesh_figures(mesh: Mesh, units: str, chart: Chart | None) -> MeshFigures:
+    """What a report says of the mesh that was read and, with its chart, of where it was opened."""
+    figures: MeshFigures = {
         "name": mesh.name,
         "vertices": len(mesh.vertices),
         "faces": len(mesh.faces),
@@ -111,13 +119,16 @@ def mesh_figures(mesh: Mesh, units: str) -> dict[str, Any]:
         "diagonal": mesh.diagonal,
         "repairs": list(mesh.repairs),
     }
+    if chart is not None:
+        figures["ends"] = chart.annulus.ends
+    return figures
 
 
-def _surface(surface: Surface, chart: Chart | None, tolerance: float | None) -> dict[str, Any]:
+def _surface(surface: Surface, chart: Chart | None, tolerance: float | None) -> SurfaceFigures:
     error = surface.error
-    fit: dict[str, Any] = {"rms": None, "max": None, "relative_max": None}
+    fit: FitFigures = {"rms": None, "max": None, "relative_max": None}
     if error is not None:
-        fit |= {
+        fit = {
             "rms": error.rms,
             "max": error.max,
             "relative_max": error.relative_max,
@@ -132,11 +143,20 @@ def _surface(surface: Surface, chart: Chart | None, tolerance: float | None) -> 
     }
 
 
-def _paths(paths: Paths) -> dict[str, Any]:
+def _winding(paths: Paths, revolutions: float) -> WindingFigures:
+    return {
+        "revolutions": revolutions,
+        "paths_per_family": int(max((paths.family == family).sum() for family in (1, -1))),
+        "particles": paths.gap.shape[1],
+        "friction": paths.friction,
+    }
+
+
+def _paths(paths: Paths) -> PathsFigures:
     figures = path_figures(paths)
     return {
         "converged": figures.converged,
-        "not_converged": unsettled(paths),
+        "not_converged": failures(paths),
         "figures_over": figures.over,
         "length_total": figures.fibre_length,
         "bridged_fraction": figures.bridged_share,
@@ -148,17 +168,17 @@ def _paths(paths: Paths) -> dict[str, Any]:
     }
 
 
-def unsettled(paths: Paths) -> list[dict[str, Any]]:
-    """The paths that are not at rest, each with why and what would hold it."""
+def failures(paths: Paths) -> list[Failure]:
+    """The paths that did not converge, each with why and what would hold it."""
     return [_failure(paths, int(k)) for k in np.flatnonzero(paths.status != Status.CONVERGED)]
 
 
-def _failure(paths: Paths, path: int) -> dict[str, Any]:
+def _failure(paths: Paths, path: int) -> Failure:
     status = Status(int(paths.status[path]))
     return {"path": path, "status": int(status), "name": status.name.lower(), "why": paths.advice(path)}
 
 
-def _model(paths: Paths) -> dict[str, Any]:
+def _model(paths: Paths) -> ModelFigures:
     cost = paths.counters
     return {
         "lifting": bool((~paths.on_surface).any()),

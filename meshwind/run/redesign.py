@@ -7,7 +7,7 @@ from typing import Any
 
 from meshwind.core.version import version
 from meshwind.editing.redesign import Redesign
-from meshwind.export.edited_files import redesign_report
+from meshwind.editing.report import redesign_report
 from meshwind.layup.layup import assess
 from meshwind.pictures import driver
 from meshwind.pictures.page import Page
@@ -17,6 +17,7 @@ from meshwind.pictures.winding_scene import winding_scene
 from meshwind.results import folder
 from meshwind.results.config_file import write_config
 from meshwind.results.report import write_report
+from meshwind.results.report_types import RedesignReport
 from meshwind.results.schema import AFTER, BEFORE, CONFIG, REDESIGN, REPORT, picture
 from meshwind.results.write import write_edited
 from meshwind.workflow.clock import Clock
@@ -33,7 +34,7 @@ def write_redesign(
     command: str = "",
     seconds: dict[str, float] | None = None,
     options: Mapping[str, object] | None = None,
-) -> dict[str, Any]:
+) -> RedesignReport:
     """Write the results of a redesign into a folder.
 
     The folder gets `edited.ply`, `edited.vtu`, `report.json`, with `options` also `meshwind.toml`, and with `render`
@@ -86,7 +87,7 @@ def write_redesign(
                 missing = driver.paint(_pictures(staging, edited, units), Page())
             notes += [str(Note(missing, warning=True))] if missing else []
         spent = dict(seconds or {}) | clock.seconds
-        report = redesign_report(edited, command=command, units=units, seconds=spent) | {"notes": notes}
+        report = redesign_report(edited, command=command, units=units, seconds=spent, notes=notes)
         if options is not None:
             write_config(staging / CONFIG, Path(out), options, version(), "redesign")
         write_report(staging / REPORT, report)

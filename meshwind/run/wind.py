@@ -4,7 +4,6 @@ from dataclasses import dataclass, fields, replace
 from os import PathLike, fsencode, fspath
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
 from meshwind.core.errors import BadInputError
 from meshwind.core.version import version
@@ -20,7 +19,8 @@ from meshwind.pictures.sheet import write_sheet
 from meshwind.pictures.subject import subject_in
 from meshwind.results import folder
 from meshwind.results.config_file import write_config
-from meshwind.results.report import report, write_report
+from meshwind.results.report import RunFacts, report, write_report
+from meshwind.results.report_types import Report
 from meshwind.results.schema import CONFIG, FIT_PICTURE, REPORT, REVOLUTIONS_PICTURE, SHEET, WINDING, picture
 from meshwind.results.write import write_files
 from meshwind.surface import Surface
@@ -98,7 +98,7 @@ class Result(Winding):
         """Revolutions from end to end, as chosen where they were "auto"."""
         return float(self.options.revolutions) if self.chosen is None else self.chosen.choice
 
-    def report(self) -> dict[str, Any]:
+    def report(self) -> Report:
         """Collect the figures of the run.
 
         Returns
@@ -113,11 +113,8 @@ class Result(Winding):
         >>> report["paths"]["converged"], report["winding"]["paths_per_family"]
         (8, 4)
         """
-        return report(
-            self.layup,
-            self.mesh,
-            self.chart,
-            revolutions=self.revolutions,
+        run = RunFacts(
+            self.revolutions,
             command=self.command,
             units=self.options.units,
             tolerance=self.options.tolerance,
@@ -127,6 +124,7 @@ class Result(Winding):
             spaced=self.spaced,
             linear_density=self.options.linear_density,
         )
+        return report(self.layup, self.mesh, self.chart, run)
 
     def write(self, out: str | PathLike[str], render: bool = True, overwrite: bool = False) -> "Result":
         """Write all files of the run into a folder; all appear, or none.

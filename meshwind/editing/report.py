@@ -1,0 +1,101 @@
+"""The report of a redesign."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from meshwind.core.version import version
+from meshwind.editing.proof import Proof
+from meshwind.editing.redesign import Redesign
+from meshwind.editing.result import Round
+from meshwind.path.paths import Status
+from meshwind.results.report import failures, mesh_figures, plain
+from meshwind.results.report_types import RedesignFigures, RedesignReport, RoundFigures, WoundFigures
+
+
+def redesign_report(
+    edited: Redesign,
+    *,
+    command: str = "",
+    units: str = "",
+    seconds: Mapping[str, float] | None = None,
+    notes: Sequence[str] = (),
+) -> RedesignReport:
+    """All figures of a redesign as plain Python values; lengths in the mesh's units.
+
+    `wound` has those of the mesh that was read and of the edited one, each fitted and wound by itself: the second is
+    the proof, which the last of the rounds only predicts.
+    """
+    figures: RedesignReport = {
+        "meshwind": version(),
+        "command": command,
+        "mesh": mesh_figures(edited.part, units, edited.before.chart),
+        "winding": {
+            "revolutions": edited.revolutions,
+            "paths_per_family": len(edited.paths) // 2,
+            "particles": edited.paths.gap.shape[1],
+            "why": "as asked for" if edited.chosen is None else edited.chosen.why,
+        },
+        "redesign": _redesign(edited),
+        "rounds": [
+            _round(stage, number, each)
+            for stage, rounds in enumerate(edited.stages, start=1)
+            for number, each in enumerate(rounds, start=1)
+        ],
+        "wound": {"before": _proof(edited.before), "after": _proof(edited.after)},
+        "seconds": dict(seconds or {}),
+        "notes": list(notes),
+    }
+    result: RedesignReport = plain(figures)
+    return result
+
+
+def _redesign(edited: Redesign) -> RedesignFigures:
+    moved = np.linalg.norm(edited.displacement, axis=1)
+    return {
+        "windable": edited.windable,
+        "outcome": edited.outcome.name.lower(),
+        "advice": edited.outcome.advice,
+        "rounds": len(edited.rounds),
+        "threshold": edited.after.threshold,
+        "bridged": {"before": edited.before.bridged, "after": edited.after.bridged},
+        "max_gap": {"before": edited.before.gap, "after": edited.after.gap},
+        "displacement": {
+            "max": float(moved.max()),
+            "mean": float(moved.mean()),
+            "vertices_moved": int((moved > 0.01 * max(float(moved.max()), 1e-300)).sum()),
+        },
+        "volume": {
+            "before": edited.volume,
+            "change": edited.volume_change,
+            "relative": edited.volume_change / edited.volume if edited.volume else None,
+        },
+        "faces_turned_over": edited.turned_over,
+    }
+
+
+def _round(stage: int, number: int, each: Round) -> RoundFigures:
+    return {
+        "stage": stage,
+        "round": number,
+        "threshold": each.threshold,
+        "bridged": {"before": each.bridged_before, "after": each.bridged_after},
+        "max_gap": {"before": each.gap_before, "after": each.gap_after},
+        "largest_move": each.change,
+        "objective": each.objective,
+        "shortfall": each.shortfall,
+        "kkt_residual": max(each.primal, each.dual),
+        "constraints": each.rows,
+        "iterations": each.iterations,
+    }
+
+
+def _proof(proof: Proof) -> WoundFigures:
+    return {
+        "control_points": list(proof.surface.control_points.shape[:2]),
+        "converged": int((proof.paths.status == Status.CONVERGED).sum()),
+        "not_converged": failures(proof.paths),
+        "bridged": proof.bridged,
+        "max_gap": proof.gap,
+        "threshold": proof.threshold,
+    }
