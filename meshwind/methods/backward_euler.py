@@ -49,23 +49,24 @@ def step(chain, physics, forces, count, refresh, system, move, tally):
 
     Returns whether the matrix was positive definite: where it is not, the surface is singular.
     """
-    V, h, metric, right = chain.V, physics.step, forces.metric, system.right
+    V, h, right, x = chain.V, physics.step, system.right, system.x
+    particle, held, metric, force = forces.particle, forces.held, forces.metric, forces.force
     for c in range(count):
-        i = forces.particle[c]
+        i = particle[c]
         a, b, d = metric[c, 0], metric[c, 1], metric[c, 2]
-        right[c, 0] = a * V[i, 0] + b * V[i, 1] + h * physics.stiffness * forces.force[c, 0]
-        right[c, 1] = b * V[i, 0] + d * V[i, 1] + h * physics.stiffness * forces.force[c, 1]
+        right[c, 0] = a * V[i, 0] + b * V[i, 1] + h * physics.stiffness * force[c, 0]
+        right[c, 1] = b * V[i, 0] + d * V[i, 1] + h * physics.stiffness * force[c, 1]
     tally[SOLVES] += 1
     if refresh:
         build(chain, physics, forces, count, system)
-        if not solve(system.diagonal, system.upper, metric, 0.0, right, count, system.x, system.inverse):
+        if not solve(system.diagonal, system.upper, metric, 0.0, right, count, x, system.inverse):
             return False
     else:
         solve_again(system, count)
     for c in range(count):
-        i = forces.particle[c]
+        i = particle[c]
         for a in range(2):
-            V[i, a] = 0.0 if (forces.held[c] >> a) & 1 else system.x[c, a]
+            V[i, a] = 0.0 if (held[c] >> a) & 1 else x[c, a]
             move[c, a] = h * V[i, a]
     return True
 
@@ -73,10 +74,10 @@ def step(chain, physics, forces, count, refresh, system, move, tally):
 @njit(cache=True)
 def held_otherwise(system, forces, count):
     """Note the held directions in the system; returns whether they have changed."""
-    changed = False
+    changed, former, held = False, system.held, forces.held
     for c in range(count):
-        if system.held[c] != forces.held[c]:
-            system.held[c] = forces.held[c]
+        if former[c] != held[c]:
+            former[c] = held[c]
             changed = True
     return changed
 
@@ -84,13 +85,14 @@ def held_otherwise(system, forces, count):
 @njit(cache=True)
 def build(chain, physics, forces, count, system):
     """The matrix J'((1 + h beta / m) I - h^2 K) J of (4.17) over the touching particles."""
-    frames, before, after, held = chain.frames, chain.before, chain.after, forces.held
+    frames, before, after = chain.frames, chain.before, chain.after
+    particle, held, metric, diagonal, upper = forces.particle, forces.held, forces.metric, system.diagonal, system.upper
     pull = physics.step * physics.step * physics.stiffness
     for c in range(count):
-        i = forces.particle[c]
+        i = particle[c]
         weight = 1.0 + physics.step * physics.damping + pull * (1.0 / (i - before[i]) + 1.0 / (after[i] - i))
         for k in range(3):
-            system.diagonal[c, k] = weight * forces.metric[c, k]
+            diagonal[c, k] = weight * metric[c, k]
         if c == 0:
             continue
         p = before[i]
@@ -100,7 +102,7 @@ def build(chain, physics, forces, count, system):
                 if not ((held[c - 1] >> a) & 1 or (held[c] >> b) & 1):
                     for k in range(3):
                         dot -= frames[p, SU + a, k] * frames[i, SU + b, k]
-                system.upper[c - 1, a, b] = pull * dot / (i - p)
+                upper[c - 1, a, b] = pull * dot / (i - p)
 
 
 @njit(cache=True)

@@ -107,52 +107,53 @@ def solve(matrix, normal, pinned, x):
     False at a singular pivot, where x is lost: a matrix that dominates its couplings has none, but stiffness of 1e14
     across a normal leaves no digits along it.
     """
-    n = len(x)
-    for j in range(1, n - 1):
-        for k in range(6):
-            matrix.block[k] = matrix.diagonal[j, k]
-        if j > 1:
-            eliminate(matrix, normal, pinned, j, x)
-        if not invert(matrix.block, matrix.inverse[j]):
-            return False
-    for j in range(n - 2, 0, -1):
-        substitute(matrix, normal, pinned, j, x)
+    if not eliminate(matrix, normal, pinned, x):
+        return False
+    substitute(matrix, normal, pinned, x)
     return True
 
 
-@njit(inline="always", cache=True)
-def eliminate(matrix, normal, pinned, j, x):
-    """Eliminate particle j - 1 from the equations of particle j: its right side, and `matrix.block`."""
-    i = j - 1
-    s, y, coupling, inverse = matrix.block, matrix.vector, matrix.coupling, matrix.inverse
-    times(inverse[i], x[i], y)
-    project_between(i, j, normal, pinned, y)
-    for k in range(3):
-        x[j, k] += coupling * y[k]
-    t = inverse[j]
-    for k in range(6):
-        t[k] = inverse[i, k]
-    if pinned[i]:
-        sandwich(normal[i], t, y)
-    if pinned[j]:
-        sandwich(normal[j], t, y)
-    for k in range(6):
-        s[k] -= coupling * coupling * t[k]
+@njit(cache=True)
+def eliminate(matrix, normal, pinned, x):
+    """Eliminate each particle from its successor's equations; returns False at a singular pivot."""
+    diagonal, inverse, coupling, s, y = matrix.diagonal, matrix.inverse, matrix.coupling, matrix.block, matrix.vector
+    for j in range(1, len(x) - 1):
+        for k in range(6):
+            s[k] = diagonal[j, k]
+        if j > 1:
+            i = j - 1
+            times(inverse[i], x[i], y)
+            project_between(i, j, normal, pinned, y)
+            for k in range(3):
+                x[j, k] += coupling * y[k]
+            t = inverse[j]
+            for k in range(6):
+                t[k] = inverse[i, k]
+            if pinned[i]:
+                sandwich(normal[i], t, y)
+            if pinned[j]:
+                sandwich(normal[j], t, y)
+            for k in range(6):
+                s[k] -= coupling * coupling * t[k]
+        if not invert(s, inverse[j]):
+            return False
+    return True
 
 
-@njit(inline="always", cache=True)
-def substitute(matrix, normal, pinned, j, x):
-    """Find the velocity of particle j from that of particle j + 1."""
-    y = matrix.vector
-    if j < len(x) - 2:
+@njit(cache=True)
+def substitute(matrix, normal, pinned, x):
+    """Find the solution from the last particle back to the first."""
+    n, inverse, coupling, y = len(x), matrix.inverse, matrix.coupling, matrix.vector
+    for j in range(n - 2, 0, -1):
+        if j < n - 2:
+            for k in range(3):
+                y[k] = x[j + 1, k]
+            project_between(j + 1, j, normal, pinned, y)
+            for k in range(3):
+                x[j, k] += coupling * y[k]
         for k in range(3):
-            y[k] = x[j + 1, k]
-        project_between(j + 1, j, normal, pinned, y)
-        for k in range(3):
-            x[j, k] += matrix.coupling * y[k]
-    for k in range(3):
-        y[k] = x[j, k]
-    times(matrix.inverse[j], y, x[j])
+            y[k] = x[j, k]
+        times(inverse[j], y, x[j])
 
 
 @njit(cache=True)

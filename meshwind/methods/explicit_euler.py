@@ -23,15 +23,17 @@ def velocity_term(frame, u, v):
 @njit(cache=True)
 def accelerate(chain, physics, forces, count, out):
     """Accelerations (count, 2) in the plane: (4.8) with damping (4.7), with `inertial` also the term J-dot V."""
+    V, frames = chain.V, chain.frames
+    particle, held, metric, force = forces.particle, forces.held, forces.metric, forces.force
     for c in range(count):
-        i = forces.particle[c]
-        u, v = chain.V[i, 0], chain.V[i, 1]
-        fu, fv = physics.stiffness * forces.force[c, 0], physics.stiffness * forces.force[c, 1]
+        i = particle[c]
+        u, v = V[i, 0], V[i, 1]
+        fu, fv = physics.stiffness * force[c, 0], physics.stiffness * force[c, 1]
         if physics.inertial:
-            tu, tv = velocity_term(chain.frames[i], u, v)
-            fu -= 0.0 if forces.held[c] & 1 else tu
-            fv -= 0.0 if forces.held[c] & 2 else tv
-        a, b, d = forces.metric[c, 0], forces.metric[c, 1], forces.metric[c, 2]
+            tu, tv = velocity_term(frames[i], u, v)
+            fu -= 0.0 if held[c] & 1 else tu
+            fv -= 0.0 if held[c] & 2 else tv
+        a, b, d = metric[c, 0], metric[c, 1], metric[c, 2]
         det = a * d - b * b
         share = 1.0 / det if det > 0.0 else 0.0  # nothing moves where the surface is singular
         out[c, 0] = share * (d * fu - b * fv) - physics.damping * u
@@ -44,10 +46,10 @@ def step(chain, physics, forces, count, symplectic, gain, move):
 
     gain (n, 2) is work space for the accelerations.
     """
-    V, h = chain.V, physics.step
+    V, h, particle = chain.V, physics.step, forces.particle
     accelerate(chain, physics, forces, count, gain)
     for c in range(count):
-        i = forces.particle[c]
+        i = particle[c]
         for a in range(2):
             old = V[i, a]
             V[i, a] = old + h * gain[c, a]

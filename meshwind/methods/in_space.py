@@ -66,7 +66,8 @@ def workspace_for(n, physics):
 @njit(nogil=True, cache=True)
 def run_in_space(body, rules, physics, strand, history, tally):
     """Step the strand from rest; returns (residual, length, status), the arguments as for `run_on_surface`."""
-    X, n, h = strand.X, len(strand.X), physics.step
+    X, V, normal, touching, loose = strand.X, strand.V, strand.normal, strand.touching, strand.loose
+    n, h = len(X), physics.step
     before, after, pressed = np.zeros(n, np.int64), np.zeros(n, np.int64), np.ones(n, np.bool_)
     work = workspace_for(n, physics)
     energy, length = energy_and_length(X)
@@ -77,13 +78,13 @@ def run_in_space(body, rules, physics, strand, history, tally):
     for k in range(rules.steps + 1):
         energy, length = energy_and_length(X)
         for i in range(n):
-            pressed[i] = strand.touching[i] and not strand.loose[i]
+            pressed[i] = touching[i] and not loose[i]
         link(pressed, before, after)
-        off_balance = max(unbalanced(X, strand.normal, before, after), sag(X, after))
+        off_balance = max(unbalanced(X, normal, before, after), sag(X, after))
         residual = off_balance * (n - 1) / max(length, TINY)
         if len(history) > 0:
             history[k, LENGTH], history[k, RESIDUAL] = length, residual
-            history[k, ANGLE] = mean_angle(X, strand.normal, pressed)
+            history[k, ANGLE] = mean_angle(X, normal, pressed)
         if residual <= rules.tolerance and longest <= rules.tolerance * length:
             status = CONVERGED
         if status == CONVERGED or k == rules.steps:
@@ -93,12 +94,12 @@ def run_in_space(body, rules, physics, strand, history, tally):
             kkt.step(strand, physics, rules.stabilisation, work, tally)
         else:
             solved = penalty.step(strand, physics, rules, work, tally)
-        if not solved or not kinetic_energy(strand.V) + physics.stiffness * energy <= bound:
+        if not solved or not kinetic_energy(V) + physics.stiffness * energy <= bound:
             status = DIVERGED
             break
-        longest = move_by(X, strand.V, h)
+        longest = move_by(X, V, h)
         update_gaps(body, strand, h, rules.width, tally)
         tally[STEPS] += 1
     for i in range(n):
-        strand.touching[i] = pressed[i] or i in (0, n - 1)
+        touching[i] = pressed[i] or i in (0, n - 1)
     return residual, length, status

@@ -18,12 +18,12 @@ def step(strand, physics, stabilisation, work, tally):
     stabilisation: share of a contact's gap that a step takes back, as n . v = -stabilisation gap / h in (7.3).
     Multipliers of the wrong sign are set to 0 and the velocities found again by (7.9), with the others as they are.
     """
-    V, normal, touching = strand.V, strand.normal, strand.touching
-    n, h = len(V), physics.step
-    spring_forces(strand.X, work.force)
+    V, normal, touching, gap = strand.V, strand.normal, strand.touching, strand.gap
+    n, h, force, right = len(V), physics.step, work.force, work.right
+    spring_forces(strand.X, force)
     for i in range(1, n - 1):
         for k in range(3):
-            work.right[i, k] = V[i, k] + h * physics.stiffness * work.force[i, k]
+            right[i, k] = V[i, k] + h * physics.stiffness * force[i, k]
     back = -stabilisation / h
     set_up(strand, back, work)
     tally[SOLVES] += 1
@@ -31,12 +31,12 @@ def step(strand, physics, stabilisation, work, tally):
     for i in range(1, n - 1):
         if touching[i]:
             for k in range(3):
-                V[i, k] += back * strand.gap[i] * normal[i, k]
+                V[i, k] += back * gap[i] * normal[i, k]
     if release(strand, work):
         tally[SOLVES] += 1
         for i in range(1, n - 1):
             for k in range(3):
-                V[i, k] = work.right[i, k]
+                V[i, k] = right[i, k]
         solve_free(work.matrix, V)
 
 
@@ -46,15 +46,21 @@ def set_up(strand, back, work):
 
     b are the prescribed velocities along the normals: `back` times the gap.
     """
-    V, normal, touching = strand.V, strand.normal, strand.touching
-    n, matrix = len(V), work.matrix
+    V, normal, touching, gap = strand.V, strand.normal, strand.touching, strand.gap
+    n, right, diagonal, free, coupling = (
+        len(V),
+        work.right,
+        work.matrix.diagonal,
+        work.matrix.free,
+        work.matrix.coupling,
+    )
     for i in range(1, n - 1):
-        matrix.diagonal[i, XX] = matrix.diagonal[i, YY] = matrix.diagonal[i, ZZ] = matrix.free
+        diagonal[i, XX] = diagonal[i, YY] = diagonal[i, ZZ] = free
         for k in range(3):
-            V[i, k] = work.right[i, k]
+            V[i, k] = right[i, k]
             for j in (i - 1, i + 1):
                 if touching[j] and 0 < j < n - 1:
-                    V[i, k] += matrix.coupling * back * strand.gap[j] * normal[j, k]
+                    V[i, k] += coupling * back * gap[j] * normal[j, k]
         if touching[i]:
             dot = V[i, 0] * normal[i, 0] + V[i, 1] * normal[i, 1] + V[i, 2] * normal[i, 2]
             for k in range(3):
@@ -67,19 +73,19 @@ def release(strand, work):
 
     The multiplier is lambda = n . (f - M v); contacts where it is positive become loose.
     """
-    V, normal = strand.V, strand.normal
+    V, normal, touching, loose = strand.V, strand.normal, strand.touching, strand.loose
     n, right, free, coupling = len(V), work.right, work.matrix.free, work.matrix.coupling
     pulled = False
     for i in range(1, n - 1):
-        strand.loose[i] = False
-        if not strand.touching[i]:
+        loose[i] = False
+        if not touching[i]:
             continue
         multiplier = 0.0
         for k in range(3):
             beside = (V[i - 1, k] if i > 1 else 0.0) + (V[i + 1, k] if i < n - 2 else 0.0)
             multiplier += normal[i, k] * (right[i, k] - free * V[i, k] + coupling * beside)
         if multiplier > 0.0:
-            strand.loose[i] = True
+            loose[i] = True
             pulled = True
         else:
             for k in range(3):

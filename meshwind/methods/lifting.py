@@ -18,9 +18,10 @@ def lift(chain, weighted, slack):
     The test is the source's unweighted (P- - 2 P + P+) . n > 0; `weighted` takes the force of (5.2) instead, which
     has the right sign where the gaps on the two sides differ.
     """
-    X, normal, before, after = chain.X, chain.normal, chain.before, chain.after
+    X, normal, touching, clearance = chain.X, chain.normal, chain.touching, chain.clearance
+    before, after = chain.before, chain.after
     n = len(X)
-    link(chain.touching, before, after)
+    link(touching, before, after)
     released = True
     while released:
         released = False
@@ -32,8 +33,8 @@ def lift(chain, weighted, slack):
             for k in range(3):
                 pull += (a * (X[p, k] - X[i, k]) + b * (X[q, k] - X[i, k])) * normal[i, k]
             if pull > slack:
-                chain.touching[i] = False
-                chain.clearance[i] = 0.0
+                touching[i] = False
+                clearance[i] = 0.0
                 after[p], before[q] = q, p
                 released = True
             i = q
@@ -42,10 +43,10 @@ def lift(chain, weighted, slack):
 @njit(cache=True)
 def straighten(chain):
     """Spread the lifted particles evenly between touching ones (section 5.2)."""
-    X = chain.X
+    X, clearance, after = chain.X, chain.clearance, chain.after
     i, n = 0, len(X)
     while i < n - 1:
-        j = chain.after[i]
+        j = after[i]
         for m in range(i + 1, j):
             t = (m - i) / (j - i)
             moved = 0.0
@@ -53,7 +54,7 @@ def straighten(chain):
                 x = (1.0 - t) * X[i, k] + t * X[j, k]
                 moved += (x - X[m, k]) ** 2
                 X[m, k] = x
-            chain.clearance[m] -= np.sqrt(moved)
+            clearance[m] -= np.sqrt(moved)
         i = j
 
 
@@ -64,21 +65,22 @@ def land(spline, chain, tally):
     It starts at the last foot, which is where (5.10) keeps the shadow particle.  The gap shrinks by no more than the
     particle moves, so most need no foot.  A particle that lands has no velocity.
     """
-    X, V, frames, normal = chain.X, chain.V, chain.frames, chain.normal
+    X, uv, V, frames, normal = chain.X, chain.uv, chain.V, chain.frames, chain.normal
+    touching, clearance = chain.touching, chain.clearance
     for m in range(1, len(X) - 1):
-        if chain.touching[m] or chain.clearance[m] > 0.0:
+        if touching[m] or clearance[m] > 0.0:
             continue
         tally[FEET] += 1
-        tally[EVALUATIONS] += foot(spline, X[m], chain.uv[m], frames[m])
+        tally[EVALUATIONS] += foot(spline, X[m], uv[m], frames[m])
         unit_normal(frames[m], normal[m])
         height = square = 0.0
         for k in range(3):
             r = X[m, k] - frames[m, S, k]
             height += r * normal[m, k]
             square += r * r
-        chain.clearance[m] = np.sqrt(square)
+        clearance[m] = np.sqrt(square)
         if height <= 0.0:
-            chain.touching[m] = True
+            touching[m] = True
             V[m, 0] = V[m, 1] = 0.0
             for k in range(3):
                 X[m, k] = frames[m, S, k]

@@ -13,16 +13,16 @@ from meshwind.methods.strand import spring_forces
 @njit(cache=True)
 def step(strand, physics, rules, work, tally):
     """New velocities of the strand; returns whether the matrix kept its digits: the velocities are lost where not."""
-    X, V, normal, gap = strand.X, strand.V, strand.normal, strand.gap
-    h, width, matrix, force = physics.step, rules.width, work.matrix, work.force
+    X, V, normal, touching, gap = strand.X, strand.V, strand.normal, strand.touching, strand.gap
+    h, width, force, diagonal = physics.step, rules.width, work.force, work.matrix.diagonal
     slope = h * h * rules.penalty / width
     spring_forces(X, force)
     for i in range(1, len(X) - 1):
-        s = matrix.diagonal[i]
-        s[XX] = s[YY] = s[ZZ] = matrix.free
+        s = diagonal[i]
+        s[XX] = s[YY] = s[ZZ] = work.matrix.free
         s[XY] = s[XZ] = s[YZ] = 0.0
         press = 0.0
-        if strand.touching[i]:
+        if touching[i]:
             press = rules.penalty * min((width - gap[i]) / width, 1.0)
             if gap[i] > 0.0:
                 a, b, c = normal[i, 0], normal[i, 1], normal[i, 2]
@@ -35,4 +35,4 @@ def step(strand, physics, rules, work, tally):
         for k in range(3):
             V[i, k] += h * (physics.stiffness * force[i, k] + press * normal[i, k])
     tally[SOLVES] += 1
-    return solve(matrix, normal, work.unpinned, V)
+    return solve(work.matrix, normal, work.unpinned, V)

@@ -36,30 +36,31 @@ def step(spline, chain, physics, forces, count, stages, move, tally):
 
     forces: those before the step.  Leaves the positions at the last stage.
     """
-    uv, V = chain.uv, chain.V
+    uv, V, particle = chain.uv, chain.V, forces.particle
+    uv0, V0, gain, slope = stages.uv, stages.V, stages.gain, stages.slope
     h = physics.step
     for c in range(count):
-        i = forces.particle[c]
+        i = particle[c]
         for a in range(2):
-            stages.uv[c, a], stages.V[c, a] = uv[i, a], V[i, a]
-            stages.gain[c, a] = move[c, a] = 0.0
-    accelerate(chain, physics, forces, count, stages.slope)
+            uv0[c, a], V0[c, a] = uv[i, a], V[i, a]
+            gain[c, a] = move[c, a] = 0.0
+    accelerate(chain, physics, forces, count, slope)
     for s in range(4):
         weight = h / 6.0 if s in (0, 3) else h / 3.0
         reach = h if s == 2 else 0.5 * h
         for c in range(count):
-            i = forces.particle[c]
+            i = particle[c]
             for a in range(2):
                 move[c, a] += weight * V[i, a]
-                stages.gain[c, a] += weight * stages.slope[c, a]
-                uv[i, a] = stages.uv[c, a] + reach * V[i, a]
-                V[i, a] = stages.V[c, a] + reach * stages.slope[c, a]
+                gain[c, a] += weight * slope[c, a]
+                uv[i, a] = uv0[c, a] + reach * V[i, a]
+                V[i, a] = V0[c, a] + reach * slope[c, a]
         if s < 3:
-            put_on_surface(spline, chain, forces.particle, count, physics.inertial)
+            put_on_surface(spline, chain, particle, count, physics.inertial)
             gather(chain, spline.periodic, 0.0, stages.forces)
-            accelerate(chain, physics, stages.forces, count, stages.slope)
+            accelerate(chain, physics, stages.forces, count, slope)
     for c in range(count):
-        i = forces.particle[c]
+        i = particle[c]
         for a in range(2):
-            uv[i, a], V[i, a] = stages.uv[c, a], stages.V[c, a] + stages.gain[c, a]
+            uv[i, a], V[i, a] = uv0[c, a], V0[c, a] + gain[c, a]
     tally[EVALUATIONS] += 3 * count

@@ -40,9 +40,10 @@ def update_gaps(body, strand, step, width, tally):
     A touching particle's foot is followed from the last one; the foot of one that comes down to the surface is found
     with the search tree, and not before it can have arrived.
     """
-    X, V, uv, frames, gap = strand.X, strand.V, strand.uv, strand.frames, strand.gap
+    X, V, uv, frames, normal = strand.X, strand.V, strand.uv, strand.frames, strand.normal
+    touching, gap = strand.touching, strand.gap
     for i in range(1, len(X) - 1):
-        if strand.touching[i]:
+        if touching[i]:
             tally[EVALUATIONS] += foot(body.spline, X[i], uv[i], frames[i])
         else:
             gap[i] -= step * np.sqrt(V[i, 0] ** 2 + V[i, 1] ** 2 + V[i, 2] ** 2)
@@ -50,17 +51,16 @@ def update_gaps(body, strand, step, width, tally):
                 continue
             tally[EVALUATIONS] += nearest_foot(body, X[i], uv[i], frames[i])
         tally[FEET] += 1
-        normal = strand.normal[i]
-        unit_normal(frames[i], normal)
+        unit_normal(frames[i], normal[i])
         height = square = 0.0
         for k in range(3):
             r = X[i, k] - frames[i, S, k]
-            height += r * normal[k]
+            height += r * normal[i, k]
             square += r * r
         # square and height^2 differ by round-off alone, except at a rim, beyond which there is no body
         beyond = square > OBLIQUE * height * height and at_end(body.spline.periodic, uv[i])
         gap[i] = np.sqrt(square) if beyond else height
-        strand.touching[i] = gap[i] <= width
+        touching[i] = gap[i] <= width
 
 
 @njit(inline="always", cache=True)
