@@ -17,7 +17,7 @@ from meshwind.editing.options import EditOptions
 from meshwind.editing.program import ACCURACY, Solution, certified, minimise
 from meshwind.editing.redesign import redesign
 from meshwind.editing.result import Outcome
-from meshwind.editing.step import GIVE, Program, assembled, energy
+from meshwind.editing.step import ELASTICITY, Program, assembled, energy
 from meshwind.mesh import mesh_from
 from meshwind.mesh.geometry.measure import volume
 from meshwind.surface import Surface, shapes
@@ -98,7 +98,7 @@ def test_one_row_has_the_answer_in_closed_form() -> None:
     change = by_osqp(program).x[: moved.size] * program.unit
     weight = one.matrix.toarray()[0]
     size = float(np.linalg.norm(weight))
-    assert change == pytest.approx(weight / size**2 * one.least[0] / (1 + GIVE), abs=1e-9)
+    assert change == pytest.approx(weight / size**2 * one.least[0] / (1 + ELASTICITY), abs=1e-9)
     # the waist of the hyperboloid lies this far below the chord between the rims
     assert one.least[0] == pytest.approx(np.sqrt(1 + 0.81) - 1, rel=1e-3)
 

@@ -13,7 +13,7 @@ from meshwind.core.parsing import shortened
 from meshwind.core.toml import nearest, read_toml
 
 _PATHS = "mesh", "out", "pins"
-"""Options that hold a path: relative to the file that they stand in."""
+"""Options that are paths, relative to the file that they are read from."""
 _EXPECTED = {bool: "true or false", int: "a whole number", float: "a number", str: "a text in quotes"}
 _NOT_IN_FILES = "config", "help"
 

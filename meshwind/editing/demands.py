@@ -1,11 +1,11 @@
-"""What the paths ask of the control net: to reach them where they are lifted (6.9), to press everywhere else.
+"""Inequalities on the control net: the surface must reach lifted fibres (6.9), and fibres must press on it elsewhere.
 
 (6.9) takes the surface's normal at the shadow.  Over a deep hollow the normals of neighbouring shadows cross before
-they reach the fibre, and a surface moved along them folds; so the move is along the direction across the chord that
-is nearest to the normal.  It is the normal itself where the surface below runs along the fibre.
+they reach the fibre, and a surface moved along them folds.  The move is therefore along the direction across the chord
+that is nearest to the normal: the normal itself where the surface below is parallel to the fibre.
 
 Reaching alone converges slowly: the surface then lies straight under the fibre, and every change of course lifts it
-again.  So each particle also asks for a little normal curvature along the fibre, which is linear in the control
+again.  Each particle therefore also demands a little normal curvature along the fibre, which is linear in the control
 points as well; then the rounds converge like Newton's method.
 """
 
@@ -19,17 +19,17 @@ from meshwind.editing.stencil import along, pitches, weights
 from meshwind.path.paths import Paths, Status
 
 JUMP = 0.5
-"""Spans that neighbouring shadows may lie apart; where they skip the floor of a hollow, points between them count."""
+"""Largest distance of neighbouring shadows, in spans; points are added where they skip the floor of a hollow."""
 
-CLOSE, MOST_BETWEEN = 0.5, 4
-"""Neighbouring paths up to a span and this much apart have none between; others get so many at most."""
+CLOSE, MAX_BETWEEN = 0.5, 4
+"""Neighbouring paths up to 1 + CLOSE spans apart have no curves between them; others have MAX_BETWEEN at most."""
 
 
 @dataclass(frozen=True)
 class Demands:
     """Inequalities matrix @ change >= least over the net's coordinates (k, 3m), in the surface's units.
 
-    chosen (k,) marks about one a span along each path: the others are nearly the same ones again.
+    chosen (k,) marks about one per span along each path: the others nearly repeat them.
     """
 
     matrix: sparse.csr_array
@@ -40,7 +40,7 @@ class Demands:
 def reach(paths: Paths) -> Demands:
     """The surface must come up to every lifted particle, (6.9) to (6.11)."""
     surface = paths.surface
-    lifted = ~paths.on_surface & _counts(paths)
+    lifted = ~paths.on_surface & _is_usable(paths)
     path, at = np.nonzero(lifted)
     spans, run = _travel(paths)
     pieces = np.maximum(1, np.ceil(spans[path, at - 1] / JUMP)).astype(np.int64)
@@ -84,37 +84,37 @@ def press(paths: Paths, curvature: float) -> Demands:
 
 
 def _pressed(paths: Paths) -> tuple[Floats, Floats]:
-    """Where the fibres must press, in the plane (k, 2), and their chords there (k, 3).
+    """Parameters (k, 2) of the points where the fibres must press, and their chords there (k, 3).
 
-    About once a span along each path, and also between neighbours that run further apart than a span: from round
-    to round paths move sideways there, and another start may send one through.
+    About one point per span along each path, and also between neighbours that are further apart than a span: from
+    round to round paths move sideways there, and with another start one may pass between them.
     """
     uv, points = paths.uv, paths.points
     spans, run = _travel(paths)
     chosen = np.zeros(paths.gap.shape, dtype=bool)
     chosen[:, 1:] = _new_span(run[:, :-1], spans, np.ones_like(spans), np.ones_like(spans))
-    chosen[:, [1, -2]] = True  # curvature runs straight within a span: its ends count, at the rims too
-    chosen &= _counts(paths)
+    chosen[:, [1, -2]] = True  # curvature is linear within a span, so its ends count, also at the rims
+    chosen &= _is_usable(paths)
     chosen[:, [0, -1]] = False
     chord = np.zeros(points.shape)
     chord[:, 1:-1] = points[:, 2:] - points[:, :-2]
-    places, chords = [uv[chosen]], [chord[chosen]]
+    parameters, chords = [uv[chosen]], [chord[chosen]]
     left = np.arange(len(paths))
     right, turns = _neighbours(paths)
     beside = uv[right] + turns[:, None, None] * [1.0, 0.0]
     apart = np.abs((beside - uv) * np.array(paths.surface.spans)).max(axis=2)
     open_ = chosen & chosen[right].any(axis=1, keepdims=True) & (right != left)[:, None]
-    for part in range(1, MOST_BETWEEN + 1):
-        pieces = np.minimum(np.ceil(apart - CLOSE), MOST_BETWEEN) + 1
+    for part in range(1, MAX_BETWEEN + 1):
+        pieces = np.minimum(np.ceil(apart - CLOSE), MAX_BETWEEN) + 1
         here = open_ & (pieces > part)
         share = (part / np.maximum(pieces, 1))[here][:, None]
-        places.append((1 - share) * uv[here] + share * beside[here])
+        parameters.append((1 - share) * uv[here] + share * beside[here])
         chords.append((1 - share) * chord[here] + share * chord[right][here])
-    return np.concatenate(places), np.concatenate(chords)
+    return np.concatenate(parameters), np.concatenate(chords)
 
 
 def _neighbours(paths: Paths) -> tuple[Ints, Floats]:
-    """The next path around of each path's family (p,), and the turns of u to it (p,)."""
+    """The next path around the part in each path's family (p,), and the turns of u to it (p,)."""
     right, turns = np.arange(len(paths)), np.zeros(len(paths))
     if paths.surface.periodic:
         for family in (1, -1):
@@ -125,8 +125,8 @@ def _neighbours(paths: Paths) -> tuple[Ints, Floats]:
     return right, turns
 
 
-def _counts(paths: Paths) -> Bools:
-    """Mask (p,) of the paths whose place means something, (p, 1) for broadcasting over particles."""
+def _is_usable(paths: Paths) -> Bools:
+    """Mask (p, 1) of the paths whose positions can be used: all but those that stalled or left the chart."""
     return ~np.isin(paths.status, (Status.STALLED, Status.LEFT_CHART))[:, None]
 
 
@@ -137,8 +137,8 @@ def _travel(paths: Paths) -> tuple[Floats, Floats]:
 
 
 def _new_span(start: Floats, length: Floats, step: Floats | Ints, pieces: Floats | Ints) -> Bools:
-    """Whether the given piece of a step is the first to cross into another span along the path."""
-    start = start + 1e-6  # particles may lie on knots to round-off, which must not decide
+    """Whether a piece of a step is the first to cross into another span along the path."""
+    start = start + 1e-6  # particles may lie on knots to round-off, which must not matter
     now, before = start + length * step / pieces, start + length * (step - 1) / pieces
     return np.asarray(np.floor(now) > np.floor(before))
 
@@ -158,7 +158,7 @@ def _chords(paths: Paths) -> Floats:
 
 
 def _across(normal: Floats, chord: Floats) -> Floats:
-    """The unit vectors across the chords nearest to the normals; the normal where it runs along its chord."""
+    """Unit vectors across the chords nearest to the normals; the normal itself where it is parallel to its chord."""
     across = normal - (normal * chord).sum(axis=1, keepdims=True) * chord
     size = np.linalg.norm(across, axis=1, keepdims=True)
     return np.where(size > 1e-3, across / np.maximum(size, 1e-3), normal)

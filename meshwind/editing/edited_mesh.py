@@ -1,4 +1,4 @@
-"""Carry the surface's displacement over to the user's own mesh, vertex by vertex."""
+"""Transfer the displacement of the surface to the vertices of the mesh."""
 
 from dataclasses import replace
 
@@ -16,44 +16,47 @@ from meshwind.surface.foot import feet
 from meshwind.surface.surface import Surface
 
 FADE = 0.15
-"""Of a rim's length (a cap's radius, nearly): beyond the wound region the displacement dies out over this distance."""
+"""Over the length of a rim (about the radius of a cap): distance over which the displacement dies out beyond a rim."""
 RINGS = 2
-"""Rings of vertices beyond a cut rim that move as the surface would if it went on: the next run cuts among them, and a
-field that merely dies out from the rim on leaves what it makes of them off the edited surface by 0.08 mm on the sample
-bottle, enough to bring bridges back; with them it is 0.02 mm."""
+"""Rings of vertices beyond a cut rim that move as the extended surface does.
+
+The next run cuts among them.  With a field that dies out from the rim, they lie 0.08 mm off the edited surface on the
+sample bottle, enough to bring bridges back; with these rings, 0.02 mm.
+"""
 BEYOND = 3
-"""Spans that the surface is taken to go on for, with its last span's polynomials."""
+"""Spans by which the surface is extended at each end, with the polynomials of its last span."""
 OFF = 0.01
-"""Of the part's size: a vertex further off the surface that goes on is not of it."""
+"""Over the part's size: a vertex further off the extended surface is not part of it."""
 
 
 def displacement(chart: Chart, before: Surface, after: Surface) -> Floats:
-    """How far each vertex (n, 3) of the mesh that was read moves when the surface goes from `before` to `after`.
+    """Displacement (n, 3) of each vertex of the mesh that was read when the surface changes from `before` to `after`.
 
-    A vertex of the wound region moves as the surface does at its foot point, so that it keeps its own distance to
-    it.  Of the vertices that were cut away (caps, the lining of a cup) those next to their rim move as the surface
-    would if it went on there, and those further off stay where they are: the field is biharmonic between, so that
-    neither it nor its slope breaks.
+    A vertex of the wound region moves as the surface does at its foot point, and keeps its distance to it.  Of the
+    vertices that were cut away (caps, the lining of a cup), those next to their rim move as the extended surface does
+    and those far off stay.  Between, the field is biharmonic, so that it and its slope are continuous.
     """
     annulus = chart.annulus
     vertices = annulus.mesh.vertices
     change = Surface(after.control_points - before.control_points, before.periodic)
     uv, _ = _feet(before, annulus.vertices, chart.uv)
-    place, nearest = cKDTree(annulus.vertices).query(vertices)
-    wound = place == 0.0  # trimming copies the coordinates of the vertices that it keeps
+    distance, nearest = cKDTree(annulus.vertices).query(vertices)
+    wound = distance == 0.0  # trimming copies the coordinates of the vertices that it keeps
     moved = np.zeros_like(vertices)
     moved[wound] = change.points(uv[nearest[wound]])
     if not wound.all() and np.abs(moved).max() > 0:
         near, on = _next_to(annulus.mesh, before, wound, uv[nearest])
-        moved[near] = _longer(change).points(on)
+        moved[near] = _extended(change).points(on)
         known = wound.copy()
         known[near] = True
-        moved = _faded(annulus.mesh, moved, wound, known, max(perimeter(annulus.vertices, rim) for rim in annulus.rims))
+        moved = _blended(
+            annulus.mesh, moved, wound, known, max(perimeter(annulus.vertices, rim) for rim in annulus.rims)
+        )
     return moved
 
 
 def within(moves: Floats, bound: float | None) -> Floats:
-    """The moves (n, 3), those longer than the bound cut down to it."""
+    """The moves (n, 3), with those longer than the bound shortened to it."""
     if bound is None:
         return moves
     size = np.linalg.norm(moves, axis=1, keepdims=True)
@@ -66,12 +69,12 @@ def displaced(mesh: Mesh, moves: Floats) -> Mesh:
 
 
 def volume_change(mesh: Mesh, moves: Floats) -> float:
-    """By how much the moves (n, 3) change the mesh's volume, open rims capped, in its units cubed."""
+    """Change of the mesh's volume by the moves (n, 3), open rims capped, in its units cubed."""
     return volume(mesh.vertices + moves, mesh.faces) - volume(mesh.vertices, mesh.faces)
 
 
 def turned_over(mesh: Mesh, moves: Floats) -> int:
-    """How many faces the moves (n, 3) turn by more than a right angle."""
+    """Number of faces that the moves (n, 3) turn by more than a right angle."""
     old, new = area_vectors(mesh.vertices, mesh.faces), area_vectors(mesh.vertices + moves, mesh.faces)
     return int(((old * new).sum(axis=1) <= 0).sum())
 
@@ -85,8 +88,8 @@ def _feet(surface: Surface, points: Floats, guess: Floats) -> tuple[Floats, Floa
     return uv, np.asarray(np.linalg.norm(surface.points(uv) - points, axis=1))
 
 
-def _longer(surface: Surface) -> Surface:
-    """The surface and BEYOND spans more at both ends, on which its outermost polynomials go on."""
+def _extended(surface: Surface) -> Surface:
+    """The surface with BEYOND more spans at both ends, which continue its outermost polynomials."""
     net = surface.control_points
     for _ in range(BEYOND):  # their fourth difference is zero
         first, last = (4 * net[:, a] - 6 * net[:, b] + 4 * net[:, c] - net[:, d] for a, b, c, d in (_FIRST, _LAST))
@@ -98,26 +101,26 @@ _FIRST, _LAST = (0, 1, 2, 3), (-1, -2, -3, -4)
 
 
 def _next_to(mesh: Mesh, surface: Surface, wound: Bools, uv: Floats) -> tuple[Ints, Floats]:
-    """Vertices (k,) within RINGS of the wound ones that lie on the surface if it went on, and where (k, 2) on that.
+    """Vertices (k,) within RINGS of the wound ones that lie on the extended surface, and their parameters (k, 2) there.
 
-    uv (n, 2) is where to look for each vertex first, on the surface itself.
+    uv (n, 2): first guess of each vertex's parameters, on the surface itself.
     """
     ring = wound.copy()
     for _ in range(RINGS):
         ring[mesh.faces[ring[mesh.faces].any(axis=1)]] = True
     near = np.flatnonzero(ring & ~wound)
     spans = surface.spans[1]
-    longer = _longer(surface)
+    extended = _extended(surface)
     guess = np.array(uv[near])
     guess[:, 1] = (guess[:, 1] * spans + BEYOND) / (spans + 2 * BEYOND)
-    on, distance = _feet(longer, mesh.vertices[near], guess)
+    on, distance = _feet(extended, mesh.vertices[near], guess)
     past = np.maximum(-on[:, 1], on[:, 1] - 1.0) * (spans + 2 * BEYOND) + BEYOND  # spans beyond the rim
-    lies = (past > 0.0) & (past < BEYOND - 1e-6) & (distance < OFF * surface.size)
-    return near[lies], on[lies]
+    found = (past > 0.0) & (past < BEYOND - 1e-6) & (distance < OFF * surface.size)
+    return near[found], on[found]
 
 
-def _faded(mesh: Mesh, moved: Floats, wound: Bools, known: Bools, rim: float) -> Floats:
-    """The displacement (n, 3) given at the known vertices, led over to zero away from the wound ones."""
+def _blended(mesh: Mesh, moved: Floats, wound: Bools, known: Bools, rim: float) -> Floats:
+    """The displacement (n, 3) that is given at the known vertices, blended to zero away from the wound ones."""
     away = cKDTree(mesh.vertices[wound]).query(mesh.vertices)[0]
     fixed = np.flatnonzero(known | (away > FADE * rim))
     if len(fixed) == len(moved):

@@ -1,4 +1,4 @@
-"""Which ways the control net may move: frozen control points, rotational symmetry, and a bound on every move."""
+"""How the control net may move: frozen control points, rotational symmetry, and a bound on every move."""
 
 from collections.abc import Callable
 from typing import TypeAlias
@@ -12,7 +12,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.surface.surface import Surface
 
 Frozen: TypeAlias = ArrayLike | Callable[[Floats], ArrayLike] | None
-"""A mask (nu, nv) of control points, or a function from their places (m, 3) to a mask (m,)."""
+"""A mask (nu, nv) of control points, or a function from their positions (m, 3) to a mask (m,)."""
 
 
 def frozen_mask(surface: Surface, frozen: Frozen) -> Bools:
@@ -31,10 +31,10 @@ def frozen_mask(surface: Surface, frozen: Frozen) -> Bools:
 
 
 def free_moves(surface: Surface, frozen: Bools, order: int = 1) -> sparse.csr_array:
-    """Columns of length 1 (3m, r) that span the moves allowed.
+    """Unit columns (3m, r) that span the allowed moves.
 
-    order: of the symmetry about u.  All control points with the same v and u mod 1/order then move alike in the
-    part's cylindrical frame; where one of them is frozen, all are.
+    order: of the rotational symmetry about u.  All control points with the same v and u mod 1/order then move alike in
+    the part's cylindrical frame; where one of them is frozen, all are.
     """
     nu, nv = frozen.shape
     if order == 1:
@@ -43,16 +43,16 @@ def free_moves(surface: Surface, frozen: Bools, order: int = 1) -> sparse.csr_ar
     _check_order(surface, order)
     row, column = np.meshgrid(np.arange(nu), np.arange(nv), indexing="ij")
     orbit = (row % (nu // order)) * nv + column
-    held = np.zeros(orbit.max() + 1, dtype=bool)
-    held[orbit[frozen]] = True
+    fixed = np.zeros(orbit.max() + 1, dtype=bool)
+    fixed[orbit[frozen]] = True
     frames = _cylindrical(surface.control_points.reshape(-1, 3), surface) / np.sqrt(order)
-    number = np.cumsum(~held) - 1
-    points = np.flatnonzero(~held[orbit.ravel()])
+    number = np.cumsum(~fixed) - 1
+    points = np.flatnonzero(~fixed[orbit.ravel()])
     at: Ints = number[orbit.ravel()[points]]
     rows = np.broadcast_to(3 * points[:, None, None] + np.arange(3)[:, None], (len(points), 3, 3))
     columns = np.broadcast_to(3 * at[:, None, None] + np.arange(3), (len(points), 3, 3))
     value = frames[points].transpose(0, 2, 1)
-    shape = (3 * nu * nv, 3 * int((~held).sum()))
+    shape = (3 * nu * nv, 3 * int((~fixed).sum()))
     return sparse.csr_array((value.ravel(), (rows.ravel(), columns.ravel())), shape=shape)
 
 
@@ -64,7 +64,7 @@ def _check_order(surface: Surface, order: int) -> None:
 
 
 def _cylindrical(points: Floats, surface: Surface) -> Floats:
-    """Unit vectors (m, 3, 3) outward, around and along the axis through the middles of the net's rows."""
+    """Unit vectors (m, 3, 3) outward, around and along the axis through the centres of the net's rows."""
     rings = surface.control_points.mean(axis=0)
     middle = rings.mean(axis=0)
     axis = np.linalg.svd(rings - middle)[2][0]
@@ -78,10 +78,10 @@ def _cylindrical(points: Floats, surface: Surface) -> Floats:
 
 
 def octahedra(moved: Floats, which: Ints, bound: float) -> tuple[sparse.csr_array, Floats]:
-    """Rows (8k, 3m) and upper bounds that keep control points `which` within an octahedron in the ball of `bound`.
+    """Rows (8k, 3m) and upper bounds that keep control points `which` within octahedra in the ball of radius `bound`.
 
-    moved (m, 3) is where each would go without: a tip of its octahedron lies there, so that the bound is exact
-    in the direction that counts.  Linear where the ball is not.
+    moved (m, 3) is the move of each without the bound: a tip of its octahedron lies in that direction, in which the
+    bound is then exact.  Unlike the ball, the octahedra are linear constraints.
     """
     tip = moved[which] / np.linalg.norm(moved[which], axis=1, keepdims=True)
     away = np.eye(3)[np.argmin(np.abs(tip), axis=1)]

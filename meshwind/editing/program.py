@@ -1,4 +1,4 @@
-"""A convex quadratic program by OSQP, with its certificate."""
+"""A convex quadratic program by OSQP, with its certificate of optimality."""
 
 from dataclasses import dataclass, replace
 
@@ -9,10 +9,10 @@ from scipy import sparse
 from meshwind.core.cast import Floats
 
 ACCURACY = 1e-6
-"""Largest KKT residual that counts as solved, in a program whose data are of order 1."""
-LADDER = (1e-4, 1e-5, ACCURACY, 3e-7)
-"""OSQP's own tolerances in turn: its polishing finds the answer to round-off as soon as it knows the active rows."""
-ITERATIONS = 10_000
+"""Largest KKT residual that counts as solved, for data of order 1."""
+TOLERANCES = (1e-4, 1e-5, ACCURACY, 3e-7)
+"""OSQP's own tolerances in turn: its polishing solves to round-off as soon as it has identified the active rows."""
+MAX_ITERATIONS = 10_000
 
 
 @dataclass(frozen=True)
@@ -32,24 +32,26 @@ class Solution:
 
     @property
     def solved(self) -> bool:
-        """Whether the certificate holds."""
+        """Whether the residuals are small enough."""
         return max(self.primal, self.dual) <= ACCURACY
 
 
 def minimise(P: sparse.csc_array, A: sparse.csc_array, low: Floats, high: Floats) -> Solution:
     """Minimise x^T P x / 2 subject to low <= A x <= high, with P positive definite; bounds may be infinite.
 
-    Solved as closely as it takes for the certificate to hold; where it never does, the best answer found.
+    The tolerance is lowered until the certificate shows it solved; the best solution found otherwise.
     """
-    if (low <= 0.0).all() and (high >= 0.0).all():  # no row is active at the minimum; OSQP would print that it is so
+    if (low <= 0.0).all() and (
+        high >= 0.0
+    ).all():  # no row is active at the minimum, of which OSQP would print a message
         return certified(P, A, low, high, np.zeros(P.shape[0]), np.zeros(A.shape[0]), 0)
     solver = osqp.OSQP()
     solver.setup(
         sparse.csc_matrix(sparse.triu(P)), np.zeros(P.shape[0]), sparse.csc_matrix(A), low, high, verbose=False,
-        polishing=True, scaling=0, rho=1.0, alpha=1.7, max_iter=ITERATIONS, adaptive_rho_interval=50,
+        polishing=True, scaling=0, rho=1.0, alpha=1.7, max_iter=MAX_ITERATIONS, adaptive_rho_interval=50,
     )  # fmt: skip
     found, iterations = None, 0
-    for tolerance in LADDER:
+    for tolerance in TOLERANCES:
         solver.update_settings(eps_abs=tolerance, eps_rel=tolerance)
         answer = solver.solve(raise_error=False)
         iterations += int(answer.info.iter)
@@ -58,7 +60,7 @@ def minimise(P: sparse.csc_array, A: sparse.csc_array, low: Floats, high: Floats
             found = trial
         if found.solved:
             break
-    assert found is not None  # LADDER is not empty
+    assert found is not None  # TOLERANCES is not empty
     return replace(found, iterations=iterations)
 
 

@@ -1,11 +1,11 @@
-"""What a redesign reports: a line of figures for every round, and how it ended."""
+"""Results of a redesign: the figures of each round, and the outcome."""
 
 from dataclasses import dataclass
 from enum import IntEnum
 
 
 class Outcome(IntEnum):
-    """How a redesign ended; 0 is a part on which nothing bridges, anything else comes with advice."""
+    """How a redesign ended: 0 is a part on which nothing bridges."""
 
     WINDABLE = 0
     OUT_OF_REACH = 1
@@ -16,7 +16,7 @@ class Outcome(IntEnum):
 
     @property
     def advice(self) -> str:
-        """What the outcome means and what to do about it."""
+        """What the outcome means, and what to do about it."""
         return _ADVICE[self]
 
 
@@ -30,19 +30,20 @@ _ADVICE = {
     "mesh",
     Outcome.NOT_SOLVED: "the quadratic program was not solved to its accuracy: use fewer paths, or a coarser surface "
     "(tolerance 1e-4)",
-    Outcome.NOT_KEPT: "the edited surface does not bridge, but the one fitted to the edited mesh does: give a finer "
-    "mesh, or take gaps of this size for none by a larger threshold",
+    Outcome.NOT_KEPT: "fibres do not bridge on the edited surface, but on the one fitted to the edited mesh: give a "
+    "finer mesh, or ignore gaps of this size by a larger threshold",
 }
 
 
 @dataclass(frozen=True)
 class Round:
-    """One round: bridged share of the particles before and after, largest gap before and after, and the program.
+    """Figures of one round.
 
-    Gaps are in the mesh's units; a particle bridges where its gap is above this round's threshold.  change is the
-    largest displacement of a control point so far; objective the energy of this round's change, in the mesh's units
-    squared; shortfall how far the edit, were the fibre to stay, leaves the surface below it; primal and dual are the
-    KKT residuals of the scaled program.
+    threshold: a particle bridges where its gap is above this; bridged_before, bridged_after: share of the particles
+    that bridge; gap_before, gap_after: largest gap, in the mesh's units; change: largest displacement of a control
+    point so far; objective: energy of this round's change, in the mesh's units squared; shortfall: how far the edit
+    leaves the surface below the fibre where the fibre stays; primal, dual: KKT residuals of the scaled program; rows,
+    iterations: its constraints, and the steps of its solver.
     """
 
     threshold: float

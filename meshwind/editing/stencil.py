@@ -1,4 +1,4 @@
-"""How the control net moves the surface: J_C of (6.7) as sparse rows, one stencil of 4 x 4 control points a row."""
+"""The Jacobian J_C of (6.7), of the surface by the control points, as sparse rows of 4 x 4 control points each."""
 
 from typing import TypeAlias
 
@@ -10,11 +10,11 @@ from meshwind.surface.evaluate import basis, bend, slope
 from meshwind.surface.surface import DEGREE, Surface
 
 Order: TypeAlias = tuple[int, int]
-"""Derivatives by u and by v."""
+"""Orders of the derivatives by u and by v."""
 
 
 def weights(surface: Surface, uv: Floats, orders: tuple[Order, ...]) -> tuple[Ints, list[Floats]]:
-    """Which control points (k, 16) move the points uv (k, 2), and by what part (k, 16) for each derivative."""
+    """Control points (k, 16) that the surface at uv (k, 2) depends on, and their weights (k, 16) per derivative."""
     nu, nv = surface.control_points.shape[:2]
     spans = np.array(surface.spans)
     local = (uv - [1.0, 0.0] * np.floor(uv) * surface.periodic) * spans
@@ -28,12 +28,12 @@ def weights(surface: Surface, uv: Floats, orders: tuple[Order, ...]) -> tuple[In
 
 
 def _derivatives(x: Floats, spans: int) -> list[Floats]:
-    """The four weights (k, 4) at local coordinates x, their first and their second derivatives."""
+    """The four weights (k, 4) at local coordinates x, and their first and second derivatives."""
     return [np.stack(values, axis=1) for values in (basis(x), slope(x, spans), bend(x, spans))]
 
 
 def along(which: Ints, part: Floats, direction: Floats, points: int) -> sparse.csr_array:
-    """Rows (k, 3 points) that give the move along `direction` (k, 3): d^T J_C of (6.9); coordinates run fastest."""
+    """Rows (k, 3 points) of the move along `direction` (k, 3): d^T J_C of (6.9); coordinates vary fastest."""
     value = part[:, :, None] * direction[:, None, :]
     column = 3 * which[:, :, None] + np.arange(3)
     row = np.repeat(np.arange(len(which)), value[0].size if len(value) else 0)
@@ -41,7 +41,7 @@ def along(which: Ints, part: Floats, direction: Floats, points: int) -> sparse.c
 
 
 def bending(surface: Surface) -> sparse.csr_array:
-    """Second differences of the net, squared and summed (m, m), in 1 / length^4: how a change of the net bends."""
+    """Bending energy (m, m) of a change of the net: its second differences, squared and summed, in 1 / length^4."""
     nu, nv = surface.control_points.shape[:2]
     pitch_u, pitch_v = pitches(surface)
     once = sparse.eye_array(nu, k=1) - sparse.eye_array(nu) + sparse.eye_array(nu, k=1 - nu)

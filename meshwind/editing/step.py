@@ -1,9 +1,9 @@
-"""One round of the redesign: the least change of the control net that meets what the paths demand, (6.12).
+"""One round of the redesign: the least change of the control net that meets the demands of the paths, (6.12).
 
 The inequalities are elastic: min dC^T (1 + f B) dC + |t|^2 / d subject to M dC + t >= b.  Paths lie closer together
 than control points, so that the rows of (6.10) nearly repeat each other; their multipliers are then not unique, and
-OSQP's iterations crawl (10,000 and more where the elastic form takes 500).  A row gives way by one or two hundredths of
-the largest demand, which the margin pays for, and what has no solution shows as a row that gives way by much more.
+OSQP converges slowly (10,000 iterations and more where the elastic form takes 500).  A row is violated by one or two
+hundredths of the largest demand, which the margin compensates; without a solution a row is violated by much more.
 """
 
 from dataclasses import dataclass
@@ -18,15 +18,16 @@ from meshwind.editing.program import Solution, minimise
 from meshwind.editing.stencil import bending
 from meshwind.surface.surface import Surface
 
-GIVE = 3e-2
+ELASTICITY = 3e-2
 """d, with rows of length 1, change of order 1 and demands up to 1."""
-OWN_SAY = (0.05, 0.5)
-"""A row of `reach` or `press` of whose length less than this part is free is left out: it asks the frozen to move."""
+LEAST_FREE = (0.05, 0.5)
+"""Least free share of the length of a row of `reach` and of `press`; others move what is frozen, and are left out."""
 MARGIN = 0.02
-"""Beyond the fibre, as a part of the largest gap: more than a row gives way."""
-ROUNDS, BOUND_ROUNDS = 3, 12
+"""Distance beyond the fibre over the largest gap: more than a row is violated."""
+MAX_SOLVES, MAX_BOUND_SOLVES = 3, 12
+"""Programs that are solved in a round for rows that were left unmet, and for control points beyond the bound."""
 BOUND_SHARE = 1 - 1e-4
-"""Of the bound that the program is given, so that its last digits stay within the bound."""
+"""Share of the bound that the program is given, so that its error stays within the bound."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class Program:
 
 @dataclass(frozen=True)
 class Step:
-    """A change (nu, nv, 3) of the control net, and by how much it falls short of the fibre at worst.
+    """A change (m, 3) of the control points, and by how much it falls short of the fibre at most.
 
     objective is the change's energy in the surface's units squared: dC^T dC of (6.12) plus its bending.
     """
@@ -55,9 +56,9 @@ class Step:
 
 
 def energy(surface: Surface, fairness: float) -> sparse.csr_array:
-    """The change's energy (3m, 3m): its square, (6.12), and its bending, equal to it at a wave of fairness * size.
+    """Energy (3m, 3m) of a change: its square, (6.12), and its bending, equal for waves of length fairness * size.
 
-    Without bending, control points between the paths stay behind, and a filled hollow comes out wrinkled.
+    Without bending, control points between the paths stay behind, and a filled hollow is wrinkled.
     """
     points = surface.control_points.size // 3
     total = sparse.eye_array(points)
@@ -70,18 +71,18 @@ def step(
     reach: Demands, press: Demands, cost: sparse.csr_array, moves: sparse.csr_array, moved: Floats,
     bound: float | None, margin: float,
 ) -> Step:  # fmt: skip
-    """Solve (6.12) for what is chosen of the demands, and again with what it leaves unmet.
+    """Solve (6.12) for the chosen demands, and again with those that are left unmet.
 
-    cost (3m, 3m) from `energy`; moves (3m, r) span what is free; moved (m, 3) is how far the control points have
-    been moved before, and bound how far they may in all; margin: least distance beyond the fibre.
+    cost (3m, 3m): from `energy`; moves (3m, r): span the allowed moves; moved (m, 3): displacements of the control
+    points so far; bound: largest total displacement; margin: least distance beyond the fibre.
     """
     margin = max(margin, MARGIN * float(reach.least.max(initial=0.0)))
     bounded = np.zeros(len(moved), dtype=bool)
     tips = moved
     kept = reach.chosen.copy()
-    found, rounds = None, 0
+    solves = 0
     while True:
-        rounds += 1
+        solves += 1
         limits = None if bound is None else octahedra(tips, np.flatnonzero(bounded), BOUND_SHARE * bound)
         program = assembled(reach, press, kept, cost, moves, moved, limits, margin)
         solution = minimise(program.P, program.A, program.low, program.high)
@@ -97,7 +98,7 @@ def step(
             total = moved + found.change
             over = (np.linalg.norm(total, axis=1) > bound) & ~bounded
             tips = np.where(over[:, None], total, tips)
-        if rounds >= BOUND_ROUNDS or not (over.any() or (more.any() and rounds < ROUNDS)):
+        if solves >= MAX_BOUND_SOLVES or not (over.any() or (more.any() and solves < MAX_SOLVES)):
             return found
         kept, bounded = kept | more, bounded | over
 
@@ -106,20 +107,20 @@ def assembled(
     reach: Demands, press: Demands, kept: Bools, cost: sparse.csr_array, moves: sparse.csr_array, moved: Floats,
     limits: tuple[sparse.csr_array, Floats] | None, margin: float,
 ) -> Program:  # fmt: skip
-    """The elastic program for the rows `kept` of reach and those chosen of press, in units of the largest demand."""
+    """The elastic program for the rows `kept` of reach and the chosen ones of press, in units of the largest demand."""
     pressing = press.chosen & (press.least > -0.1 * float(press.least.max(initial=0.0)) - 10 * margin)
     rows = sparse.vstack([reach.matrix[kept], press.matrix[pressing]]).tocsr()
     least = np.concatenate([reach.least[kept] + margin, press.least[pressing]])
     free = sparse.csr_array(rows @ moves)
-    may_move = np.diff(moves.indptr) > 0  # symmetry shortens a row as well, but does not keep it from being met
-    length, own = _lengths(rows), _lengths(rows * may_move)
+    may_move = np.diff(moves.indptr) > 0  # symmetry shortens a row as well, but a shortened row can still be met
+    length, free_length = _lengths(rows), _lengths(rows * may_move)
     first = int(kept.sum())
-    sensible = own > np.where(np.arange(len(own)) < first, *OWN_SAY) * length
-    free, least, length = free[sensible], least[sensible] / length[sensible], length[sensible]
+    usable = free_length > np.where(np.arange(len(length)) < first, *LEAST_FREE) * length
+    free, least, length = free[usable], least[usable] / length[usable], length[usable]
     unit = float(np.abs(least).max(initial=margin))
     count, size = free.shape
     scale = sparse.diags_array(1.0 / length)
-    parts = [[scale @ free, np.sqrt(GIVE) * sparse.eye_array(count)]]
+    parts = [[scale @ free, np.sqrt(ELASTICITY) * sparse.eye_array(count)]]
     low, high = [least / unit], [np.full(count, np.inf)]
     if limits is not None:
         parts.append([limits[0] @ moves, sparse.csr_array((len(limits[1]), count))])

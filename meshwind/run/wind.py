@@ -281,7 +281,7 @@ def _folder(out: str | PathLike[str]) -> Path:
     except UnicodeEncodeError:
         named = False
     if not named:
-        raise BadInputError(f"out is {fspath(out)[:40]!r}, which no folder can be called; give another")
+        raise BadInputError(f"out is {fspath(out)[:40]!r}, which is not a possible name of a folder; give another")
     return Path(out)
 
 
@@ -304,16 +304,16 @@ def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: Cloc
 
 
 def _used(result: Result, out: Path, render: bool) -> dict[str, object]:
-    """All options as used, for another run like this one."""
+    """All options, with which the run can be repeated."""
     pins = None if result.options.pins is None else Path(result.options.pins)
     return {"mesh": result.source, "out": out} | result.options.written() | {"pins": pins, "render": render}
 
 
 def _draw(result: Result, out: Path) -> str:
-    """Draw the winding, what a warning wants to show and the contact sheet; return "" or what is missing and why."""
+    """Draw the winding, the picture of a warning and the contact sheet; return "" or what is missing for drawing."""
     name, units = result.mesh.name, result.options.units
     of = subject_in(out, result.layup, name, units, result.revolutions)
-    with TemporaryDirectory(dir=out) as cells:  # a killed run leaves nothing elsewhere
+    with TemporaryDirectory(dir=out) as cells:  # within, so that a killed run leaves nothing elsewhere
         pictures = placed(scenes_of(of), (WINDING, SHEET), Page(), out, Path(cells))
         work = dict(pictures)
         if any(note.picture == FIT_PICTURE for note in result.notes):

@@ -1,4 +1,4 @@
-"""tradeoffs.png: what a study's figures do as what is swept changes."""
+"""tradeoffs.png: the figures of a study against the swept options."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -18,16 +18,17 @@ _DPI = 130
 
 
 def draw_tradeoffs(picture: Path, rows: Sequence[Mapping[str, Any]], swept: Sequence[str]) -> None:
-    """A column for each option with several numbers, a row for each figure; a line joins cases alike in the rest.
+    """Draw a column for each option with several numbers and a row for each figure.
 
-    Cases that were refused or lost have no figures, and are counted in the title.
+    A line joins cases whose other options are the same.  Cases that were refused or lost have no figures, and are
+    counted in the title.
     """
     names = [_column(name) for name in swept]
     done = [row for row in rows if row["status"] not in ("refused", "lost")]
     numeric = [name for name in names if len(_numbers(done, name)) > 1]
     if not numeric:
         return
-    # imported late, as all that draws
+    # late: Matplotlib takes long to import
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -52,10 +53,11 @@ def draw_tradeoffs(picture: Path, rows: Sequence[Mapping[str, Any]], swept: Sequ
                 axes.set_xlabel(name.replace("_", " "))
     _legend(figure, grid[0, 0])
     failed = len(rows) - len(done)
-    loose = sum(row["status"] == "not all at rest" for row in done)
+    at_rest = sum(row["status"] == "at rest" for row in done)
     figure.suptitle(
-        f"{len(rows)} cases: {len(done) - loose} at rest, {loose} with paths that are not, {failed} without figures.  "
-        "A line joins cases that are alike in the rest.",
+        f"{len(rows)} cases: {at_rest} at rest, {len(done) - at_rest} with paths that are not, {failed} without "
+        "figures.  "
+        "A line joins cases whose other options are the same.",
         fontsize=10,
     )
     with staged(picture.parent, lambda _: ()) as staging:
@@ -74,7 +76,7 @@ def _numbers(rows: Sequence[Mapping[str, Any]], name: str) -> set[float]:
 def _lines(
     rows: Sequence[Mapping[str, Any]], name: str, others: Sequence[str]
 ) -> list[tuple[Mapping[str, Any], list[Mapping[str, Any]]]]:
-    """The cases that have a number for `name`, by what they have for the others, each line by growing numbers."""
+    """The cases that have a number for `name`, grouped by their other options, each group by increasing numbers."""
     groups: dict[str, list[Mapping[str, Any]]] = {}
     for row in rows:
         if isinstance(row[name], int | float):
@@ -83,7 +85,7 @@ def _lines(
 
 
 def _style(row: Mapping[str, Any], rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """A colour and a mark a mesh."""
+    """A colour and a mark for each mesh."""
     meshes = list(dict.fromkeys(each["mesh"] for each in rows))
     k = meshes.index(row["mesh"])
     return {"color": _COLOURS[k % len(_COLOURS)], "marker": _MARKS[k % len(_MARKS)], "label": row["mesh"]}

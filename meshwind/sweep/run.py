@@ -31,7 +31,7 @@ class Swept:
 
     @property
     def settled(self) -> bool:
-        """Whether every path of every case came to rest."""
+        """Whether every path of every case converged."""
         return all(row["status"] == "at rest" for row in self.rows)
 
 

@@ -30,8 +30,8 @@ _MAX_NAME = 40
 class Case:
     """One winding of a study: the mesh file, the options, and whether pictures are drawn.
 
-    key: the same for the same file's content, options and version of meshwind, whatever the study; it names the
-    case's folder.
+    key: the same in every study for the same content of the file, options and version of meshwind; it names the
+    folder of the case.
     """
 
     mesh: Path

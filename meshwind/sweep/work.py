@@ -91,7 +91,7 @@ def _use_one_thread() -> None:
 
 
 def _figures(result: Result) -> dict[str, Any]:
-    """The figures of a row: the same whatever the machine, so none of time."""
+    """The figures of a row: the same on every machine, so none of time."""
     report = result.report()
     paths, crossings, cover = report["paths"], report["crossings"], report["coverage"]
     failed = paths["not_converged"]

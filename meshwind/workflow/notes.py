@@ -1,4 +1,4 @@
-"""What a user should know of a run beside its figures: how well the surface follows the mesh."""
+"""Notes and warnings for the user beside the figures of a run."""
 
 from dataclasses import dataclass, replace
 
@@ -17,25 +17,25 @@ from meshwind.surface import FitError, Surface
 from meshwind.surface.deviation import deviation
 
 MISSED = 10.0
-"""A vertex error of so many times the tolerance is worth a warning, ..."""
+"""A vertex error of more than this many times the tolerance is worth a warning, ..."""
 SHOWS = 1e-4
-"""... where it is also more than this part of the diagonal: less than the facets of most meshes are off."""
+"""... where it is also more than this share of the diagonal: less than the facets of most meshes are off."""
 UNRESOLVED = 1e-2
-"""An error, either way, of more than this part of the diagonal means that the surface is another shape."""
+"""An error in either direction of more than this share of the diagonal means that the surface has another shape."""
 
 SQUEEZED = 8.0
-"""Area scale that is this uneven (its 99th percentile over its mean) is the mark of fingers, ears and fins."""
-_TOLD = 3
-"""So many of the places where they do are told by their coordinates."""
+"""A 99th percentile of the area scale above this, over its mean, is typical of fingers, ears and fins."""
+_MAX_LISTED = 3
+"""Places where surface and mesh lie far apart that are listed with their coordinates."""
 _PROTRUSIONS = "protrusions such as fingers and ears are squeezed by the chart; wind a part without them"
 _COARSE = "its edges there are too sharp for the mesh; give a finer mesh, or round them"
 
 
 @dataclass(frozen=True)
 class Note:
-    """One line for the user; a warning is one that says the results may not be what was wanted.
+    """One line for the user; a warning where the results may not be what was wanted.
 
-    picture: name of the file that shows what it is about, "" if none does.
+    picture: name of the file that shows the subject, "" if there is none.
     """
 
     text: str
@@ -46,39 +46,45 @@ class Note:
         return f"warning: {self.text}" if self.warning else self.text
 
     def shown(self, there: bool) -> "Note":
-        """The note, naming its picture where that is there and not where it is not."""
-        words = f"; see {self.picture}"
-        return replace(self, text=self.text.removesuffix(words) + (words if there and self.picture else ""))
+        """The note with a reference to its picture where there is one."""
+        reference = f"; see {self.picture}"
+        return replace(self, text=self.text.removesuffix(reference) + (reference if there and self.picture else ""))
 
 
 def about_paths(paths: Paths) -> tuple[Note, ...]:
-    """What to say of the paths: how many cut an edge that their particles do not resolve."""
+    """Note on paths that turn over an edge which their particles do not resolve."""
     cut = int((paths.sharpest_turn[paths.status == Status.CONVERGED] > EDGE).sum())
     if not cut:
         return ()
-    told = "1 path turns" if cut == 1 else f"{cut} paths turn"
+    which = "1 path turns" if cut == 1 else f"{cut} paths turn"
     more = 2 * paths.gap.shape[1] - 1
-    return (Note(f"{told} over an edge within one segment, exact to its length there; --particles {more} tells more"),)
+    return (
+        Note(
+            f"{which} over an edge within one segment, exact to its length there; --particles {more} resolves it better"
+        ),
+    )
 
 
 def about_layup(layup: Layup) -> tuple[Note, ...]:
-    """Whether the quad mesh is of fibres that hold."""
+    """Note on a quad mesh that is not of converged paths."""
     if not layup.initial:
         return ()
-    return (Note("too few paths hold for a quad mesh: crossings and quads are those of the windings as asked for"),)
+    return (Note("too few paths converged for a quad mesh: crossings and quads are those of the windings as planned"),)
 
 
 def about_choice(chosen: Revolutions | None) -> tuple[Note, ...]:
-    """Why so many revolutions were chosen, and what would allow more."""
+    """Note on why the revolutions were chosen, and what would allow more."""
     if chosen is None:
         return ()
-    ways = []
+    more = []
     if chosen.with_friction > 0.0:
-        ways.append(f"friction {FRICTION:g} would allow {_number(chosen.with_friction)}")
+        more.append(f"friction {FRICTION:g} would allow {_number(chosen.with_friction)}")
     if chosen.with_opening > 0.0:
-        ways.append(f"openings {WIDER:g} times as wide {_number(chosen.with_opening)}")
-    more = f"; {', '.join(ways)}" if ways else ""
-    return (Note(f"chose {chosen.why}{more}; see {REVOLUTIONS_PICTURE}", not chosen.holding.any, REVOLUTIONS_PICTURE),)
+        more.append(f"openings {WIDER:g} times as wide {_number(chosen.with_opening)}")
+    allowed = f"; {', '.join(more)}" if more else ""
+    return (
+        Note(f"chose {chosen.why}{allowed}; see {REVOLUTIONS_PICTURE}", not chosen.holding.any, REVOLUTIONS_PICTURE),
+    )
 
 
 def _number(turns: float) -> str:
@@ -86,7 +92,7 @@ def _number(turns: float) -> str:
 
 
 def about_spacing(spaced: Spaced | None, units: str = "") -> tuple[Note, ...]:
-    """Where the spacing could not be kept, because no fibre rests between two neighbours."""
+    """Note on neighbours that stay further apart than the spacing, because no path lies stably between them."""
     if spaced is None or not len(spaced.partings):
         return ()
     many = len(spaced.partings)
@@ -100,7 +106,7 @@ def about_spacing(spaced: Spaced | None, units: str = "") -> tuple[Note, ...]:
 
 
 def about_fit(surface: Surface, chart: Chart, tolerance: float, worst_fit: float, units: str = "") -> tuple[Note, ...]:
-    """What to say of the fit; raises BadInputError where it is off by more than `worst_fit` of the part.
+    """Note on the fit; raises BadInputError where it is off by more than `worst_fit` of the part.
 
     A warning has FIT_PICTURE for its picture.
     """
@@ -139,10 +145,10 @@ def _unresolved(surface: Surface, chart: Chart, error: FitError, units: str) -> 
 
 
 def _places(surface: Surface, chart: Chart) -> str:
-    """Where the surface and the mesh lie furthest apart, looked at from both, region by region."""
+    """Where the surface and the mesh lie furthest apart, seen from both, region by region."""
     found = deviation(surface, chart.annulus).regions
     diagonal = chart.annulus.mesh.diagonal
-    told = [place(where.on_surface, diagonal) for where in found]
-    rest = len(told) - _TOLD
-    more = told[1:_TOLD] + ([f"{rest} more {'place' if rest == 1 else 'places'}"] if rest > 0 else [])
-    return f"near {told[0]}" + (f", then near {' and '.join(more)}" if more else "")
+    first, *others = [place(where.on_surface, diagonal) for where in found]
+    listed, left = others[: _MAX_LISTED - 1], len(found) - _MAX_LISTED
+    listed += [f"{left} more {'place' if left == 1 else 'places'}"] if left > 0 else []
+    return f"near {first}" + (f", then near {' and '.join(listed)}" if listed else "")

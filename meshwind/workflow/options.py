@@ -1,7 +1,7 @@
 """What a run is to do: its options, checked as a whole before anything is read.
 
-The record `Options` is the one place that says what options there are and what each means by default: the command
-line with its help, configuration files, studies, `meshwind.wind` and meshwind.toml take them from it.
+The record `Options` is the one place that defines the options, their defaults and their meaning: the command line with
+its help, configuration files, studies, `meshwind.wind` and meshwind.toml take them from it.
 """
 
 from dataclasses import dataclass, field, fields

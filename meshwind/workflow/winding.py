@@ -81,7 +81,7 @@ def _friction(part: Part, options: Options) -> float | Friction:
 def chosen_revolutions(
     surface: Surface, options: Options, clock: Clock, friction: float | Friction = 0.0, further: bool = True
 ) -> Revolutions | None:
-    """Choose the revolutions, where that is asked for; further as in `choose_revolutions`."""
+    """Choose the revolutions where they are "auto"; further as in `choose_revolutions`."""
     if options.revolutions != AUTO:
         return None
     paths, particles = options.paths, options.particles
