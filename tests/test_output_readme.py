@@ -11,11 +11,13 @@ import pyvista as pv
 from layup_shapes import bridged
 
 import meshwind as mw
+from meshwind.core.option import options_of
 from meshwind.layup.layup import assess
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.results.schema import RESULTS
 from meshwind.results.write import write_files
 from meshwind.surface import shapes
+from meshwind.workflow.options import Options
 from meshwind.surface.grid import grid
 
 ROOT = Path(__file__).parents[1]
@@ -86,6 +88,15 @@ def test_snippets_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         exec(compile(snippet, f"README.md, snippet {number}", "exec"), names)
     assert {"result", "layup", "barrel", "held", "field"} <= set(names)
     assert (tmp_path / "out" / "slip.png").is_file()
+
+
+def test_options_are_described_as_in_the_help() -> None:
+    def plain(text: str) -> str:
+        return re.sub(r"[`\"]", "", text).lower()
+
+    described = {re.findall(r"--[\w-]+", cells[0])[0]: plain(cells[1]) for cells in rows("option")}
+    for name, option in options_of(Options).items():
+        assert plain(option.meaning) in described[f"--{name.replace('_', '-')}"]
 
 
 @pytest.mark.parametrize("turns", [1, 4])

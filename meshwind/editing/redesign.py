@@ -48,7 +48,7 @@ class Redesign:
     mesh : Mesh
         Edited mesh, with the vertices and faces of `part` in their order.
     displacement : ndarray of float, shape (n, 3)
-        Displacements of the vertices, in the mesh's unit.
+        Displacements of the vertices, in the mesh's units.
     before, after : Proof
         Chart, surface and paths of `part` and of `mesh`, each fitted and wound as by `wind`.
     stages : tuple of tuple of Round
@@ -157,7 +157,7 @@ def redesign(  # noqa: PLR0913
         file, where it is above 0; a mask (nu, nv) of control points; or a function from their positions (m, 3) to a
         mask (m,).
     bound : float, optional
-        Largest displacement, in the mesh's unit.  By default there is none.
+        Largest displacement, in the mesh's units.  By default there is none.
     symmetry : int, default 1
         Order of rotation about the part that is kept, a divisor of the number of control points around it.
     fairness : float, default 0.4
@@ -166,7 +166,7 @@ def redesign(  # noqa: PLR0913
     pressing : float, default 0.2
         Least normal curvature along the fibres, times the size of the part.
     threshold : float, optional
-        Ignore gaps up to this, in the mesh's unit.  By default the largest distance of a vertex from the fitted
+        Ignore gaps up to this, in the mesh's units.  By default the largest distance of a vertex from the fitted
         surface.
     component, ends, opening, tolerance : optional
         As for `wind`.

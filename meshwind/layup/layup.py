@@ -70,12 +70,12 @@ class Layup:
 
     @cached_property
     def neighbours(self) -> Neighbours:
-        """Distances between neighbouring paths of a family, in the mesh's unit."""
+        """Distances between neighbouring paths of a family, in the mesh's units."""
         return neighbours(self.paths)
 
     @cached_property
     def sides(self) -> CellSides:
-        """Lengths of fibre between neighbouring crossings, in the mesh's unit."""
+        """Lengths of fibre between neighbouring crossings, in the mesh's units."""
         return cell_sides(self.crossed, self.crossings)
 
     @cached_property
@@ -105,7 +105,7 @@ def assess(paths: Paths, width: float | None = None) -> Layup:
     paths : Paths
         Paths of two families.
     width : float, optional
-        Width of the band of fibre, in the mesh's unit.  By default the width that gives one layer per family on
+        Width of the band of fibre, in the mesh's units.  By default the width that gives one layer per family on
         average.
 
     Returns

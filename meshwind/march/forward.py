@@ -53,7 +53,7 @@ def trace(  # noqa: PLR0913
     direction : float or array_like of float, shape (2,)
         Angle from the direction of v, in radians and positive towards +u, or a tangent (du, dv) of any length.
     length : float
-        Length of the fibre, in the surface's unit.
+        Length of the fibre, in the surface's units.
     slip, method, step, tolerance, press : optional
         As for `traces`.
 
@@ -113,7 +113,7 @@ def traces(  # noqa: PLR0913
     direction : array_like of float, shape (p,) or (p, 2)
         Angles from the direction of v, in radians and positive towards +u, or tangents (du, dv) of any length.
     length : float or array_like of float, shape (p,)
-        Lengths of the fibres, in the surface's unit.
+        Lengths of the fibres, in the surface's units.
     slip : float or array_like of float, shape (p,), default 0
         Ratio of geodesic to normal curvature, positive to the left as seen from outside: |slip| is the required
         friction. 0 gives geodesics.  It has no effect where the surface does not press.

@@ -68,7 +68,7 @@ class Trace:
     surface : Surface
         Surface that the fibre lies on.
     points : ndarray of float, shape (n, 3)
-        Positions, in the surface's unit.
+        Positions, in the surface's units.
     uv : ndarray of float, shape (n, 2)
         Parametric positions, u in turns and unwrapped.
     uv_rate : ndarray of float, shape (n, 2)
@@ -78,7 +78,7 @@ class Trace:
     normal : ndarray of float, shape (n, 3)
         Outward unit normals of the surface.
     arc_length : ndarray of float, shape (n,)
-        Length from the start, in the surface's unit.
+        Length from the start, in the surface's units.
     normal_curvature : ndarray of float, shape (n,)
         Normal curvature of the fibre, one over a length, positive where it presses on the surface.
     geodesic_curvature : ndarray of float, shape (n,)

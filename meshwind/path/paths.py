@@ -92,7 +92,7 @@ class Paths:
     surface : Surface
         Surface that the paths lie on.
     points : ndarray of float, shape (p, n, 3)
-        Positions of the particles, in the surface's unit.
+        Positions of the particles, in the surface's units.
     uv : ndarray of float, shape (p, n, 2)
         Parametric positions of the particles or of their feet, u in turns and unwrapped.
     on_surface : ndarray of bool, shape (p, n)
@@ -151,7 +151,7 @@ class Paths:
 
     @cached_property
     def length(self) -> Floats:
-        """Length (p,) of each fibre, in the surface's unit, of fourth order in the distance of the particles.
+        """Length (p,) of each fibre, in the surface's units, of fourth order in the distance of the particles.
 
         The polyline through the particles is shorter, by h^2 k^2 / 24 of itself where particles are h apart on a fibre
         of curvature k.

@@ -35,7 +35,7 @@ def draw_redesign(
     picture : str or PathLike
         PNG file to write.
     before : ndarray of float, shape (n, 3)
-        Vertices before the redesign, in the mesh's unit.
+        Vertices before the redesign, in the mesh's units.
     moves : ndarray of float, shape (n, 3)
         Displacements of the vertices.
     faces : ndarray of int, shape (m, 3)
@@ -43,7 +43,7 @@ def draw_redesign(
     name : str
         Name of the part, for the title.
     units : str, default ""
-        Name of the mesh's unit, for the legend.
+        Unit of the mesh, for the legend.
     page : Page, optional
         Size and style.
 

@@ -26,7 +26,7 @@ def read_pins(path: str | Path, surface: Surface, revolutions: float) -> Familie
 
     The first row names the columns, and every other row holds the two pins of a path.  Columns u0, v0, u1, v1 are
     parametric, u in turns and unwrapped, so that its change is the number of revolutions.  Columns x0, y0, z0, x1, y1,
-    z1 are points in the mesh's unit, which are moved to the nearest points of the surface; their paths turn by about
+    z1 are points in the mesh's units, which are moved to the nearest points of the surface; their paths turn by about
     what a column revolutions says, negative for the other sense, or else by `revolutions`, once in each sense.
 
     Parameters

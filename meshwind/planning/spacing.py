@@ -92,7 +92,7 @@ def space_out(paths: Paths, revolutions: float, spacing: float, friction: float 
     revolutions : float
         Revolutions that they were wound by.
     spacing : float
-        Largest distance between neighbours, in the mesh's unit.
+        Largest distance between neighbours, in the mesh's units.
     friction : float or Friction, default 0
         Coefficient of friction, as for `solve`.
 

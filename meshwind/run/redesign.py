@@ -48,7 +48,7 @@ def write_redesign(
     out : str or PathLike
         Folder for the files.
     units : str, default ""
-        Name of the mesh's unit.
+        Unit of the mesh.
     render : bool, default True
         Whether to draw the pictures.
     overwrite : bool, default False

@@ -104,7 +104,7 @@ class Result(Winding):
         Returns
         -------
         dict
-            Contents of `report.json`: lengths in the mesh's unit, angles in degrees.
+            Contents of `report.json`: lengths in the mesh's units, angles in degrees.
 
         Examples
         --------
@@ -197,30 +197,30 @@ def wind(  # noqa: PLR0913
     paths : int, default 12
         Number of paths per family; the two families turn in opposite senses.
     revolutions : float or str, default 0.5
-        Revolutions of a path from end to end, or "auto", which picks the value with stable paths and least bridging.
+        Turns of a path from end to end; "auto" picks the value with stable paths and least bridging.
     friction : float or str, default 0
-        Coefficient of friction of the fibre on the part, or "field:NAME" for a scalar of the mesh file.
+        Coefficient of friction between fibre and part, or "field:NAME" for a scalar of the mesh file.
     component : int, default 0
-        Which piece of the mesh file to wind, by its rank of area: 0 is the largest.
+        Piece of the mesh file to take, by decreasing area; 0 is the largest.
     ends : str, default "auto"
         Where the ends are: "auto", "x", "y", "z", two points "x,y,z x,y,z", or two open rims "loops 0 1"; see
         `annulus`.
     opening : float, optional
-        Radius of the opening at a closed end, in the mesh's unit.  By default it follows from the part.
+        Radius of the opening at a closed end, in the mesh's units.  By default it follows from the part.
     tolerance : float, default 1e-5
-        Largest distance of a vertex from the surface, over the diagonal of the mesh.
+        Largest distance of a mesh vertex from the fitted surface, over the part's diagonal.
     worst_fit : float, default 0.1
-        Largest distance between surface and mesh, over the diagonal, up to which the part is wound at all.
+        Largest distance between surface and mesh that is accepted at all, over the part's diagonal.
     units : str, default ""
-        Name of the mesh's unit, "mm", "cm", "m", "um", "in" or "ft"; "" if it is not known.  Nothing is converted.
+        Unit of the mesh: "mm", "cm", "m", "um", "in" or "ft"; "" if it is not known.  Nothing is converted.
     particles : int or None, default 401
-        Number of particles per path.  None takes as many as give lengths to a relative error of 1e-5.
+        Number of particles per path.  None picks as many as an error of the lengths of 1e-5 needs.
     spacing : float, optional
-        Add paths until neighbours of a family lie no further apart than this, in the mesh's unit.
+        Largest distance between neighbouring paths, in the mesh's units: paths are added until it is kept.
     band_width : float, optional
-        Width of the fibre, in the mesh's unit, for the coverage.  By default it gives one layer per family.
+        Width of the fibre band, in the mesh's units, for the coverage.  By default one layer per family.
     linear_density : float, optional
-        Mass of the fibre over its length, per unit of the mesh, for its mass.
+        Mass of the fibre per unit of its length, from which its mass is computed.
     pins : str or PathLike, optional
         CSV file of the paths' ends, see `read_pins`.  By default they are spread evenly over the rims.
     out : str or PathLike, optional

@@ -67,7 +67,7 @@ def fit(chart: Chart, tolerance: float = FIT_TOLERANCE) -> Surface:
     Returns
     -------
     Surface
-        Surface in the mesh's unit, periodic in u, with the error of the fit in both directions as `Surface.error`.  It
+        Surface in the mesh's units, periodic in u, with the error of the fit in both directions as `Surface.error`.  It
         may miss the tolerance where the mesh does not support a finer net.
 
     Raises

@@ -29,7 +29,7 @@ def surface_image(surface: Surface, width: int, height: int) -> Floats:
     Returns
     -------
     ndarray of float, shape (height, width, 3)
-        Positions, in the surface's unit.
+        Positions, in the surface's units.
 
     Raises
     ------

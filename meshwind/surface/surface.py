@@ -24,12 +24,12 @@ class FitError:
     Attributes
     ----------
     to_surface_rms, to_surface_max : float
-        Root mean square and maximum of the distances from the mesh's own vertices to the surface, in the mesh's unit.
+        Root mean square and maximum of the distances from the mesh's own vertices to the surface, in the mesh's units.
     to_mesh_rms, to_mesh_max : float
         Root mean square and maximum of the distances from a dense sample of the surface to the mesh's facets, in the
-        mesh's unit.
+        mesh's units.
     diagonal : float
-        Diagonal of the mesh's bounding box, in the mesh's unit.
+        Diagonal of the mesh's bounding box, in the mesh's units.
 
     Examples
     --------
@@ -47,12 +47,12 @@ class FitError:
 
     @property
     def rms(self) -> float:
-        """The larger of the two root mean squares, in the mesh's unit."""
+        """The larger of the two root mean squares, in the mesh's units."""
         return max(self.to_surface_rms, self.to_mesh_rms)
 
     @property
     def max(self) -> float:
-        """The larger of the two maxima, in the mesh's unit."""
+        """The larger of the two maxima, in the mesh's units."""
         return max(self.to_surface_max, self.to_mesh_max)
 
     @property
@@ -150,7 +150,7 @@ class Surface(Kept):
 
     @cached_property
     def middle(self) -> Floats:
-        """Mean (3,) of the control points, in the surface's unit."""
+        """Mean (3,) of the control points, in the surface's units."""
         return frozen(self.control_points.reshape(-1, 3).mean(axis=0))
 
     @cached_property
@@ -174,7 +174,7 @@ class Surface(Kept):
         Returns
         -------
         ndarray of float, shape (n, 6, 3)
-            Rows s, s_u, s_v, s_uu, s_uv, s_vv of each point, in the surface's unit (u and v have none).
+            Rows s, s_u, s_v, s_uu, s_uv, s_vv of each point, in the surface's units (u and v have none).
 
         Examples
         --------
@@ -198,7 +198,7 @@ class Surface(Kept):
         Returns
         -------
         ndarray of float, shape (n, 3)
-            Positions, in the surface's unit.
+            Positions, in the surface's units.
 
         Examples
         --------

@@ -15,7 +15,7 @@ class Annulus(Kept):
     mesh : Mesh
         Mesh that was opened.
     vertices : ndarray of float, shape (n, 3)
-        Positions, in the mesh's unit.
+        Positions, in the mesh's units.
     faces : ndarray of int, shape (m, 3)
         Vertices of each triangle.
     rims : tuple of two ndarray of int

@@ -43,5 +43,5 @@ class Mesh(Kept):
 
     @property
     def diagonal(self) -> float:
-        """Diagonal of the bounding box, in the mesh's unit."""
+        """Diagonal of the bounding box, in the mesh's units."""
         return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))

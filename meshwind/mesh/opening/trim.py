@@ -31,10 +31,10 @@ def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Ann
     mesh : Mesh
         Repaired mesh of a part like a tube or a closed body.
     ends : str, default "auto"
-        Where the ends are: "auto", a model axis "x", "y" or "z", two points "x,y,z x,y,z" in the mesh's unit, or two
+        Where the ends are: "auto", a model axis "x", "y" or "z", two points "x,y,z x,y,z" in the mesh's units, or two
         open rims "loops i j" by their numbers, 0 being the longest.
     opening : float, optional
-        Radius of the hole that is cut about each pole, in the mesh's unit.  By default 0.4 of the part's mean radius.
+        Radius of the hole that is cut about each pole, in the mesh's units.  By default 0.4 of the part's mean radius.
         Open rims are ends as they are.
 
     Returns
