@@ -17,8 +17,8 @@ from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.results.schema import RESULTS
 from meshwind.results.write import write_files
 from meshwind.surface import shapes
-from meshwind.workflow.options import Options
 from meshwind.surface.grid import grid
+from meshwind.workflow.options import Options
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
