@@ -31,6 +31,8 @@ ORDER = [
     "__main__",
 ]
 """Whatever stands later may import what stands earlier, never the other way round."""
+WITHIN = {"mesh": ["geometry", "repair", "io", "opening"], "path": ["kernels"]}
+"""The same for the packages within a package; its own modules stand after them."""
 LONGEST = 350
 FILES = sorted(PACKAGE.rglob("*.py"))
 
@@ -40,27 +42,69 @@ def room(file: Path) -> str:
     return file.relative_to(PACKAGE).parts[0].removesuffix(".py")
 
 
-def imported(tree: ast.AST) -> set[str]:
-    """Names of meshwind's rooms that a module imports at run time."""
+def module(file: Path) -> str:
+    """Name of the module in a file, without "meshwind."; that of a package for its __init__."""
+    return ".".join(file.relative_to(PACKAGE).with_suffix("").parts).removesuffix("__init__").rstrip(".")
+
+
+MODULES = {module(file): file for file in FILES}
+
+
+def imported(file: Path) -> set[str]:
+    """The modules of meshwind that a file imports at run time, without "meshwind."."""
+    tree = ast.parse(file.read_text(encoding="utf-8"))
     skipped = {id(n) for t in ast.walk(tree) if isinstance(t, ast.If) and "TYPE_CHECKING" in ast.dump(t.test)
                for n in ast.walk(t)}  # fmt: skip
     names: set[str] = set()
     for node in ast.walk(tree):
         if id(node) in skipped:
             continue
-        if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("meshwind"):
-            parts = node.module.split(".")
-            names |= {parts[1]} if len(parts) > 1 else {alias.name for alias in node.names}
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] == "meshwind":
+            package = node.module.removeprefix("meshwind").removeprefix(".")
+            parts = {f"{package}.{alias.name}".removeprefix(".") for alias in node.names}
+            names |= {part if part in MODULES else package for part in parts}
         elif isinstance(node, ast.Import):
-            names |= {a.name.split(".")[1] for a in node.names if a.name.startswith("meshwind.")}
-    return names
+            names |= {a.name.removeprefix("meshwind.") for a in node.names if a.name.startswith("meshwind.")}
+    return names - {module(file)}
 
 
-@pytest.mark.parametrize("file", [f for f in FILES if room(f) != "__init__"], ids=lambda f: str(f.relative_to(PACKAGE)))
-def test_imports_go_one_way(file: Path) -> None:
-    here = ORDER.index(room(file))
-    for name in imported(ast.parse(file.read_text(encoding="utf-8"))):
-        assert ORDER.index(name) <= here, f"{file.name} imports {name}"
+IMPORTS = {name: imported(file) for name, file in MODULES.items()}
+INSIDE = [name for name in MODULES if name]
+"""All modules but the one that shows the public names."""
+
+
+@pytest.mark.parametrize("name", INSIDE)
+def test_imports_go_one_way(name: str) -> None:
+    here = ORDER.index(name.split(".")[0])
+    for other in IMPORTS[name]:
+        assert ORDER.index(other.split(".")[0]) <= here, f"{name} imports {other}"
+
+
+def rank(name: str) -> int:
+    """Place of a module in the order within its package."""
+    package, *parts = name.split(".")
+    order = WITHIN[package]
+    return order.index(parts[0]) if parts and parts[0] in order else len(order)
+
+
+@pytest.mark.parametrize("name", [name for name in INSIDE if name.split(".")[0] in WITHIN])
+def test_imports_go_one_way_within_a_package(name: str) -> None:
+    for other in IMPORTS[name]:
+        if other.split(".")[0] == name.split(".")[0]:
+            assert rank(other) <= rank(name), f"{name} imports {other}"
+
+
+def test_packages_within_packages_have_an_order() -> None:
+    within = {tuple(file.parent.relative_to(PACKAGE).parts) for file in FILES}
+    assert {parts for parts in within if len(parts) == 2} == {(of, name) for of in WITHIN for name in WITHIN[of]}
+    assert max(map(len, within)) == 2
+
+
+def test_no_modules_import_each_other_in_a_circle() -> None:
+    left = {name: set(IMPORTS[name]) for name in INSIDE}
+    while free := {name for name, others in left.items() if not others & left.keys()}:
+        left = {name: others for name, others in left.items() if name not in free}
+    assert not left, f"circles among {sorted(left)}"
 
 
 def test_every_room_has_its_place() -> None:

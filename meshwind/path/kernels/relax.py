@@ -25,7 +25,7 @@ from meshwind.path.kernels.newton import (
     sag,
 )
 from meshwind.path.kernels.state import blank, copy, energy, place, touch_down
-from meshwind.path.paths import Status
+from meshwind.path.kernels.status import Status
 
 CONVERGED, SLID_START, SLID_END, UNSTABLE, STALLED, LEFT_CHART, TOO_COARSE = (int(status) for status in Status)
 LIFTED = TOO_COARSE + 1
