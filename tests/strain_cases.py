@@ -18,7 +18,7 @@ from meshwind.path import Paths
 from meshwind.results.maps import maps
 from meshwind.results.schema import COVERAGE, LAYERS, WINDABILITY
 from meshwind.surface import Surface, shapes
-from meshwind.surface.deviation import Triangles
+from meshwind.surface.fitting.deviation import Triangles
 from meshwind.surface.grid import grid
 
 Figures = list[float]

@@ -11,8 +11,8 @@ from meshwind.core.cast import Floats
 from meshwind.mesh import annulus as opened
 from meshwind.mesh import mesh_from
 from meshwind.surface import fit
+from meshwind.surface.fitting.noise import roughness
 from meshwind.surface.interpolate import Formula
-from meshwind.surface.noise import roughness
 
 DIAGONAL = 4.8
 """Of the vase below, roughly."""

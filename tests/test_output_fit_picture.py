@@ -22,7 +22,7 @@ from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.results.schema import FIT_PICTURE
 from meshwind.surface import shapes
-from meshwind.surface.deviation import Deviation, deviation
+from meshwind.surface.fitting.deviation import Deviation, deviation
 from meshwind.workflow.notes import Note
 
 AROUND, ALONG, HEIGHT = 48, 40, 4.0

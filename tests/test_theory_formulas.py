@@ -16,7 +16,7 @@ from meshwind.editing.stencil import along, weights
 from meshwind.march.geodesic_equation import rates
 from meshwind.methods import Ending, Motion, penalty, run
 from meshwind.methods.chain import Physics
-from meshwind.methods.in_space import PENALTY, SpaceRules, workspace_for
+from meshwind.methods.in_space import PENALTY, SpaceRules, space_work
 from meshwind.methods.strand import Strand
 from meshwind.path.kernels.contact import lift, pull
 from meshwind.path.kernels.state import energy
@@ -390,7 +390,7 @@ def test_penalty_force() -> None:
     W = before.copy()
     strand = Strand(X, W, np.zeros((N, 2)), np.zeros((N, 6, 3)), normal, gap <= epsilon, np.zeros(N, np.bool_), gap)
     physics, rules = Physics(H, 1.0, DAMPING, 0.0, False), SpaceRules(PENALTY, 1, 0.0, epsilon, push, 0.0)
-    penalty.step(strand, physics, rules, workspace_for(N, physics), np.zeros(4, np.int64))
+    penalty.step(strand, physics, rules, space_work(N, physics), np.zeros(4, np.int64))
     d = gap[1:-1]
     size = np.where(d > epsilon, 0.0, np.where(d > 0.0, push * (epsilon - d) / epsilon, push))
     slope = np.where((d > 0.0) & (d <= epsilon), -push / epsilon, 0.0)

@@ -18,7 +18,7 @@ from charts.timing import least
 from meshwind.methods import backward_euler, run
 from meshwind.methods.chain import Physics, chain_at_rest, gather, link, move_contacts, put_on_surface
 from meshwind.methods.lifting import PULL, update_touching
-from meshwind.methods.on_surface import workspace_for
+from meshwind.methods.on_surface import surface_work
 
 SOURCE = {"build": 233.22, "solve": 204.35, "lift and land": 149.65, "other": 15.86}
 """Milliseconds, C++ on 6 threads of a Core i7 7700K; its surface and number of particles are not given."""
@@ -42,7 +42,7 @@ def split() -> dict[str, float]:
     physics = Physics(STEP, 1.0, DAMPING, 0.0, False)
     t = np.linspace(0.0, 1.0, n)[:, None]
     chain = chain_at_rest(np.ascontiguousarray((1 - t) * np.array(PROBLEM.start) + t * np.array(PROBLEM.end)))
-    work, tally = workspace_for(n), np.zeros(4, np.int64)
+    work, tally = surface_work(n), np.zeros(4, np.int64)
     forces, system, move = work.forces, work.system, work.move
     put_on_surface(spline, chain, np.arange(n), n, False)
     link(chain.touching, chain.before, chain.after)

@@ -12,7 +12,7 @@ from meshwind.core.vectors import TINY
 from meshwind.path.paths import Paths
 from meshwind.surface.evaluate import SU, SV, S
 from meshwind.surface.forms import area_elements
-from meshwind.surface.parameters import mean_speeds, midpoints, parameter_grid
+from meshwind.surface.grid import mean_speeds, midpoints, parameter_grid
 from meshwind.surface.surface import Surface
 
 _ACROSS = 6

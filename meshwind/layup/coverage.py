@@ -11,7 +11,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import TINY
 from meshwind.path.paths import Paths
 from meshwind.surface.forms import area_elements
-from meshwind.surface.parameters import mean_speeds, parameter_grid
+from meshwind.surface.grid import mean_speeds, parameter_grid
 from meshwind.surface.surface import Surface
 
 _FEWEST_ROWS, _MOST_ROWS = 4, 256

@@ -8,7 +8,7 @@ from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.vectors import TINY, unit
 from meshwind.surface.evaluate import SU, SV
 from meshwind.surface.forms import Forms, fundamental_forms
-from meshwind.surface.parameters import midpoints, parameter_grid
+from meshwind.surface.grid import midpoints, parameter_grid
 from meshwind.surface.surface import Surface
 
 FLAT = 1e-3

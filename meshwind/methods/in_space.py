@@ -44,7 +44,7 @@ class SpaceRules(NamedTuple):
     stabilisation: float
 
 
-class Workspace(NamedTuple):
+class SpaceWork(NamedTuple):
     """The linear system and arrays that a run fills again in every step.
 
     force (n, 3): the springs'; right (n, 3): right sides; unpinned (n,): False throughout.
@@ -57,10 +57,10 @@ class Workspace(NamedTuple):
 
 
 @njit(cache=True)
-def workspace_for(n, physics):
+def space_work(n, physics):
     """Work space of a run of n particles."""
     matrix = chain_matrix(n, physics.step, physics.stiffness, physics.damping)
-    return Workspace(matrix, np.zeros((n, 3)), np.zeros((n, 3)), np.zeros(n, np.bool_))
+    return SpaceWork(matrix, np.zeros((n, 3)), np.zeros((n, 3)), np.zeros(n, np.bool_))
 
 
 @njit(nogil=True, cache=True)
@@ -69,7 +69,7 @@ def run_in_space(body, rules, physics, strand, history, tally):
     X, V, normal, touching, loose = strand.X, strand.V, strand.normal, strand.touching, strand.loose
     n, h = len(X), physics.step
     before, after, pressed = np.zeros(n, np.int64), np.zeros(n, np.int64), np.ones(n, np.bool_)
-    work = workspace_for(n, physics)
+    work = space_work(n, physics)
     energy, length = energy_and_length(X)
     stored = 0.5 * n * rules.penalty * rules.width if rules.scheme == PENALTY else 0.0
     bound = GROWTH * (physics.stiffness * energy + stored)

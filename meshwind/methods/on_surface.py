@@ -52,7 +52,7 @@ class SurfaceRules(NamedTuple):
     weighted: bool
 
 
-class Workspace(NamedTuple):
+class SurfaceWork(NamedTuple):
     """Arrays that a run fills again in every step: move (n, 2) by contact, former (n,) the touching set before."""
 
     forces: Forces
@@ -63,9 +63,9 @@ class Workspace(NamedTuple):
 
 
 @njit(cache=True)
-def workspace_for(n):
+def surface_work(n):
     """Work space of a run of n particles."""
-    return Workspace(forces_for(n), system_for(n), stages_for(n), np.zeros((n, 2)), np.empty(n, np.bool_))
+    return SurfaceWork(forces_for(n), system_for(n), stages_for(n), np.zeros((n, 2)), np.empty(n, np.bool_))
 
 
 @njit(cache=True)
@@ -87,7 +87,7 @@ def run_on_surface(spline, rules, physics, chain, history, tally):
     history (steps + 1, 3) or (0, 3) takes length, residual and mean angle of every state.
     """
     n, friction = len(chain.X), physics.friction
-    work = workspace_for(n)
+    work = surface_work(n)
     forces = work.forces
     put_on_surface(spline, chain, np.arange(n), n, physics.inertial)
     tally[EVALUATIONS] += n

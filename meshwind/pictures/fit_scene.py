@@ -9,7 +9,7 @@ from meshwind.appearance.words import quantity
 from meshwind.core.cast import Bools, Floats
 from meshwind.mesh.geometry.annulus import Annulus
 from meshwind.mesh.geometry.measure import edge_lengths
-from meshwind.surface.deviation import Deviation, Region, Triangles, deviation
+from meshwind.surface.fitting.deviation import Deviation, Mismatch, Triangles, deviation
 from meshwind.surface.surface import Surface
 
 _EYES = 240
@@ -67,7 +67,7 @@ def _merit(found: Deviation, eyes: Floats, skip: float) -> Floats:
     return np.asarray(2.0 * in_sight[0] + in_sight[1] + 0.5 * facing + 0.5 * sidewise - 1e-3 * eyes[:, 1])
 
 
-def _seen(found: Deviation, region: Region, eyes: Floats, skip: float) -> Bools:
+def _seen(found: Deviation, region: Mismatch, eyes: Floats, skip: float) -> Bools:
     """Whether a place is in sight (2, k) from each direction (k, 3): on the mesh alone and on the surface alone."""
     pairs: list[tuple[Triangles, Floats]] = [(found.mesh, region.on_mesh), (found.surface, region.on_surface)]
     return np.stack([body.clear(point, eyes, skip) for body, point in pairs])

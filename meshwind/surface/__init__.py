@@ -1,7 +1,7 @@
 """The smooth surface: one tensor B-spline type, fitted or analytic."""
 
 from meshwind.surface import shapes
-from meshwind.surface.fit import fit
+from meshwind.surface.fitting import fit
 from meshwind.surface.image import from_image, surface_image
 from meshwind.surface.surface import FitError, Surface
 

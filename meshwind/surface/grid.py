@@ -1,15 +1,25 @@
-"""A surface sampled on a grid of quads, for files, pictures and measurements."""
+"""Grids of points in the parametric plane, and a surface sampled on one: for files, pictures and measurements."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints, frozen
-from meshwind.surface.parameters import parameter_grid
+from meshwind.surface.evaluate import SU, SV
 from meshwind.surface.surface import Surface
 
 PER_SPAN, MOST = 4, 200
 """Samples per span of the spline, and at most in each direction, of the grid that files and pictures have."""
+
+
+def parameter_grid(u: Floats, v: Floats) -> Floats:
+    """All pairs (nu nv, 2) of parameters u (nu,) and v (nv,), u slowest."""
+    return np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2)
+
+
+def midpoints(count: int) -> Floats:
+    """Middles (count,) of equal intervals of [0, 1]."""
+    return (np.arange(count) + 0.5) / count
 
 
 @dataclass(frozen=True)
@@ -50,3 +60,10 @@ def grid_quads(nu: int, nv: int, closed: bool) -> Ints:
         number = np.concatenate([number, number[:1]])
     corners = [number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]]
     return np.stack(corners, axis=2).reshape(-1, 4)
+
+
+def mean_speeds(surface: Surface, count: int) -> tuple[float, float]:
+    """Mean lengths of s_u and of s_v over the middles of count x count cells: extents around and along the part."""
+    frames = surface.frames(parameter_grid(midpoints(count), midpoints(count)))
+    around, along = np.linalg.norm(frames[:, [SU, SV]], axis=2).mean(axis=0)
+    return float(around), float(along)

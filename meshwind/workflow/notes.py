@@ -14,7 +14,7 @@ from meshwind.planning.revolutions import FRICTION, WIDER, Revolutions
 from meshwind.planning.spacing import Spaced
 from meshwind.results.schema import FIT_PICTURE, REVOLUTIONS_PICTURE
 from meshwind.surface import FitError, Surface
-from meshwind.surface.deviation import deviation
+from meshwind.surface.fitting.deviation import deviation
 
 MISSED = 10.0
 """A vertex error of more than this many times the tolerance is worth a warning, ..."""

@@ -6,7 +6,7 @@ from numba import njit
 from meshwind.core.cast import Floats
 from meshwind.core.threads import spread
 from meshwind.surface.evaluate import Spline, position
-from meshwind.surface.samples import Samples
+from meshwind.surface.fitting.samples import Samples
 from meshwind.surface.surface import FitError, Surface
 
 DENSITY, MOST = 4, 256

@@ -10,8 +10,8 @@ from meshwind.chart.chart import Chart
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.threads import spread
 from meshwind.mesh.geometry.facet_tree import FacetTree
+from meshwind.surface.fitting.infill import ANGLE, Int8s, infill, spans_across
 from meshwind.surface.foot import near_feet
-from meshwind.surface.infill import ANGLE, Int8s, infill, spans_across
 from meshwind.surface.surface import Surface
 
 LOOSE = 0.1

@@ -9,10 +9,10 @@ from meshwind.chart.chart import Chart
 from meshwind.chart.measure import speeds
 from meshwind.core.defaults import FIT_TOLERANCE
 from meshwind.core.errors import BadInputError
-from meshwind.surface import normal_equations
-from meshwind.surface.certify import certify, to_mesh
-from meshwind.surface.noise import roughness
-from meshwind.surface.samples import Samples
+from meshwind.surface.fitting import normal_equations
+from meshwind.surface.fitting.certify import certify, to_mesh
+from meshwind.surface.fitting.noise import roughness
+from meshwind.surface.fitting.samples import Samples
 from meshwind.surface.surface import DEGREE, Surface
 
 ROUNDS = 4

@@ -66,7 +66,7 @@ class Triangles:
 
 
 @dataclass(frozen=True)
-class Region:
+class Mismatch:
     """A region where surface and mesh lie apart, by its worst pair: a point (3,) on each, and their distance."""
 
     distance: float
@@ -87,7 +87,7 @@ class Deviation:
     mesh: Triangles
     to_surface: Floats
     to_mesh: Floats
-    regions: tuple[Region, ...]
+    regions: tuple[Mismatch, ...]
 
 
 def deviation(surface: Surface, annulus: Annulus) -> Deviation:
@@ -105,7 +105,7 @@ def deviation(surface: Surface, annulus: Annulus) -> Deviation:
     pairs = np.concatenate([np.stack([annulus.vertices, on_surface], 1), np.stack([on_mesh, on.points], 1)])
     corners = np.concatenate([np.repeat(np.arange(len(to_surface))[:, None], 3, axis=1), annulus.faces[face]])
     worst = _worst(distance, pairs, corners, annulus)
-    regions = tuple(Region(float(distance[k]), frozen(pairs[k, 0]), frozen(pairs[k, 1])) for k in worst)
+    regions = tuple(Mismatch(float(distance[k]), frozen(pairs[k, 0]), frozen(pairs[k, 1])) for k in worst)
     return Deviation(on, facets, mesh, frozen(to_surface), frozen(to_mesh), regions)
 
 
