@@ -30,7 +30,7 @@ ORDER = [
     "cli",
     "__main__",
 ]
-"""Whatever stands later may import what stands earlier, never the other way round."""
+"""A package may import those before it, never those after it."""
 WITHIN = {"mesh": ["geometry", "repair", "io", "opening"], "path": ["kernels"]}
 """The same for the packages within a package; its own modules stand after them."""
 LONGEST = 350

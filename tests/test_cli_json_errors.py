@@ -1,4 +1,4 @@
-"""With --json an error is JSON as well, in the words that a person is told."""
+"""With --json an error is JSON as well, with the words of the error line."""
 
 import json
 import subprocess
@@ -18,12 +18,12 @@ def meshwind(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     ["wind", "part.obj", "--out", "part.obj"], ["render", "."], ["export", "."], ["info", "none.obj"],
     ["redesign", "none.obj"],
 ])  # fmt: skip
-def test_an_error_is_told_to_scripts_in_the_same_words(arguments: list[str], tmp_path: Path) -> None:
+def test_an_error_has_the_same_words_as_json(arguments: list[str], tmp_path: Path) -> None:
     (tmp_path / "part.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     plain, done = meshwind(tmp_path, *arguments), meshwind(tmp_path, *arguments, "--json")
     assert plain.returncode == done.returncode == 2
     assert done.stdout == ""
-    told = json.loads(done.stderr)
-    assert told["exit_status"] == 2
-    assert plain.stderr.splitlines()[-1] == f"meshwind: error: {told['error']}"
+    printed = json.loads(done.stderr)
+    assert printed["exit_status"] == 2
+    assert plain.stderr.splitlines()[-1] == f"meshwind: error: {printed['error']}"
     assert [file.name for file in tmp_path.iterdir()] == ["part.obj"]

@@ -61,7 +61,7 @@ def lacking(names: tuple[str, ...], *arguments: str | Path) -> subprocess.Comple
     ("OCP", ["export", "--to", "inp,step"], "pip install 'meshwind[cad]'"),
     ("imageio_ffmpeg", ["render", "--animate", "mp4", "--quiet"], 'ffmpeg; or: pip install "meshwind[movie]"'),
 ])  # fmt: skip
-def test_what_is_not_installed_is_told_with_its_remedy(
+def test_what_is_not_installed_is_named_with_its_remedy(
     module: str, arguments: list[str], remedy: str, tmp_path: Path
 ) -> None:
     waisted_results(tmp_path)
@@ -74,11 +74,11 @@ def test_what_is_not_installed_is_told_with_its_remedy(
     assert sorted(tmp_path.rglob("*")) == before
 
 
-def test_info_tells_what_is_not_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_info_lists_what_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_DIRS", str(tmp_path))
     monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-    told = lacking(("plotly", "OCP", "imageio_ffmpeg"), "info")
-    assert told.returncode == 0
-    assert f"pictures  {NO_DRIVER}" in told.stdout
+    done = lacking(("plotly", "OCP", "imageio_ffmpeg"), "info")
+    assert done.returncode == 0
+    assert f"pictures  {NO_DRIVER}" in done.stdout
     for remedy in ("meshwind[viewer]", "meshwind[cad]", "meshwind[movie]"):
-        assert f'pip install "{remedy}"' in told.stdout
+        assert f'pip install "{remedy}"' in done.stdout

@@ -27,9 +27,9 @@ def read(done: subprocess.CompletedProcess[str]) -> Any:
 def test_wind_as_json_is_the_report(tmp_path: Path) -> None:
     done = meshwind("wind", DATA / "tank.ply", "--out", tmp_path, "--paths", "2", "--no-render", "--json")
     assert done.returncode == 0
-    told, report = read(done), json.loads((tmp_path / "report.json").read_text())
-    assert told.pop("folder") == str(tmp_path)
-    assert told == report
+    printed, report = read(done), json.loads((tmp_path / "report.json").read_text())
+    assert printed.pop("folder") == str(tmp_path)
+    assert printed == report
     assert done.stderr == ""
 
 
@@ -62,10 +62,10 @@ def test_check(tmp_path: Path) -> None:
 
 def test_export(tmp_path: Path) -> None:
     waisted_results(tmp_path)
-    told = read(meshwind("export", tmp_path, "--to", "fibers,inp", "--json"))
-    assert {Path(file).name for file in told["files"]} == {"fibers.vtu", "fibers.vtk", "shell.inp", "shell_s4r.inp"}
-    assert all(Path(file).is_file() for file in told["files"])
-    assert any("elements" in note for note in told["notes"])
+    printed = read(meshwind("export", tmp_path, "--to", "fibers,inp", "--json"))
+    assert {Path(file).name for file in printed["files"]} == {"fibers.vtu", "fibers.vtk", "shell.inp", "shell_s4r.inp"}
+    assert all(Path(file).is_file() for file in printed["files"])
+    assert any("elements" in note for note in printed["notes"])
 
 
 @pytest.mark.usefixtures("opengl")

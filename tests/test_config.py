@@ -1,4 +1,4 @@
-"""`--config`: a file of options, outranked by the command line, and the one that each run leaves repeats it."""
+"""`--config`: a file of options, which the command line overrides, and the file of each run, which repeats it."""
 
 import json
 import subprocess
@@ -37,7 +37,7 @@ def first(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "sub" / "wound"
 
 
-def test_the_command_line_outranks_the_file(first: Path) -> None:
+def test_the_command_line_overrides_the_file(first: Path) -> None:
     report = json.loads((first / "report.json").read_text())
     assert report["winding"]["paths_per_family"] == 3
     assert report["winding"]["revolutions"] == 5 / 12
@@ -59,7 +59,7 @@ def test_a_run_leaves_all_its_options(first: Path) -> None:
 
 
 def test_it_repeats_the_run_to_the_last_byte(first: Path, tmp_path: Path) -> None:
-    """From another folder, into one at the same place: only the report, which holds times, differs."""
+    """From another folder, into one beside the first: only the report, which holds times, differs."""
     again = first.with_name("again")
     done = wind("--config", first / "meshwind.toml", "--out", again, folder=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -88,7 +88,7 @@ def test_whatever_was_left_to_the_run_is_left_to_it_again(tmp_path: Path) -> Non
     ("a b", "is not valid TOML"), ("paths = 3\npaths = 4", "is not valid TOML"), ("\0", "is not valid TOML"),
     ("paths = 0", "paths is 0; give a whole number from 1 up"), ("revolutions = -1", "revolutions is -1; give"),
 ])  # fmt: skip
-def test_what_a_file_may_not_hold_is_told_in_one_line(text: str, says: str, tmp_path: Path) -> None:
+def test_what_a_file_may_not_hold_is_refused_in_one_line(text: str, says: str, tmp_path: Path) -> None:
     (tmp_path / "my.toml").write_text(text)
     done = wind("part.stl", "--config", "my.toml", folder=tmp_path)
     assert done.returncode == 2
@@ -101,7 +101,7 @@ def test_what_a_file_may_not_hold_is_told_in_one_line(text: str, says: str, tmp_
 @pytest.mark.parametrize(("name", "content", "says"), [
     ("none.toml", None, "No such file"), (".", None, "Is a directory"), ("latin.toml", b"# \xe9", "no text in UTF-8"),
 ])  # fmt: skip
-def test_files_that_cannot_be_read_are_told(name: str, content: bytes | None, says: str, tmp_path: Path) -> None:
+def test_files_that_cannot_be_read_are_refused(name: str, content: bytes | None, says: str, tmp_path: Path) -> None:
     if content is not None:
         (tmp_path / name).write_bytes(content)
     done = wind("part.stl", "--config", name, folder=tmp_path)

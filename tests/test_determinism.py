@@ -1,4 +1,4 @@
-"""The same input gives the same bytes in every data file, whatever the run, the threads and the seed of hashes."""
+"""The same input gives the same bytes in every data file for every run, number of threads and seed of hashes."""
 
 import hashlib
 import os
@@ -34,7 +34,7 @@ def leave(folder: Path) -> None:
 
 
 def hashes(folder: Path) -> dict[str, str]:
-    """Of every data file below a folder; the report alone tells of the run, its times and its command."""
+    """Of every data file below a folder; only the report depends on the run, by its times and its command."""
     files = (path for path in folder.rglob("*") if path.is_file() and path.name != "report.json")
     return {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
 

@@ -1,4 +1,4 @@
-"""Whatever is typed and whatever a results folder holds: done, or exit status 2 with one line, and no stray file."""
+"""Any command line and any results folder: done, or exit status 2 with one line, and no stray file."""
 
 import shutil
 import sys
@@ -59,11 +59,11 @@ def test_whatever_is_typed(
     capfd.readouterr()
     with pytest.raises(SystemExit) as ended:
         main()
-    printed, told = capfd.readouterr()
+    printed, complained = capfd.readouterr()
     found = {path.name for path in folder.iterdir()} - {"part.obj", "pins.csv"}
     assert {path.name for path in tmp_path.iterdir()} == {"here"}
     if ended.value.code == 2:
-        complaints = [line for line in told.splitlines() if not line.endswith("...")]
+        complaints = [line for line in complained.splitlines() if not line.endswith("...")]
         assert len(complaints) == 1 and complaints[0].startswith("meshwind: error: ")
         assert printed == "" and not found
     else:
@@ -90,8 +90,8 @@ def test_whatever_a_results_folder_holds(
     tmp_path: Path, results: Path, name: str, edits: list[tuple[str, float, float]]
 ) -> None:
     folder, out = tmp_path / "run", tmp_path / "out"
-    for place in (folder, out):
-        shutil.rmtree(place, ignore_errors=True)
+    for each in (folder, out):
+        shutil.rmtree(each, ignore_errors=True)
     shutil.copytree(results, folder)
     (folder / name).write_bytes(changed((folder / name).read_bytes(), edits))
     try:

@@ -33,10 +33,10 @@ def test_a_mesh() -> None:
 
 def test_a_mesh_with_fields_and_rims(tmp_path: Path) -> None:
     waisted_results(tmp_path)
-    told = json.loads(info(tmp_path / "surface.vtu", "--json").stdout)
-    assert {"coverage", "angle", "windability"} <= set(told["fields"])
-    assert len(told["rims"]) == 2
-    assert told["format"] == "VTU"
+    printed = json.loads(info(tmp_path / "surface.vtu", "--json").stdout)
+    assert {"coverage", "angle", "windability"} <= set(printed["fields"])
+    assert len(printed["rims"]) == 2
+    assert printed["format"] == "VTU"
 
 
 def test_a_run(tmp_path: Path) -> None:
@@ -63,9 +63,9 @@ def test_a_redesign_which_its_own_options_repeat(tmp_path: Path) -> None:
     )
     command = [sys.executable, "-m", "meshwind", *map(str, given)]
     made = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
-    told = info(tmp_path / "r").stdout.splitlines()
-    assert told[0].startswith("run       meshwind redesign ")
-    assert told[1:] == made.stdout.splitlines()[:-1]
+    lines = info(tmp_path / "r").stdout.splitlines()
+    assert lines[0].startswith("run       meshwind redesign ")
+    assert lines[1:] == made.stdout.splitlines()[:-1]
     again = [
         *command[:3],
         "redesign",
@@ -82,18 +82,18 @@ def test_a_redesign_which_its_own_options_repeat(tmp_path: Path) -> None:
 def test_this_installation() -> None:
     done = info("--json")
     assert done.returncode == 0
-    told = json.loads(done.stdout)
-    assert told["meshwind"] == mw.__version__ == version("meshwind")
-    assert told["libraries"]["numpy"] == version("numpy")
-    assert None not in told["libraries"].values()
-    assert told["extras"] == {"cad": True, "viewer": True}
+    printed = json.loads(done.stdout)
+    assert printed["meshwind"] == mw.__version__ == version("meshwind")
+    assert printed["libraries"]["numpy"] == version("numpy")
+    assert None not in printed["libraries"].values()
+    assert printed["extras"] == {"cad": True, "viewer": True}
 
 
 @pytest.mark.parametrize(("name", "content", "says"), [
     ("none", None, "file not found"), ("report.json", "{}", "lacks figures"), ("report.json", "[", "cannot be used"),
     ("report.json", '{"mesh": 3}', "lacks figures"), ("mine.txt", "x", "holds no report.json"),
 ])  # fmt: skip
-def test_what_tells_nothing_is_refused(name: str, content: str | None, says: str, tmp_path: Path) -> None:
+def test_what_holds_nothing_is_refused(name: str, content: str | None, says: str, tmp_path: Path) -> None:
     if content is not None:
         (tmp_path / name).write_text(content)
     done = info(tmp_path if content is not None else tmp_path / name)

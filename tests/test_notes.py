@@ -33,7 +33,7 @@ def with_error(surface: mw.Surface, vertices: float, facets: float) -> mw.Surfac
     (0.9e-5, 1e-5, None), (1.1e-5, 1e-5, "note"), (0.9e-4, 1e-6, "note"), (1.1e-4, 1e-5, "warning"),
     (1.1e-4, 2e-5, "note"), (9e-3, 1e-2, None), (9e-3, 1e-5, "warning"),
 ])  # fmt: skip
-def test_a_missed_tolerance_is_told(
+def test_a_missed_tolerance_has_a_note(
     fitted: tuple[mw.Surface, mw.Chart], relative: float, tolerance: float, kind: str | None
 ) -> None:
     surface = with_error(fitted[0], relative * DIAGONAL, 9e-3 * DIAGONAL)
@@ -62,7 +62,7 @@ def dented(by: float) -> tuple[mw.Surface, mw.Chart, Floats]:
     return bent, chart, bent.points(uv)[0]
 
 
-def test_an_unresolved_part_is_told_with_the_place() -> None:
+def test_an_unresolved_part_has_a_warning_with_coordinates() -> None:
     surface, chart, peak = dented(0.03)
     (note,) = about_fit(surface, chart, 1e-5, 0.1, "mm")
     assert note.warning
@@ -109,8 +109,8 @@ def test_a_horn_is_warned_of_in_summary_and_report(tmp_path: Path) -> None:
     (line,) = [line for line in run_lines(result.report()) if "does not resolve" in line]
     assert line.startswith("warning   the surface")
     assert f"({100 * result.surface.error.relative_max:.2g}% of the part)" in line
-    (told,) = json.loads((tmp_path / "report.json").read_text())["notes"]
-    assert told == f"warning: {line[10:]}"
+    (note,) = json.loads((tmp_path / "report.json").read_text())["notes"]
+    assert note == f"warning: {line[10:]}"
     near = np.array([float(x) for x in line.split("near (")[1].split(")")[0].split(",")])
     assert near[0] < -0.2 and np.abs(near[1:]).max() < 0.3  # at the horn, from foot to tip
 

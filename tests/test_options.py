@@ -1,5 +1,7 @@
-"""What a caller may get wrong, told in one line before anything is read."""
+"""Options: bad ones are refused with one line before anything is read, and defaults are the same everywhere."""
 
+import inspect
+from dataclasses import fields
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -8,7 +10,11 @@ import numpy as np
 import pytest
 
 import meshwind as mw
-from meshwind.workflow.options import Options
+from meshwind.cli.redesign import redesign
+from meshwind.cli.wind import wind
+from meshwind.core.option import options_of
+from meshwind.editing.options import EditOptions
+from meshwind.workflow.options import FILE_DEFAULTS, Options
 
 BAD: list[tuple[dict[str, Any], str]] = [
     ({"paths": 0}, "paths is 0; give a whole number from 1 up"),
@@ -47,7 +53,7 @@ BAD: list[tuple[dict[str, Any], str]] = [
 
 
 @pytest.mark.parametrize(("options", "says"), BAD, ids=[str(options) for options, _ in BAD])
-def test_bad_options_are_told_before_reading(options: dict[str, Any], says: str) -> None:
+def test_bad_options_are_refused_before_reading(options: dict[str, Any], says: str) -> None:
     with pytest.raises(mw.BadInputError) as caught:
         mw.wind("no/such/file.stl", **options)
     assert says in str(caught.value)
@@ -55,7 +61,7 @@ def test_bad_options_are_told_before_reading(options: dict[str, Any], says: str)
 
 
 @pytest.mark.parametrize(("mesh", "says"), [(3, "of type int"), (None, "of type NoneType"), (np.eye(3), "ndarray")])
-def test_what_is_no_mesh_is_told(mesh: Any, says: str) -> None:
+def test_what_is_no_mesh_is_refused(mesh: Any, says: str) -> None:
     with pytest.raises(mw.BadInputError, match=says):
         mw.wind(mesh)
 
@@ -64,6 +70,30 @@ def test_what_is_no_mesh_is_told(mesh: Any, says: str) -> None:
 def test_a_folder_without_a_name_is_refused(out: Any) -> None:
     with pytest.raises(mw.BadInputError, match="give the path of a folder"):
         mw.wind("no/such/file.stl", out=out)
+
+
+def test_wind_takes_every_option_with_its_default() -> None:
+    parameters = inspect.signature(mw.wind).parameters
+    for option in fields(Options):
+        assert parameters[option.name].default == option.default, option.name
+        assert option.name in options_of(Options)
+
+
+def test_redesign_takes_its_options_with_their_defaults() -> None:
+    parameters = inspect.signature(mw.redesign).parameters
+    defaults = {option.name: option.default for option in (*fields(Options), *fields(EditOptions))}
+    taken = set(parameters) - {"mesh", "progress"}
+    assert {name for name in taken if parameters[name].default != defaults[name]} == {"revolutions"}
+    assert parameters["revolutions"].default == inspect.signature(redesign).parameters["revolutions"].default == "auto"
+
+
+def test_the_command_line_has_the_same_defaults_but_for_the_unit() -> None:
+    parameters = inspect.signature(wind).parameters
+    for option in fields(Options):
+        default = parameters[option.name].default
+        wanted = FILE_DEFAULTS.get(option.name, option.default)
+        assert default == (str(wanted) if options_of(Options)[option.name].read else wanted), option.name
+    assert set(FILE_DEFAULTS) == {"units"}
 
 
 def test_numbers_of_any_kind_are_taken() -> None:

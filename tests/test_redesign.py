@@ -108,13 +108,13 @@ def test_a_row_of_press_is_the_derivative_of_the_normal_curvature() -> None:
     laid = mw.solve(surface, [(0.0, 0.0)], [(0.2, 1.0)], particles=81)
     rng = np.random.default_rng(3)
     change = 1e-5 * rng.standard_normal(surface.control_points.shape)
-    asked = press(laid, 0.0)
+    demanded = press(laid, 0.0)
     moved = Surface(surface.control_points + change)
     again = mw.Paths(**{**laid.__dict__, "surface": moved})
     # rows are scaled by the square of the span's length, which the change moves in its sixth digit
-    predicted = asked.least - asked.matrix @ change.ravel()
+    predicted = demanded.least - demanded.matrix @ change.ravel()
     assert press(again, 0.0).least == pytest.approx(predicted, rel=2e-3, abs=2e-6)
-    assert np.abs(predicted - asked.least).max() > 1e-5
+    assert np.abs(predicted - demanded.least).max() > 1e-5
 
 
 def test_a_hyperboloid_becomes_a_barrel_that_the_fibres_press() -> None:

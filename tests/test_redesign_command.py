@@ -31,7 +31,7 @@ def vase(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
 
 
 def test_the_folder_holds_the_edited_mesh_and_a_report(vase: tuple[Path, str]) -> None:
-    folder, told = vase
+    folder, printed = vase
     assert {path.name for path in folder.iterdir()} - PICTURES == FILES
     report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
     assert report["redesign"]["windable"] and report["redesign"]["bridged"]["after"] == 0.0
@@ -39,8 +39,8 @@ def test_the_folder_holds_the_edited_mesh_and_a_report(vase: tuple[Path, str]) -
     for each in report["rounds"]:
         assert each["kkt_residual"] <= 1e-6
         assert each["bridged"]["before"] >= each["bridged"]["after"]
-    assert report["mesh"]["units"] == "mm" and "mm" in told
-    assert "no fibre bridges any more" in told
+    assert report["mesh"]["units"] == "mm" and "mm" in printed
+    assert "no fibre bridges any more" in printed
 
 
 @pytest.mark.usefixtures("opengl")

@@ -40,9 +40,9 @@ def test_a_field_holds_where_it_is_above_0() -> None:
     surface = shapes.cylinder(1.0, 2.0, (16, 16))
     points = surface.points(np.random.default_rng(3).uniform(size=(4000, 2)))
     upper = Scalars(points, (points[:, 2] > 1.5).astype(np.float64))
-    told, ranged = parse("field:upper"), parse("z>1.5")
-    assert told.field == "upper"
-    field, by_range = told.control_points(surface, NONE, upper), ranged.control_points(surface, NONE)
+    by_name, ranged = parse("field:upper"), parse("z>1.5")
+    assert by_name.field == "upper"
+    field, by_range = by_name.control_points(surface, NONE, upper), ranged.control_points(surface, NONE)
     assert (field[:, -4:]).all() and not field[:, :10].any()
     assert (np.abs(field.sum(axis=1) - by_range.sum(axis=1)) <= 1).all()
 

@@ -1,4 +1,4 @@
-"""Studies: what they mean, that each case comes once whatever happens, and that where it runs changes nothing."""
+"""Studies: their meaning, that each case is done once even if workers are killed, and the same results everywhere."""
 
 import csv
 import json
@@ -87,11 +87,11 @@ def rows(folder: Path) -> list[dict[str, str]]:
 @pytest.fixture(scope="module")
 def done(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     """A study that ran in two processes: its file and its folder."""
-    place = tmp_path_factory.mktemp("study")
-    file = small(place)
-    swept = sweep(file, place / "out", processes=2)
+    folder = tmp_path_factory.mktemp("study")
+    file = small(folder)
+    swept = sweep(file, folder / "out", processes=2)
     assert swept.anew == 8 and swept.settled
-    return file, place / "out"
+    return file, folder / "out"
 
 
 def test_a_study_leaves_a_table_a_chart_and_a_folder_a_case(done: tuple[Path, Path]) -> None:

@@ -1,4 +1,4 @@
-"""The unit of length: millimetres unless told otherwise, and carried into every file that a run and an export leave."""
+"""The unit of length: the default of the command line, and its name in every file of a run and its exports."""
 
 import inspect
 import json
@@ -37,8 +37,8 @@ def inches(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("inches")
     waisted_results(folder, "in")
     formats = "vtu", "vtk", "xdmf", "ply", "obj", "gmsh"
-    told = export(folder, ["inp", "fibers", "frames", "step", "viewer"], wishes=Wishes(formats=formats)).notes
-    assert "gmsh: no entry for the unit of length; lengths in in" in told
+    notes = export(folder, ["inp", "fibers", "frames", "step", "viewer"], wishes=Wishes(formats=formats)).notes
+    assert "gmsh: no entry for the unit of length; lengths in in" in notes
     return folder
 
 
