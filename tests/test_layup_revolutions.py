@@ -8,10 +8,10 @@ from scipy.integrate import quad
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.path import solve
+from meshwind.planning.alternatives import with_wider_openings
 from meshwind.planning.clairaut import profile
-from meshwind.planning.families import families
-from meshwind.planning.holding import holding as holding_of
-from meshwind.planning.holding import hoop_revolutions, opened, square_revolutions
+from meshwind.planning.families import families, hoop_revolutions, square_revolutions
+from meshwind.planning.feasible import feasible_revolutions
 from meshwind.planning.pressing import intervals, pressing
 from meshwind.planning.revolutions import choose_revolutions
 from meshwind.planning.trials import trial
@@ -96,18 +96,18 @@ def test_clairaut_bounds_the_barrel() -> None:
     assert shape is not None
     assert shape.presses(0.7)
     assert shape.bound() == pytest.approx(barrel_bound(), rel=1e-6)
-    held = holding_of(barrel())
-    assert (held.low, held.by, held.slides) == (0.0, "Clairaut", "both")
-    assert held.high == pytest.approx(barrel_bound(), rel=1e-3)
+    found = feasible_revolutions(barrel())
+    assert (found.low, found.by, found.slides) == (0.0, "Clairaut", "both")
+    assert found.high == pytest.approx(barrel_bound(), rel=1e-3)
 
 
 def test_trials_find_clairauts_bound_by_themselves() -> None:
     """The same barrel, stretched along x by less than the eye sees but more than counts as one of revolution."""
     net = barrel().control_points * [1.0 + 1e-5, 1.0, 1.0]
-    held = holding_of(Surface(net), most=1.0, paths=4)
-    assert held.by == "trials"
-    assert held.high == pytest.approx(barrel_bound(), rel=3e-3)
-    assert held.slides
+    found = feasible_revolutions(Surface(net), most=1.0, paths=4)
+    assert found.by == "trials"
+    assert found.high == pytest.approx(barrel_bound(), rel=3e-3)
+    assert found.slides
 
 
 def test_bound_of_a_sphere_is_half_a_turn_and_of_a_narrow_middle_none() -> None:
@@ -136,12 +136,12 @@ def test_a_tilted_one_ended_shape_is_found_and_others_are_not() -> None:
 
 
 def test_a_cut_back_barrel_is_the_barrel_between_wider_rims() -> None:
-    wider = opened(barrel(), 1.2)
+    wider = with_wider_openings(barrel(), 1.2)
     assert wider is not None
     shape = profile(wider)
     assert shape is not None
     assert shape.rims == pytest.approx((0.84, 0.84), abs=1e-4)
-    assert opened(barrel(), 1.5) is None  # it is nowhere so wide
+    assert with_wider_openings(barrel(), 1.5) is None  # it is nowhere so wide
     assert shape.bound() > 0.5
 
 
@@ -158,19 +158,19 @@ def test_choice_on_a_barrel_is_square_and_inside_the_bound() -> None:
     assert 0.0 < chosen.choice < barrel_bound()
     assert abs(chosen.choice - chosen.square) < 1.0 / 12.0
     assert chosen.choice * 12.0 == pytest.approx(round(chosen.choice * 12.0))  # both families end in the same points
-    assert chosen.chosen.holds and chosen.chosen.bridged == 0.0
+    assert chosen.chosen.feasible and chosen.chosen.bridged_share == 0.0
     assert "no fibre bridges" in chosen.why and "0.675" in chosen.why
 
 
 def test_choice_on_the_hyperboloid_presses_where_the_square_winding_would_not() -> None:
     chosen = choose_revolutions(shapes.hyperboloid(1.0, 1.0, 1.5, (64, 64)), paths=6, further=False)
     assert chosen.choice > WAIST - 1e-3 > chosen.square
-    assert chosen.chosen.bridged == 0.0
-    assert not np.isfinite(chosen.holding.high)
+    assert chosen.chosen.bridged_share == 0.0
+    assert not np.isfinite(chosen.feasible.high)
 
 
 def test_choice_bridges_least_where_pressing_everywhere_is_impossible() -> None:
-    """An arched vase with a deep oval waist, against a scan of windings in earnest."""
+    """An arched vase with a deep oval waist, against a scan of windings at full resolution."""
 
     def oval(u: Floats, v: Floats) -> Floats:
         r = 1.0 - 0.45 * np.exp(-(((v - 0.5) / 0.16) ** 2))
@@ -188,18 +188,18 @@ def test_choice_bridges_least_where_pressing_everywhere_is_impossible() -> None:
         if (laid.status == 0).all():
             scan.append((steps * off).sum() / steps.sum())
     assert min(scan) > 0.01
-    assert chosen.chosen.holds
-    assert chosen.chosen.bridged <= min(scan) + 0.02
+    assert chosen.chosen.feasible
+    assert chosen.chosen.bridged_share <= min(scan) + 0.02
     assert len(chosen.trials) > 20
 
 
 def test_more_friction_and_wider_openings_hold_more() -> None:
     cap = shapes.revolution(lambda z: np.sqrt(1.0 - 0.85 * z**2), -1.0, 1.0, (64, 48))
     chosen = choose_revolutions(cap, paths=4, particles=101)
-    assert chosen.with_friction > 1.05 * chosen.holding.high
-    assert trial(cap, chosen.with_friction, friction=0.2, paths=3).holds
-    assert not trial(cap, chosen.with_friction, paths=3).holds
-    assert chosen.with_opening == 0.0 or chosen.with_opening > chosen.holding.high
+    assert chosen.with_friction > 1.05 * chosen.feasible.high
+    assert trial(cap, chosen.with_friction, friction=0.2, paths=3).feasible
+    assert not trial(cap, chosen.with_friction, paths=3).feasible
+    assert chosen.with_opening == 0.0 or chosen.with_opening > chosen.feasible.high
 
 
 def test_a_surface_that_is_no_annulus_is_refused() -> None:
@@ -210,5 +210,5 @@ def test_a_surface_that_is_no_annulus_is_refused() -> None:
 
 def test_trials_tell_what_bridges() -> None:
     flask = revolved(lambda v: 1.0 - 0.35 * np.exp(-(((v - 0.5) / 0.16) ** 2)), 32, 32)
-    assert trial(flask, 0.1).bridged > 0.2
-    assert trial(flask, 0.1).holds
+    assert trial(flask, 0.1).bridged_share > 0.2
+    assert trial(flask, 0.1).feasible

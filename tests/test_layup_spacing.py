@@ -14,8 +14,7 @@ from meshwind.layup.crossings import cell_sides, crossings
 from meshwind.path import Paths, solve
 from meshwind.path.neighbours import neighbours
 from meshwind.planning.families import families
-from meshwind.planning.joining import chosen, joined
-from meshwind.planning.spacing import Spaced, largest_gap, space_out
+from meshwind.planning.spacing import Spaced, space_out
 from meshwind.surface import Surface, shapes
 
 DATA = Path(__file__).parents[1] / "data"
@@ -43,7 +42,7 @@ def test_helices_are_evenly_apart(count: int, turns: float) -> None:
 def test_neighbours_go_around_the_rim_whatever_the_order() -> None:
     paths = helices(7, 0.6, 51, CYLINDER)
     order = np.random.default_rng(4).permutation(14)
-    near = neighbours(chosen(paths, order))
+    near = neighbours(paths.subset(order))
     pairs = {(int(order[a]), int(order[b])) for a, b in zip(near.first, near.second, strict=True)}
     assert pairs == {(k, (k + 1) % 7) for k in range(7)} | {(7 + k, 7 + (k + 1) % 7) for k in range(7)}
 
@@ -60,9 +59,9 @@ def test_sides_of_the_cells_of_helices(count: int, turns: float) -> None:
     assert len(sides.d1) == met - count
 
 
-def test_paths_are_joined_and_chosen_whole() -> None:
+def test_paths_are_selected_and_joined_whole() -> None:
     paths = wound(shapes.cone(1.0, 0.5, 3.0, (64, 8)), 3, 0.3, 25)
-    again = joined(chosen(paths, np.array([4, 5])), chosen(paths, np.array([0])))
+    again = paths.subset(np.array([4, 5])).joined(paths.subset(np.array([0])))
     assert len(again) == 3
     assert np.array_equal(again.points, paths.points[[4, 5, 0]])
     assert np.array_equal(again.family, [-1, -1, 1])
@@ -96,6 +95,16 @@ def test_wide_enough_paths_are_left_alone_and_even_ones_stay_even() -> None:
 
 def fitted(name: str) -> Surface:
     return mw.fit(mw.flatten(mw.annulus(mw.read(DATA / name))))
+
+
+def largest_gap(paths: Paths, partings: tuple[int, int]) -> float:
+    """The largest distance between neighbours, but for the largest of each family, as many as it has partings."""
+    near = neighbours(paths)
+    left = []
+    for family, many in zip((1, -1), partings, strict=True):
+        gap = np.sort(near.largest[near.family == family])
+        left.append(gap[: max(len(gap) - many, 0)])
+    return float(np.concatenate(left).max(initial=0.0))
 
 
 def compared(surface: Surface, turns: float, spacing: float) -> tuple[Spaced, float]:

@@ -12,7 +12,7 @@ from meshwind.core.vectors import TINY
 from meshwind.path.paths import Paths
 from meshwind.surface.evaluate import SU, SV, S
 from meshwind.surface.forms import area_elements
-from meshwind.surface.grid import mean_speeds, midpoints, parameter_grid
+from meshwind.surface.grid import mean_speeds, midpoints, parameter_grid, rim_frames
 from meshwind.surface.surface import Surface
 
 _ACROSS = 6
@@ -134,8 +134,7 @@ def _past_rims(uv: Floats, frames: Floats) -> Floats:
 
 def _opening(surface: Surface, v: float) -> float:
     """Flat area that a rim encloses: the length of its vector area."""
-    count = _RIM_SAMPLES * surface.spans[0]
-    frames = surface.frames(parameter_grid(np.arange(count) / count, np.array([v])))
+    frames = rim_frames(surface, v, _RIM_SAMPLES)
     middle = frames[:, S].mean(axis=0)
     return float(0.5 * np.linalg.norm(np.cross(frames[:, S] - middle, frames[:, SU]).mean(axis=0)))
 

@@ -100,18 +100,18 @@ class Paths:
         """
         return frozen(fibre_lengths(self.surface, self.points, self.uv, self.on_surface))
 
-    def subset(self, chosen: Bools) -> "Paths":
+    def subset(self, chosen: Bools | Ints) -> "Paths":
         """Select paths.
 
         Parameters
         ----------
-        chosen : ndarray of bool, shape (p,)
-            Which paths to keep.
+        chosen : ndarray of bool, shape (p,), or ndarray of int, shape (k,)
+            Which paths to keep, or their numbers.
 
         Returns
         -------
         Paths
-            The chosen paths, in their order; counters are those of the whole batch.
+            The chosen paths, by a mask in their order; counters are those of the whole batch.
 
         Examples
         --------
@@ -122,11 +122,42 @@ class Paths:
         >>> len(paths.subset(paths.family == 1))
         3
         """
-        arrays = {field.name: getattr(self, field.name) for field in fields(self)}
-        kept: dict[str, Any] = {
-            name: frozen(value[chosen]) for name, value in arrays.items() if isinstance(value, np.ndarray)
-        }
+        kept: dict[str, Any] = {name: frozen(getattr(self, name)[chosen]) for name in self._arrays}
         return replace(self, **kept)
+
+    def joined(self, other: "Paths") -> "Paths":
+        """Join two batches on one surface.
+
+        Parameters
+        ----------
+        other : Paths
+            Paths with as many particles each.
+
+        Returns
+        -------
+        Paths
+            These paths, then the others; counters are those of both batches together.
+
+        Examples
+        --------
+        >>> import meshwind as mw
+        >>> tube = mw.shapes.cylinder(radius=1.0, length=3.0)
+        >>> ends = mw.families(tube, paths=3, revolutions=0.5)
+        >>> paths = mw.solve(tube, ends.start, ends.end, family=ends.family, particles=51)
+        >>> len(paths.subset(paths.family == 1).joined(paths))
+        9
+        """
+        both: dict[str, Any] = {
+            name: frozen(np.concatenate([getattr(self, name), getattr(other, name)])) for name in self._arrays
+        }
+        a, b = self.counters, other.counters
+        total = Counters(*(getattr(a, field.name) + getattr(b, field.name) for field in fields(Counters)))
+        return replace(self, friction=max(self.friction, other.friction), counters=total, **both)
+
+    @property
+    def _arrays(self) -> list[str]:
+        """Names of the fields that have a row for each path."""
+        return [field.name for field in fields(self) if isinstance(getattr(self, field.name), np.ndarray)]
 
     @property
     def sharpest_turn(self) -> Floats:

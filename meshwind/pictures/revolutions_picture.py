@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from meshwind.planning.revolutions import FRICTION, WIDER, Revolutions
+from meshwind.planning.alternatives import FRICTION, WIDER
+from meshwind.planning.revolutions import Revolutions
 
 _INK, _FAINT = "#1c1c1c", "#5a5a5a"
 _PRESSES, _COMMON, _BRIDGED, _SLIDES, _CHOICE = "#b9cfe4", "#2f6da8", "#b3541e", "#d9d4cb", "#1c7c3c"
@@ -38,7 +39,7 @@ def draw_revolutions(picture: Path, chosen: Revolutions, name: str = "") -> None
 
 def _last(chosen: Revolutions) -> float:
     """How far the picture goes: past all that bounds the choice, with room to see it."""
-    bound = chosen.holding.high
+    bound = chosen.feasible.high
     ends = [1.5 * chosen.choice, 1.2 * chosen.square, 1.3 * bound if np.isfinite(bound) else 0.0]
     ends += [1.05 * gain for gain in (chosen.with_friction, chosen.with_opening) if np.isfinite(gain)]
     ends += [1.5 * low for low, _ in chosen.common]
@@ -55,15 +56,15 @@ def _histogram(axes: Any, chosen: Revolutions, last: float) -> None:
 
 
 def _bound(axes: Any, chosen: Revolutions, last: float) -> None:
-    held = chosen.holding
-    if held.any and not np.isfinite(held.high):
+    found = chosen.feasible
+    if found.any and not np.isfinite(found.high):
         return
-    how = "Clairaut's bound" if held.by == "Clairaut" else "bound, by trials"
-    where = {"both": "both ends", "start": "the start", "end": "the end"}.get(held.slides, "a rim")
+    how = "Clairaut's bound" if found.by == "Clairaut" else "bound, by trials"
+    where = {"both": "both ends", "start": "the start", "end": "the end"}.get(found.slides, "a rim")
     axes.axvspan(
-        held.high, last, color=_SLIDES, alpha=0.8, zorder=0, label=f"slides off {where} ({how} {held.high:.3g})"
+        found.high, last, color=_SLIDES, alpha=0.8, zorder=0, label=f"slides off {where} ({how} {found.high:.3g})"
     )
-    axes.axvline(held.high, color=_INK, linewidth=1.2)
+    axes.axvline(found.high, color=_INK, linewidth=1.2)
     gains = (
         (f"friction {FRICTION:g}", chosen.with_friction),
         (f"openings {WIDER:g} times as wide", chosen.with_opening),
@@ -75,8 +76,9 @@ def _bound(axes: Any, chosen: Revolutions, last: float) -> None:
 
 def _bridged(axes: Any, chosen: Revolutions, last: float) -> None:
     seen = [each for each in chosen.trials if 0.0 < each.revolutions <= last]
-    for holds, look in ((True, "o"), (False, "x")):
-        told = [(each.revolutions, each.bridged) for each in seen if each.holds == holds and each.at_rest > 0.0]
-        words = "share of the fibre that bridges, by trial" if holds else "the same, where some fibres slide off"
-        if told:
-            axes.plot(*np.transpose(told), look, color=_BRIDGED, markersize=4, label=words)
+    for feasible, look in ((True, "o"), (False, "x")):
+        tried = [each for each in seen if each.feasible == feasible and each.converged > 0.0]
+        words = "share of the fibre that bridges, by trial" if feasible else "the same, where some fibres slide off"
+        if tried:
+            points = [(each.revolutions, each.bridged_share) for each in tried]
+            axes.plot(*np.transpose(points), look, color=_BRIDGED, markersize=4, label=words)

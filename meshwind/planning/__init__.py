@@ -1,4 +1,4 @@
-"""Where paths shall run: families, pins, revolutions, spacing."""
+"""Planning of paths: families and pins, the number of revolutions, and the spacing of neighbours."""
 
 from meshwind.planning.families import Families, families
 from meshwind.planning.pins import read_pins

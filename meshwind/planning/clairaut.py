@@ -6,10 +6,20 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from meshwind.core.cast import Floats, frozen
+from meshwind.core.vectors import TINY
+from meshwind.surface.evaluate import SU, SV, S
+from meshwind.surface.forms import fundamental_forms
+from meshwind.surface.grid import parameter_grid, rim_frames, rings
 from meshwind.surface.surface import Surface
 
 _AROUND, _ALONG = 24, 96
 """Samples by which a surface is compared with the shape of revolution about its axis."""
+_MERIDIAN, _WINDING = 64 * _ALONG, 8 * _ALONG
+"""Samples of the meridian: for distances from it, and for the angle that it winds."""
+_RIM_SAMPLES = 16
+"""Samples of a rim per span, for its middle."""
+_SHORTEST = 1e-3
+"""Least distance between the rims' middles over the part's size: closer together they give no axis."""
 _EXACT, _FITTED = 1e-6, 2.0
 """Largest deviation from a shape of revolution: over the part's size, and over the fit's largest error."""
 _FLAT = 1e-3
@@ -17,16 +27,24 @@ _FLAT = 1e-3
 _TWIST = 1e-3
 """Turns by which a meridian of the chart may wind from rim to rim."""
 _NODES = 6
-"""Gauss nodes a span along the meridian."""
+"""Gauss nodes per interval along the meridian."""
+_FEWEST = 64
+"""Fewest intervals."""
+_CONSTANTS = 64
+"""Values of Clairaut's constant at which the turns are compared."""
+_SAME_RIM = 1e-9
+"""Relative difference of the rims' radii that is round-off."""
+_HOLLOW = -1e-6
+"""Least normal curvature, over the largest radius, that counts as pressing: below it lies the fit's noise."""
 
 
 @dataclass(frozen=True)
 class Profile:
-    """A shape of revolution's meridian in nodes of Gauss: r, slope dr/ds and curvature at the nodes (k,), weight (k,).
+    """The meridian of a shape of revolution at k Gauss nodes.
 
-    v (k,) is the parameter of each node; weight carries the arc length, so that sum(f weight) is the integral of f ds,
-    also where f has an inverse square root at a rim; rims: the two radii; slopes: dr/ds at both; deviation: largest
-    distance of the surface from the shape.
+    v (k,): parameter; r (k,): radius; weight (k,) carries the arc length, so that sum(f weight) is the integral of
+    f ds, also where f has an inverse square root at a rim; bend, hoop (k,): normal curvatures along and around; rims:
+    the two radii; slopes: dr/ds at both; deviation: largest distance of the surface from the shape.
     """
 
     v: Floats
@@ -44,23 +62,23 @@ class Profile:
         return float((constant / (self.r * root) * self.weight).sum() / (2.0 * np.pi))
 
     def bound(self) -> float:
-        """Most revolutions of a fibre that does not slide off: those at c = the smaller rim's radius; or infinity.
+        """Largest revolutions of a fibre that does not slide off: those at c = the smaller rim's radius; or infinity.
 
         Infinite where the part is narrowest between the rims, or does not widen behind the narrower rim.
         """
         narrow = min(self.rims)
         inward = self.slopes[0], -self.slopes[1]
-        at_narrow = [slope for rim, slope in zip(self.rims, inward, strict=True) if rim <= narrow * (1.0 + 1e-9)]
+        at_narrow = [slope for rim, slope in zip(self.rims, inward, strict=True) if rim <= narrow * (1.0 + _SAME_RIM)]
         if self.r.min() < narrow or min(at_narrow) < _FLAT:
             return float("inf")
-        # a bulge can let the turns fall again before c reaches the rim; past the largest no fibre is stable
-        shares = np.sin(np.linspace(0.0, 0.5 * np.pi, 65)[1:])
+        # with a bulge the turns can decrease before c reaches the rim; past the largest no fibre is stable
+        shares = np.sin(np.linspace(0.0, 0.5 * np.pi, _CONSTANTS + 1)[1:])
         return max(self.turns(narrow * share) for share in shares)
 
     def presses(self, constant: float) -> bool:
         """Whether the geodesic presses on the part all the way."""
         square = np.minimum((constant / self.r) ** 2, 1.0)
-        return bool((self.hoop * square + self.bend * (1.0 - square) >= -1e-6 / self.r.max()).all())
+        return bool((self.hoop * square + self.bend * (1.0 - square) >= _HOLLOW / self.r.max()).all())
 
 
 def profile(surface: Surface) -> Profile | None:
@@ -72,11 +90,10 @@ def profile(surface: Surface) -> Profile | None:
     if axis is None:
         return None
     middle, along = axis
-    u, v = np.arange(_AROUND) / _AROUND, np.linspace(0.0, 1.0, _ALONG + 1)
-    uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2)
-    off = surface.points(uv) - middle
-    flat = _flat(off, along)
-    deviation = _from_profile(flat, _flat(_meridian(surface, 64 * _ALONG) - middle, along))
+    uv = parameter_grid(np.arange(_AROUND) / _AROUND, np.linspace(0.0, 1.0, _ALONG + 1))
+    samples = _radius_and_height(surface.points(uv) - middle, along)
+    meridian = _radius_and_height(_meridian(surface, _MERIDIAN) - middle, along)
+    deviation = _from_profile(samples, meridian)
     if deviation > allowed or abs(_twist(surface, middle, along)) > _TWIST:
         return None
     return _nodes(surface, middle, along, deviation)
@@ -86,22 +103,22 @@ def _axis(surface: Surface) -> tuple[Floats, Floats] | None:
     """The line through the middles of the two rims: a point and a unit vector from start to end."""
     middles = []
     for v in (0.0, 1.0):
-        u = np.arange(16 * surface.spans[0]) / (16 * surface.spans[0])
-        frames = surface.frames(np.stack([u, np.full_like(u, v)], axis=1))
-        speed = np.linalg.norm(frames[:, 1], axis=1)
-        middles.append((frames[:, 0] * speed[:, None]).sum(axis=0) / max(float(speed.sum()), 1e-300))
+        frames = rim_frames(surface, v, _RIM_SAMPLES)
+        speed = np.linalg.norm(frames[:, SU], axis=1)
+        middles.append((frames[:, S] * speed[:, None]).sum(axis=0) / max(float(speed.sum()), TINY))
     step = middles[1] - middles[0]
     length = float(np.linalg.norm(step))
-    return (middles[0], step / length) if length > 1e-3 * surface.size else None
+    return (middles[0], step / length) if length > _SHORTEST * surface.size else None
 
 
-def _flat(off: Floats, along: Floats) -> Floats:
+def _radius_and_height(off: Floats, along: Floats) -> Floats:
     """Distance from the axis and height along it (k, 2) of points (k, 3) relative to a point of the axis."""
     height = off @ along
     return np.stack([np.linalg.norm(off - height[:, None] * along, axis=1), height], axis=1)
 
 
 def _meridian(surface: Surface, count: int) -> Floats:
+    """Points (count + 1, 3) of the chart's meridian u = 0."""
     v = np.linspace(0.0, 1.0, count + 1)
     return surface.points(np.stack([np.zeros_like(v), v], axis=1))
 
@@ -112,12 +129,12 @@ def _from_profile(points: Floats, line: Floats) -> float:
     chord = line[near + 1] - line[near - 1]
     off = points - line[near]
     across = chord[:, 0] * off[:, 1] - chord[:, 1] * off[:, 0]
-    return float(np.abs(across / np.maximum(np.linalg.norm(chord, axis=1), 1e-300)).max())
+    return float(np.abs(across / np.maximum(np.linalg.norm(chord, axis=1), TINY)).max())
 
 
 def _twist(surface: Surface, middle: Floats, along: Floats) -> float:
     """Turns that the chart's meridian u = 0 winds about the axis from rim to rim."""
-    off = _meridian(surface, 8 * _ALONG) - middle
+    off = _meridian(surface, _WINDING) - middle
     off -= (off @ along)[:, None] * along
     step = np.arctan2(np.cross(off[:-1], off[1:]) @ along, (off[:-1] * off[1:]).sum(axis=1))
     return float(step.sum() / (2.0 * np.pi))
@@ -126,7 +143,7 @@ def _twist(surface: Surface, middle: Floats, along: Floats) -> float:
 def _nodes(surface: Surface, middle: Floats, along: Floats, deviation: float) -> Profile:
     """Integrate over t in v = (1 - cos(pi t)) / 2, which takes away the inverse square roots at the rims."""
     node, weight = np.polynomial.legendre.leggauss(_NODES)
-    many = max(2 * surface.spans[1], 64)
+    many = max(2 * surface.spans[1], _FEWEST)
     t = ((np.arange(many)[:, None] + 0.5 * (node + 1.0)) / many).ravel()
     v = np.concatenate([[0.0], np.sin(0.5 * np.pi * t) ** 2, [1.0]])
     r, slope, speed, bend, hoop = _mean_ring(surface, middle, along, v)
@@ -145,16 +162,13 @@ def _nodes(surface: Surface, middle: Floats, along: Floats, deviation: float) ->
 
 def _mean_ring(surface: Surface, middle: Floats, along: Floats, v: Floats) -> tuple[Floats, ...]:
     """Radius, dr/ds, ds/dv and the two normal curvatures (k,) at v (k,), each the mean around the part."""
-    u = np.arange(_AROUND) / _AROUND
-    uv = np.stack(np.meshgrid(v, u, indexing="ij")[::-1], axis=2).reshape(-1, 2)
-    frames = surface.frames(uv)
-    off = frames[:, 0] - middle
+    frames = rings(surface, v, _AROUND).reshape(-1, 6, 3)
+    off = frames[:, S] - middle
     out = off - (off @ along)[:, None] * along
     r = np.linalg.norm(out, axis=1)
-    speed = np.linalg.norm(frames[:, 2], axis=1)
-    slope = (out * frames[:, 2]).sum(axis=1) / np.maximum(r * speed, 1e-300)
-    normal = np.cross(frames[:, 1], frames[:, 2])
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
-    bend = -(frames[:, 5] * normal).sum(axis=1) / np.maximum(speed, 1e-300) ** 2
-    hoop = -(frames[:, 3] * normal).sum(axis=1) / np.maximum((frames[:, 1] ** 2).sum(axis=1), 1e-300)
+    speed = np.linalg.norm(frames[:, SV], axis=1)
+    slope = (out * frames[:, SV]).sum(axis=1) / np.maximum(r * speed, TINY)
+    forms = fundamental_forms(frames)
+    bend = forms.second.vv / np.maximum(forms.first.vv, TINY)
+    hoop = forms.second.uu / np.maximum(forms.first.uu, TINY)
     return tuple(each.reshape(len(v), _AROUND).mean(axis=1) for each in (r, slope, speed, bend, hoop))

@@ -1,4 +1,4 @@
-"""Two families of paths that start from the same evenly spread rim points."""
+"""Families of paths: where they start and end, and how their revolutions relate to the winding angle (6.1)."""
 
 from dataclasses import dataclass
 
@@ -7,10 +7,20 @@ from scipy.interpolate import CubicSpline
 
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
+from meshwind.core.vectors import TINY
+from meshwind.path.solve import check_count
+from meshwind.surface.evaluate import SU
+from meshwind.surface.grid import mean_speeds
 from meshwind.surface.surface import Surface
 
-SAMPLES = 16
-"""Samples of the rim's speed a span: its length and the places on it are then exact to round-off's square root."""
+_SAMPLES = 16
+"""Samples of the rim's speed per span: its length and points on it are then exact to round-off's square root."""
+_NEWTON_STEPS = 4
+"""Newton's steps on a smooth growing function from a start good to 1e-4: convergence is quadratic."""
+_SPEED_SAMPLES = 32
+"""Points each way over which the mean speeds of the parameters are taken."""
+_STEEPEST = np.radians(80.0)
+"""Winding angle from the axis, on average, past which a winding is a hoop and no longer runs from end to end."""
 
 
 @dataclass(frozen=True)
@@ -80,31 +90,49 @@ def families(surface: Surface, paths: int, revolutions: float) -> Families:
     """
     if not surface.periodic:
         raise BadInputError("families need a surface that closes in u; give end points to `solve` instead")
-    if not isinstance(paths, int | np.integer) or paths < 1:
-        raise BadInputError(f"paths is {paths}; give a whole number of paths a family, at least 1")
+    check_count(paths, "paths", 1)
     if not (np.isfinite(revolutions) and revolutions >= 0):
         raise BadInputError(f"revolutions is {revolutions}; give a number >= 0")
     turn = np.arange(paths) / paths
-    first = places(surface, 0.0, turn)
+    first = rim_parameters(surface, 0.0, turn)
     start = np.stack([first, np.zeros(paths)], axis=1)
-    ends = [np.stack([places(surface, 1.0, turn + r), np.ones(paths)], axis=1) for r in (revolutions, -revolutions)]
+    last = [rim_parameters(surface, 1.0, turn + turned) for turned in (revolutions, -revolutions)]
+    ends = [np.stack([u, np.ones(paths)], axis=1) for u in last]
     family = np.repeat([1, -1], paths)
     return Families(frozen(np.concatenate([start, start])), frozen(np.concatenate(ends)), frozen(family))
 
 
-def places(surface: Surface, v: float, turn: Floats) -> Floats:
-    """The u on the rim v at the given shares (n,) of its length, unwrapped, without a mean shift against u."""
-    u = np.linspace(0.0, 1.0, SAMPLES * surface.spans[0] + 1)
-    speed = np.linalg.norm(surface.frames(np.stack([u, np.full_like(u, v)], axis=1))[:, 1], axis=1)
+def families_between(start: Floats, end: Floats) -> Families:
+    """Paths between given parametric ends (p, 2): family +1 where u grows, then -1."""
+    family = np.where(end[:, 0] >= start[:, 0], 1, -1)
+    order = np.argsort(-family, kind="stable")
+    return Families(frozen(start[order]), frozen(end[order]), frozen(family[order]))
+
+
+def hoop_revolutions(surface: Surface) -> float:
+    """Revolutions of a winding that is all but a hoop."""
+    return float(np.tan(_STEEPEST)) * square_revolutions(surface)
+
+
+def square_revolutions(surface: Surface) -> float:
+    """Revolutions of a winding at 45 degrees on average, so that the two families cross square: the best angle."""
+    around, along = mean_speeds(surface, _SPEED_SAMPLES)
+    return along / max(around, TINY)
+
+
+def rim_parameters(surface: Surface, v: float, share: Floats) -> Floats:
+    """The u on the rim v at shares (n,) of its length, both unwrapped, without a mean shift against each other."""
+    u = np.linspace(0.0, 1.0, _SAMPLES * surface.spans[0] + 1)
+    speed = np.linalg.norm(surface.frames(np.stack([u, np.full_like(u, v)], axis=1))[:, SU], axis=1)
     speed[-1] = speed[0]
     length = CubicSpline(u, speed, bc_type="periodic").antiderivative()
-    share = length(u) / length(1.0)
-    ahead = CubicSpline(u, share - u, bc_type="periodic")
+    passed = length(u) / length(1.0)
+    ahead = CubicSpline(u, passed - u, bc_type="periodic")
     shift = float(ahead.integrate(0.0, 1.0))
-    wanted = np.asarray(turn) + shift
+    wanted = np.asarray(share) + shift
     whole = np.floor(wanted)
     rest = wanted - whole
-    at = np.interp(rest, share, u)
-    for _ in range(4):  # Newton on a smooth growing function from a start good to 1e-4: quadratic
+    at = np.interp(rest, passed, u)
+    for _ in range(_NEWTON_STEPS):
         at -= (at + ahead(at) - rest) / (1.0 + ahead(at, 1))
     return np.asarray(whole + at)

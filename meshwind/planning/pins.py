@@ -5,10 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from meshwind.core.cast import Floats, frozen
+from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
-from meshwind.planning.families import Families
+from meshwind.planning.families import Families, families_between
 from meshwind.surface.foot import feet
+from meshwind.surface.grid import parameter_grid
 from meshwind.surface.surface import Surface
 
 PARAMETRIC = ("u0", "v0", "u1", "v1")
@@ -77,13 +78,6 @@ def read_pins(path: str | Path, surface: Surface, revolutions: float) -> Familie
     return families_between(start, end)
 
 
-def families_between(start: Floats, end: Floats) -> Families:
-    """Paths between given parametric ends (p, 2), family +1 where u grows, then -1."""
-    family = np.where(end[:, 0] >= start[:, 0], 1, -1)
-    order = np.argsort(-family, kind="stable")
-    return Families(frozen(start[order]), frozen(end[order]), frozen(family[order]))
-
-
 def _table(path: Path) -> tuple[list[str], Floats]:
     """Column names and numbers (rows, columns)."""
     try:
@@ -94,7 +88,7 @@ def _table(path: Path) -> tuple[list[str], Floats]:
     except (OSError, ValueError, csv.Error) as error:
         raise BadInputError(f"{path}: cannot be read as CSV; give a text file of comma-separated numbers") from error
     if len(rows) < 2:
-        raise BadInputError(f"{path.name}: holds no pins; give a row of column names, then a row a path")
+        raise BadInputError(f"{path.name}: holds no pins; give a row of column names, then a row per path")
     names = [cell.strip().lower() for cell in rows[0]]
     values = np.empty((len(rows) - 1, len(names)))
     for number, row in enumerate(rows[1:]):
@@ -110,10 +104,9 @@ def _table(path: Path) -> tuple[list[str], Floats]:
 
 def _on_surface(surface: Surface, points: Floats, path: Path) -> Floats:
     """The parametric points (p, 2) of the surface that are nearest to points (p, 3)."""
-    u, v = np.arange(_SEEDS[0]) / _SEEDS[0], np.linspace(0.0, 1.0, _SEEDS[1])
-    grid = np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2)
-    apart = np.linalg.norm(surface.points(grid)[None] - points[:, None], axis=2)
-    at = np.array(grid[apart.argmin(axis=1)])
+    seeds = parameter_grid(np.arange(_SEEDS[0]) / _SEEDS[0], np.linspace(0.0, 1.0, _SEEDS[1]))
+    apart = np.linalg.norm(surface.points(seeds)[None] - points[:, None], axis=2)
+    at = np.array(seeds[apart.argmin(axis=1)])
     frames = np.empty((len(at), 6, 3))
     feet(0, len(at), surface.spline, np.ascontiguousarray(points), at, frames)
     off = np.linalg.norm(frames[:, 0] - points, axis=1)

@@ -1,4 +1,4 @@
-"""Where a winding of so many revolutions presses on the surface: (6.1) to (6.3) at every point.
+"""Where a winding by a number of revolutions presses on the surface: (6.1) to (6.3) at every point.
 
 A straight line in the (u, v) plane (6.2) that turns n_rev times from end to end runs along (n_rev, 1).  The fibre
 presses where its normal curvature bends towards the body.  Written out with the outward normal N,
@@ -14,9 +14,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.core.cast import Floats, frozen
+from meshwind.core.vectors import TINY
+from meshwind.surface.forms import area_elements, fundamental_forms
+from meshwind.surface.grid import parameter_grid
 from meshwind.surface.surface import Surface
 
-_MOST = 128
+Intervals = tuple[tuple[float, float], ...]
+"""Intervals (low, high) of the number of revolutions."""
+_MAX_SPANS = 128
 """Most spans each way that are sampled."""
 _SITES = 0.5 + np.array([-1.0, 1.0]) / np.sqrt(12.0)
 """Where in a span a cubic spline's curvature is most exact: of fourth order, and of second order elsewhere."""
@@ -28,7 +33,7 @@ _SAME = 1e-9
 
 @dataclass(frozen=True)
 class Pressing:
-    """The intervals of n_rev in which both families press, of k points of the surface, and how common each n_rev is.
+    """The intervals of n_rev in which both families press, at k points of the surface, and how common each n_rev is.
 
     uv (k, 2); low, high (k, 2): the intervals [low, high] of each point, two at most, in revolutions, high infinite
     where there is no end, low > high where there is no interval; weight (k,): the share of the area that it stands for.
@@ -40,7 +45,7 @@ class Pressing:
     weight: Floats
 
     def share(self, revolutions: Floats) -> Floats:
-        """Share of the surface's area on which a winding of so many revolutions (m,) presses."""
+        """Share (m,) of the surface's area on which windings by numbers of revolutions (m,) press."""
         low, high, weight = self._closed()
         begun, ended = np.argsort(low), np.argsort(high)
         opened = np.concatenate([[0.0], np.cumsum(weight[begun])])
@@ -49,7 +54,7 @@ class Pressing:
         first = np.searchsorted(low[begun], turns, side="right")
         return np.asarray(opened[first] - closed[np.searchsorted(high[ended], turns, side="left")])
 
-    def most_common(self, least: float = 0.0, most: float = np.inf) -> tuple[tuple[float, float], ...]:
+    def most_common(self, least: float = 0.0, most: float = np.inf) -> Intervals:
         """The interval or intervals between `least` and `most` revolutions in which the largest share presses."""
         low, high, _ = self._closed()
         edges = np.unique(np.concatenate([[least, most], low, high]))
@@ -68,31 +73,31 @@ class Pressing:
         return tuple((float(edges[run[0]]), float(edges[run[-1] + 1])) for run in runs)
 
     def _closed(self) -> tuple[Floats, Floats, Floats]:
-        """All intervals that are there, with their weights."""
+        """All intervals that are not empty, with their weights."""
         there = self.low <= self.high
         return self.low[there], self.high[there], np.repeat(self.weight[:, None], 2, axis=1)[there]
 
 
 def pressing(surface: Surface, flat: float | None = None, uv: Floats | None = None) -> Pressing:
-    """Find the intervals at uv (k, 2), or at two points a span each way.
+    """Find the intervals at uv (k, 2), or at two points per span each way.
 
-    flat: curvature, over the part's size, down to which a hollow counts as none; by default what a fit leaves, and
-    all but 0 on an analytic surface.
+    flat: curvature, over the part's size, down to which a hollow counts as none; by default that of a fit's noise, and
+    nearly 0 on an analytic surface.
     """
     if flat is None:
         flat = _EXACT if surface.error is None else _FITTED
     if uv is None:
         u, v = (_sites(spans) for spans in surface.spans)
-        uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2)
+        uv = parameter_grid(u, v)
     frames = surface.frames(uv)
-    area = np.linalg.norm(np.cross(frames[:, 1], frames[:, 2]), axis=1)
+    area = area_elements(frames)
     low, high = intervals(frames, flat / surface.size)
-    return Pressing(frozen(np.array(uv)), frozen(low), frozen(high), frozen(area / max(float(area.sum()), 1e-300)))
+    return Pressing(frozen(np.array(uv)), frozen(low), frozen(high), frozen(area / max(float(area.sum()), TINY)))
 
 
 def _sites(spans: int) -> Floats:
-    """Parameters of the sites in all spans, or in so many of them spread evenly."""
-    many = min(spans, _MOST)
+    """Parameters of the sites in all spans, or in _MAX_SPANS of them spread evenly."""
+    many = min(spans, _MAX_SPANS)
     which = np.floor((np.arange(many) + 0.5) * spans / many)
     return np.asarray((which[:, None] + _SITES).ravel() / spans)
 
@@ -102,13 +107,8 @@ def intervals(frames: Floats, flat: float = 0.0) -> tuple[Floats, Floats]:
 
     flat: the normal curvature down to which, below 0, a fibre counts as pressing, over a length.
     """
-    _, su, sv, suu, suv, svv = np.moveaxis(frames, 1, 0)
-    normal = np.cross(su, sv)
-    size = np.linalg.norm(normal, axis=1, keepdims=True)
-    normal = np.divide(normal, size, out=np.zeros_like(normal), where=size > 0.0)
-    second = [-(bend * normal).sum(axis=1) for bend in (suu, suv, svv)]
-    first = [(a * b).sum(axis=1) for a, b in ((su, su), (su, sv), (sv, sv))]
-    a, b, c = (bend + flat * speed for bend, speed in zip(second, first, strict=True))
+    forms = fundamental_forms(frames)
+    a, b, c = (second + flat * first for second, first in zip(forms.second, forms.first, strict=True))
     return _above_zero(a, np.abs(b), c)
 
 

@@ -1,4 +1,4 @@
-"""The number of revolutions, chosen: where the fibre presses (6.3), where it does not slide off, what bridges least."""
+"""The choice of the number of revolutions: one that is feasible, bridges least, and presses on most of the surface."""
 
 from dataclasses import dataclass
 
@@ -7,50 +7,52 @@ import numpy as np
 from meshwind.core.cast import Floats
 from meshwind.core.defaults import PARTICLES, STEPS_PER_TURN
 from meshwind.core.errors import BadInputError
-from meshwind.path.friction import Friction, friction_of
-from meshwind.planning.holding import Holding, Wound, holding, hoop_revolutions, opened, square_revolutions
-from meshwind.planning.pressing import Pressing, pressing
+from meshwind.path.friction import Friction
+from meshwind.path.solve import check_count
+from meshwind.planning.alternatives import alternatives
+from meshwind.planning.families import hoop_revolutions, square_revolutions
+from meshwind.planning.feasible import Feasible, Wind, feasible_revolutions
+from meshwind.planning.pressing import Intervals, Pressing, pressing
 from meshwind.planning.trials import PATHS, Trial, full_trial, trial
 from meshwind.surface.surface import Surface
 
 CANDIDATES = 32
 """Numbers of revolutions that are compared."""
 MARGIN = 0.97
-"""Share of the bound at which the last candidate lies: at the bound itself the fibre is about to slide."""
-NEAR = 0.005
-"""Bridged shares of a path that differ by less are alike; among those the better crossing angle decides."""
-_CHECKS, _ENOUGH = 10, 4
-"""So many candidates are wound in earnest at most, and so many that hold are compared where all of them bridge."""
+"""Share of the feasible interval within which candidates lie: at its very end the fibre is about to slide."""
+ALIKE = 0.005
+"""Difference of bridged shares up to which windings are alike; among those the crossing angle decides."""
+_MAX_CHECKED, _MAX_COMPARED = 10, 4
+"""Candidates that are wound at full resolution at most, and feasible ones among them that are compared."""
 _APART = 0.04
-"""A candidate this close to one that was wound in earnest, relative, is passed over."""
-_CLOSE = 0.02
-"""The best number is looked for to within this, relative, where all bridge."""
-_TRIED, _FEW = 16, 3
-"""Most paths a family in coarse windings; and with friction, which costs more."""
-_GAIN = 3.0
-"""So many times the bound is as far as it is looked for with friction."""
-FRICTION, WIDER = 0.2, 1.5
-"""What more would allow: this friction (a wet fibre's), and openings so many times as wide."""
-
-Intervals = tuple[tuple[float, float], ...]
+"""Candidates this close, relative, to one that was wound at full resolution are passed over."""
+_ACCURACY = 0.02
+"""Relative accuracy of the best number, where all bridge."""
+_FEASIBLE_ACCURACY = 2e-3
+"""Accuracy of the feasible interval, in revolutions."""
+_TRIED = 16
+"""Most paths per family in coarse windings."""
+_ROUND_OFF = 1e-9
+"""Difference of numbers of revolutions that is round-off."""
 
 
 @dataclass(frozen=True)
 class Revolutions:
     """The choice of the number of revolutions, and what it rests on.
 
-    chosen: the winding in earnest of the choice; pressing: by points of the surface; common: the interval(s), among
-    the numbers that hold, in which most of the surface presses; common_share: that share; holding: the numbers that
-    hold; trials: all windings that were tried, by growing revolutions; square: revolutions whose families cross at
-    right angles on average; with_friction, with_opening: most revolutions that would hold with friction `FRICTION`
-    or openings `WIDER` times as wide, 0 where not looked for or none, infinity where no number slides off.
+    chosen: the winding at full resolution by the number chosen; pressing: the intervals in which points of the surface
+    press; common: the feasible interval(s) in which most of the surface presses; common_share: that share; feasible:
+    the feasible revolutions; trials: all windings that were tried, by growing revolutions; square: revolutions whose
+    families cross at right angles on average; with_friction, with_opening: largest feasible revolutions with friction
+    `FRICTION` or openings `WIDER` times as wide (alternatives.py), 0 where not looked for or none, infinity where no
+    number slides off.
     """
 
     chosen: Trial
     pressing: Pressing
-    common: tuple[tuple[float, float], ...]
+    common: Intervals
     common_share: float
-    holding: Holding
+    feasible: Feasible
     trials: tuple[Trial, ...]
     square: float
     with_friction: float = 0.0
@@ -63,12 +65,12 @@ class Revolutions:
 
     @property
     def why(self) -> str:
-        """The choice in words."""
-        high = self.holding.high
+        """The reason for the choice, in a line."""
+        high = self.feasible.high
         bound = "no number slides off" if not np.isfinite(high) else f"more than {high:.3g} slide off"
-        if not self.holding.any:
+        if not self.feasible.any:
             return f"{self.choice:.3g} revolutions: none keeps every fibre on the part; most fibres hold at this number"
-        share = self.chosen.bridged
+        share = self.chosen.bridged_share
         bridged = "no fibre bridges" if share == 0.0 else f"{100.0 * share:.2g}% of the fibre bridges, the least"
         return f"{self.choice:.3g} revolutions: {bridged}; {bound}"
 
@@ -123,48 +125,49 @@ def choose_revolutions(
     """
     if not surface.periodic:
         raise BadInputError("revolutions need a surface that closes in u; give end points to `solve` instead")
-    if not isinstance(paths, int | np.integer) or paths < 1:
-        raise BadInputError(f"paths is {paths}; give a whole number of paths a family, at least 1")
+    check_count(paths, "paths", 1)
     if most is None:
         most = hoop_revolutions(surface)
         most = most if particles is None else min(most, (particles - 1) / STEPS_PER_TURN)
     elif not 0.0 < most < np.inf:
         raise BadInputError(f"most is {most}; give a largest number of revolutions above 0")
     tried = min(paths, _TRIED)
-    held = holding(surface, friction, most, tried, 2e-3)
+    feasible = feasible_revolutions(surface, friction, most, tried, _FEASIBLE_ACCURACY)
     square = square_revolutions(surface)
     pressed = pressing(surface)
-    top = min(held.high, most)
-    common = pressed.most_common(held.low, top)
+    top = min(feasible.high, most)
+    common = pressed.most_common(feasible.low, top)
     share = max((float(pressed.share(np.array([_inside(*each)]))[0]) for each in common), default=0.0)
-    candidates = [trial(surface, float(turns), friction, tried) for turns in _candidates(held, top, paths)]
-    chosen, trials = _choose(
-        _order(candidates, held, common, square),
-        [*held.trials, *candidates],
-        lambda turns: full_trial(surface, turns, friction, paths, particles),
-        0.5 / paths,
-    )
-    gains = _further(surface, held, most, friction) if further and held.any and np.isfinite(held.high) else (0.0, 0.0)
+    candidates = [trial(surface, float(turns), friction, tried) for turns in _candidates(feasible, top, paths)]
+    order = _order(candidates, feasible, common, square)
+    checked = _wind_best(order, lambda turns: full_trial(surface, turns, friction, paths, particles), 0.5 / paths)
+    trials = [*feasible.trials, *candidates, *checked]
+    chosen = _least_bridging(checked or [each for each in trials if each.revolutions > 0.0])
+    gains = 0.0, 0.0
+    if further and feasible.any and np.isfinite(feasible.high):
+        gains = alternatives(surface, feasible, most, friction)
     trials.sort(key=lambda each: each.revolutions)
-    return Revolutions(chosen, pressed, common, share, held, tuple(trials), square, *gains)
+    return Revolutions(chosen, pressed, common, share, feasible, tuple(trials), square, *gains)
 
 
 def _inside(low: float, high: float) -> float:
+    """A number inside an interval."""
     return 0.5 * (low + high) if np.isfinite(high) else low + 1.0
 
 
-def _limit(held: Holding) -> float:
-    return held.low + MARGIN * (held.high - held.low)
+def _limit(feasible: Feasible) -> float:
+    """The largest candidate."""
+    return feasible.low + MARGIN * (feasible.high - feasible.low)
 
 
-def _candidates(held: Holding, top: float, paths: int) -> Floats:
-    """Numbers spread evenly over those that hold, such that ends of both families meet on the end rim too."""
-    last = min(top, _limit(held))
-    if not held.any:
+def _candidates(feasible: Feasible, top: float, paths: int) -> Floats:
+    """Numbers spread evenly over the feasible ones, such that ends of both families meet on the end rim too."""
+    last = min(top, _limit(feasible))
+    if not feasible.any:
         return np.zeros(0)
-    even = np.linspace(held.low, last, CANDIDATES + 1)[1:]
+    even = np.linspace(feasible.low, last, CANDIDATES + 1)[1:]
     meeting = np.unique(_meeting(even, paths))
-    meeting = meeting[(meeting > held.low) & (meeting <= last) & (meeting > 0.0)]
+    meeting = meeting[(meeting > feasible.low) & (meeting <= last) & (meeting > 0.0)]
     return meeting if len(meeting) else even
 
 
@@ -173,65 +176,55 @@ def _meeting(turns: Floats, paths: int) -> Floats:
     return np.asarray(np.round(2.0 * paths * turns) / (2.0 * paths))
 
 
-def _order(trials: list[Trial], held: Holding, common: Intervals, square: float) -> list[Trial]:
-    """The trials that hold, the best first: those that bridge no more than the least, then by what they bridge."""
-    good = [each for each in trials if each.holds and 0.0 < each.revolutions <= _limit(held) * (1.0 + 1e-12)]
-    least = min((each.bridged for each in good), default=0.0)
+def _order(trials: list[Trial], feasible: Feasible, common: Intervals, square: float) -> list[Trial]:
+    """The feasible trials, best first: those that bridge no more than the least, then by what they bridge."""
+    limit = _limit(feasible) * (1.0 + 1e-12)  # the last candidate is the limit itself, but for round-off
+    good = [each for each in trials if each.feasible and 0.0 < each.revolutions <= limit]
+    least = min((each.bridged_share for each in good), default=0.0)
 
     def merit(each: Trial) -> tuple[float, bool, float]:
-        excess = each.bridged - least
+        excess = each.bridged_share - least
         presses = any(low <= each.revolutions <= high for low, high in common)
-        return (0.0 if excess <= NEAR else excess), not presses, abs(float(np.log(each.revolutions / square)))
+        return (0.0 if excess <= ALIKE else excess), not presses, abs(float(np.log(each.revolutions / square)))
 
     return sorted(good, key=merit)
 
 
-def _choose(order: list[Trial], trials: list[Trial], wound: Wound, grain: float) -> tuple[Trial, list[Trial]]:
-    """The winding in earnest that holds and bridges least, or has most paths at rest; and all windings tried.
+def _wind_best(order: list[Trial], wind: Wind, grain: float) -> list[Trial]:
+    """Windings at full resolution of the best candidates and, where all bridge, of numbers beside the best.
 
-    Coarse paths miss the bridged share by several percent of the fibre: where all bridge, candidates are compared by
-    windings in earnest, and the numbers on both sides of the best as well.
+    Coarse paths miss the bridged share by several percent of the fibre: where all bridge, candidates are compared at
+    full resolution, and the numbers on both sides of the best as well.
     """
     checked: list[Trial] = []
     for best in order:
-        held = [each for each in checked if each.holds]
+        feasible = [each for each in checked if each.feasible]
         near = [abs(each.revolutions - best.revolutions) < _APART * best.revolutions for each in checked]
-        if len(checked) == _CHECKS or len(held) == _ENOUGH or any(each.bridged <= NEAR for each in held):
+        enough = len(checked) == _MAX_CHECKED or len(feasible) == _MAX_COMPARED
+        if enough or any(each.bridged_share <= ALIKE for each in feasible):
             break
         if not any(near):
-            checked.append(wound(best.revolutions))
+            checked.append(wind(best.revolutions))
     numbers = sorted(each.revolutions for each in order)
+    return checked + _wind_beside(checked, numbers, wind, grain) if checked else []
+
+
+def _wind_beside(checked: list[Trial], numbers: list[float], wind: Wind, grain: float) -> list[Trial]:
+    """Windings on both sides of the best so far, in steps that are halved down to half a grain, while all bridge."""
+    beside: list[Trial] = []
     step = 0.5 * float(np.diff(numbers).max(initial=0.0))
-    while checked and step > max(_CLOSE * _least(checked).revolutions, 0.5 * grain) and _least(checked).bridged > NEAR:
-        whole = grain * np.ceil(step / grain - 1e-9)
-        middle = _least(checked).revolutions
-        beside = [middle - whole, middle + whole]
-        known = [each.revolutions for each in checked]
-        beside = [turns for turns in beside if 0.0 < turns <= numbers[-1] + 1e-9 and not np.isclose(known, turns).any()]
-        checked += [wound(turns) for turns in beside]
+    while True:
+        best = _least_bridging([*checked, *beside])
+        if step <= max(_ACCURACY * best.revolutions, 0.5 * grain) or best.bridged_share <= ALIKE:
+            return beside
+        whole = grain * np.ceil(step / grain - _ROUND_OFF)
+        known = [each.revolutions for each in (*checked, *beside)]
+        either = best.revolutions - whole, best.revolutions + whole
+        new = [n for n in either if 0.0 < n <= numbers[-1] + _ROUND_OFF and not np.isclose(known, n).any()]
+        beside += map(wind, new)
         step *= 0.5
-    turned = checked or [each for each in trials if each.revolutions > 0.0]
-    return _least(turned), [*trials, *checked]
 
 
-def _least(trials: list[Trial]) -> Trial:
-    return max(trials, key=lambda each: (each.at_rest, -each.bridged))
-
-
-def _further(surface: Surface, held: Holding, most: float, friction: float | Friction) -> tuple[float, float]:
-    """Most revolutions with more friction, and with wider openings; 0 where they gain nothing."""
-    rougher = max(FRICTION, 2.0 * friction_of(surface, friction).largest)
-    gained = _rougher(surface, rougher, held.high, min(most, _GAIN * held.high))
-    wider = opened(surface, WIDER, held.slides or "both")
-    high = 0.0 if wider is None else holding(wider, friction, most, _FEW, 0.02 * held.high).high
-    return gained, high if high > held.high else 0.0
-
-
-def _rougher(surface: Surface, friction: float, high: float, most: float) -> float:
-    """Most revolutions that hold with friction, to a step of a tenth; 0 where it does not hold the next step."""
-    best = 0.0
-    for turns in np.arange(1.1 * high, most, 0.1 * high):
-        if not trial(surface, float(turns), friction, _FEW).holds:
-            break
-        best = float(turns)
-    return best
+def _least_bridging(trials: list[Trial]) -> Trial:
+    """The trial with most paths converged and, among those, least bridging."""
+    return max(trials, key=lambda each: (each.converged, -each.bridged_share))

@@ -1,4 +1,7 @@
-"""Windings with few coarse paths: whether so many revolutions hold, and how much of the fibre bridges."""
+"""Trial windings: whether a number of revolutions is feasible, and how much of the fibre bridges.
+
+Most have few, coarse paths; some are wound at full resolution.
+"""
 
 from dataclasses import dataclass
 
@@ -15,68 +18,67 @@ from meshwind.planning.families import families
 from meshwind.surface.surface import Surface
 
 PATHS = 8
-"""Paths a family; the part turns by an eighth from one to the next."""
-_PARTICLES = 72
-"""Segments of a path at least: on a barrel the bound of revolutions comes out to 1e-3."""
-_FINER = (1, 2, 4)
-"""Times so many segments where a path does not hold: coarse ones catch on sharp edges."""
+"""Paths per family: the part turns by an eighth from one to the next."""
+_SEGMENTS = 72
+"""Least number of segments of a path: on a barrel the bound of revolutions comes out to 1e-3."""
+_REFINEMENTS = (1, 2, 4)
+"""Factors of that number, in turn, for paths that do not converge: coarse ones catch on sharp edges."""
 _TOLERANCE, _ITERATIONS = 1e-6, 150
-"""A path that is not all but at rest by then slides: waiting longer only costs."""
+"""A path that is not nearly in equilibrium after so many iterations slides: more of them only cost."""
 _HOPELESS = 0.5
-"""Where more than this share of the paths does not settle at once, the others are not looked for either."""
+"""Share of the paths that fail at first above which no other way of solving is tried."""
 
 
 @dataclass(frozen=True)
 class Trial:
-    """What became of a winding: shares of the paths at rest, and of their length that bridges; slid off each end."""
+    """The outcome of a winding by a number of revolutions.
+
+    converged: share of the paths that converged; bridged_share: share of their length off the surface; slid: number of
+    paths that slid off the start and off the end.
+    """
 
     revolutions: float
-    at_rest: float
-    bridged: float
+    converged: float
+    bridged_share: float
     slid: tuple[int, int]
 
     @property
-    def holds(self) -> bool:
-        """Whether every path is at rest."""
-        return self.at_rest == 1.0
+    def feasible(self) -> bool:
+        """Whether every path converged."""
+        return self.converged == 1.0
 
 
 def trial(surface: Surface, revolutions: float, friction: float | Friction = 0.0, paths: int = PATHS) -> Trial:
-    """Wind both families with `paths` coarse paths each; those that do not hold are tried anew with more particles."""
+    """Wind both families with `paths` coarse paths each; those that fail are tried again with more particles."""
     rims = families(surface, paths, revolutions)
     setting = Setting(surface, friction_of(surface, friction), True, _TOLERANCE, _ITERATIONS)
     curves = straight(rims.start, rims.end, 2)
-    least = max(_PARTICLES, int(fewest(curves).max(initial=0)))
+    least = max(_SEGMENTS, int(fewest(curves).max(initial=0)))
     left, batches = np.arange(len(curves)), []
-    for finer in _FINER:
-        batch = fresh(curves[left], least * finer + 1)
+    for factor in _REFINEMENTS:
+        batch = fresh(curves[left], least * factor + 1)
         setting.run(batch, resume=False)
-        lost = float((batch.status != Status.CONVERGED).mean())
-        if finer > 1 or 0.0 < lost <= _HOPELESS:
+        failed = float((batch.status != Status.CONVERGED).mean())
+        if factor > 1 or 0.0 < failed <= _HOPELESS:
             search(setting, batch)
         batches.append(as_paths(setting, batch, rims.family[left]))
         left = left[batch.status != Status.CONVERGED]
-        if not len(left) or (finer == 1 and lost > _HOPELESS):
+        if not len(left) or (factor == 1 and failed > _HOPELESS):
             break
-    return _sum_up(batches, revolutions)
+    return _outcome(batches, revolutions)
 
 
 def full_trial(
     surface: Surface, revolutions: float, friction: float | Friction, paths: int, particles: int | None
 ) -> Trial:
-    """Wind both families as they are wound in earnest."""
+    """Wind both families at full resolution, as `solve` does."""
     rims = families(surface, paths, revolutions)
     laid = solve(surface, rims.start, rims.end, particles=particles, family=rims.family, friction=friction)
-    return told(laid, revolutions)
+    return _outcome([laid], revolutions)
 
 
-def told(laid: Paths, revolutions: float) -> Trial:
-    """The figures of paths that were wound by so many revolutions."""
-    return _sum_up([laid], revolutions)
-
-
-def _sum_up(batches: list[Paths], revolutions: float) -> Trial:
-    """The figures of paths of which those not at rest were tried again in the batch that follows."""
+def _outcome(batches: list[Paths], revolutions: float) -> Trial:
+    """The outcome over batches of paths, in each of which those are tried again that failed in the one before."""
     converged = sum(int((laid.status == Status.CONVERGED).sum()) for laid in batches)
     counted = converged_or_all(np.concatenate([laid.status for laid in batches]))
     masks = np.split(counted, np.cumsum([len(laid) for laid in batches[:-1]]))

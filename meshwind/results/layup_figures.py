@@ -6,7 +6,8 @@ from meshwind.core.cast import Floats
 from meshwind.layup.crossings import Crossings, counts
 from meshwind.layup.layup import Layup
 from meshwind.layup.windability import CONCAVE, CONVEX, SADDLE, Windability
-from meshwind.planning.revolutions import FRICTION, WIDER, Revolutions
+from meshwind.planning.alternatives import FRICTION, WIDER
+from meshwind.planning.revolutions import Revolutions
 from meshwind.planning.spacing import Spaced
 from meshwind.results.report_types import (
     CoverageFigures,
@@ -119,13 +120,13 @@ def fibre_figures(layup: Layup, linear_density: float | None) -> FibreFigures:
 
 def revolution_figures(chosen: Revolutions) -> RevolutionFigures:
     """The choice of revolutions and what it rests on; None for a bound stands for none."""
-    held = chosen.holding
+    found = chosen.feasible
     return {
         "chosen": chosen.choice,
         "why": chosen.why,
-        "bridged_fraction": chosen.chosen.bridged,
+        "bridged_fraction": chosen.chosen.bridged_share,
         "pressing": {"intervals": [list(each) for each in chosen.common], "share": chosen.common_share},
-        "holding": {"low": held.low, "high": held.high, "by": held.by, "slides_off": held.slides},
+        "holding": {"low": found.low, "high": found.high, "by": found.by, "slides_off": found.slides},
         "square": chosen.square,
         "further": {
             "friction": FRICTION,
@@ -133,5 +134,5 @@ def revolution_figures(chosen: Revolutions) -> RevolutionFigures:
             "opening": WIDER,
             "with_opening": chosen.with_opening or None,
         },
-        "trials": [[each.revolutions, each.at_rest, each.bridged] for each in chosen.trials],
+        "trials": [[each.revolutions, each.converged, each.bridged_share] for each in chosen.trials],
     }

@@ -67,3 +67,14 @@ def mean_speeds(surface: Surface, count: int) -> tuple[float, float]:
     frames = surface.frames(parameter_grid(midpoints(count), midpoints(count)))
     around, along = np.linalg.norm(frames[:, [SU, SV]], axis=2).mean(axis=0)
     return float(around), float(along)
+
+
+def rings(surface: Surface, v: Floats, count: int) -> Floats:
+    """Frames (len(v), count, 6, 3) at `count` even values of u on the rings of constant v."""
+    uv = parameter_grid(v, np.arange(count) / count)[:, ::-1]
+    return surface.frames(uv).reshape(len(v), count, 6, 3)
+
+
+def rim_frames(surface: Surface, v: float, per_span: int) -> Floats:
+    """Frames (n, 6, 3) at even values of u on the rim v, `per_span` for each span."""
+    return rings(surface, np.array([v]), per_span * surface.spans[0])[0]

@@ -10,7 +10,8 @@ from meshwind.core.errors import BadInputError
 from meshwind.layup.layup import Layup
 from meshwind.mesh.opening.ends import place
 from meshwind.path.paths import EDGE, Paths, Status
-from meshwind.planning.revolutions import FRICTION, WIDER, Revolutions
+from meshwind.planning.alternatives import FRICTION, WIDER
+from meshwind.planning.revolutions import Revolutions
 from meshwind.planning.spacing import Spaced
 from meshwind.results.schema import FIT_PICTURE, REVOLUTIONS_PICTURE
 from meshwind.surface import FitError, Surface
@@ -83,7 +84,7 @@ def about_choice(chosen: Revolutions | None) -> tuple[Note, ...]:
         more.append(f"openings {WIDER:g} times as wide {_number(chosen.with_opening)}")
     allowed = f"; {', '.join(more)}" if more else ""
     return (
-        Note(f"chose {chosen.why}{allowed}; see {REVOLUTIONS_PICTURE}", not chosen.holding.any, REVOLUTIONS_PICTURE),
+        Note(f"chose {chosen.why}{allowed}; see {REVOLUTIONS_PICTURE}", not chosen.feasible.any, REVOLUTIONS_PICTURE),
     )
 
 
