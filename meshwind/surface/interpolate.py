@@ -1,4 +1,4 @@
-"""A B-spline surface through a formula: the collocation that analytic shapes and images share."""
+"""Interpolation by a B-spline surface, of formulas and of grids of points."""
 
 from collections.abc import Callable
 from typing import TypeAlias
@@ -21,14 +21,14 @@ def interpolate(formula: Formula, spans: tuple[int, int] = (128, 128), periodic:
 
 
 def through(values: Floats, spans: tuple[int, int], periodic: bool = True) -> Surface:
-    """The one bicubic surface with so many spans that takes on `values` (p, q, 3) at the `sites` in u and in v."""
+    """The bicubic surface with so many spans that has the `values` (p, q, 3) at the `sites` in u and in v."""
     net = _control(values, sites(spans[0], periodic), spans[0], periodic)
     net = np.swapaxes(_control(np.swapaxes(net, 0, 1), sites(spans[1], False), spans[1], False), 0, 1)
     return Surface(net, periodic)
 
 
 def sites(spans: int, periodic: bool) -> Floats:
-    """Where to interpolate: the knots, and at open ends the middle of the first and last span as well."""
+    """Interpolation parameters: the knots, and at open ends the middle of the first and of the last span as well."""
     knots = np.arange(spans + (not periodic)) / spans
     return knots if periodic else np.sort(np.r_[knots, 0.5 / spans, 1 - 0.5 / spans])
 

@@ -1,4 +1,4 @@
-"""The fit's certificate: distances both ways between the surface and the mesh."""
+"""The error of a fit: distances both ways between the surface and the mesh."""
 
 import numpy as np
 from numba import njit
@@ -10,31 +10,31 @@ from meshwind.surface.fitting.samples import Samples
 from meshwind.surface.surface import FitError, Surface
 
 DENSITY, MOST = 4, 256
-"""Samples a span, and at most, in each direction."""
+"""Samples per span, and maximum number of samples, in each direction."""
 WORST, FINER = 40, 9
-"""So many of the worst samples are looked at again on a grid of FINER x FINER within their own cell."""
+"""Number of the worst samples around which the distance is sampled again, on FINER x FINER points of their own cell."""
 
 
 def certify(surface: Surface, samples: Samples) -> FitError:
     """Distances of the trusted vertices to the surface, and of a dense sample of the surface to the facets.
 
-    The surface is about the samples' middle.  The sampled maximum is sharpened around the worst places, so that
-    it is the true one to a few per cent.
+    The surface is about the samples' middle.  The distance is sampled again around the worst samples, so that its
+    maximum is true to a few per cent.
     """
     _, distance = samples.corrected(surface)
     distance = distance[samples.trusted]
-    there, largest = to_mesh(surface, samples)
+    to_facets, largest = to_mesh(surface, samples)
     return FitError(
         to_surface_rms=float(np.sqrt(np.mean(distance**2))),
         to_surface_max=float(distance.max()),
-        to_mesh_rms=float(np.sqrt(np.mean(there**2))),
+        to_mesh_rms=float(np.sqrt(np.mean(to_facets**2))),
         to_mesh_max=largest,
         diagonal=samples.chart.annulus.mesh.diagonal,
     )
 
 
 def to_mesh(surface: Surface, samples: Samples) -> tuple[Floats, float]:
-    """Distances of an even sample of the surface to the facets, and the largest, found more closely."""
+    """Distances of an even sample of the surface to the facets, and the largest, sampled more closely."""
     counts = np.minimum(DENSITY * np.array(surface.spans), MOST)
     u, v = np.meshgrid(np.arange(counts[0]) / counts[0], np.linspace(0, 1, counts[1] + 1), indexing="ij")
     uv = np.stack([u.ravel(), v.ravel()], axis=1)
@@ -48,7 +48,7 @@ def to_mesh(surface: Surface, samples: Samples) -> tuple[Floats, float]:
 
 
 def _points(surface: Surface, uv: Floats) -> Floats:
-    """Positions (n, 3) at uv (n, 2), without the derivatives: a third of the time."""
+    """Positions (n, 3) at uv (n, 2), in a third of the time that they take with derivatives."""
     out = np.empty((len(uv), 3))
     spread(_positions, len(uv), 10_000, surface.spline, uv, out)
     return out

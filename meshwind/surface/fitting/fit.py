@@ -16,28 +16,36 @@ from meshwind.surface.fitting.samples import Samples
 from meshwind.surface.surface import DEGREE, Surface
 
 ROUNDS = 4
-"""Refits after moving every vertex's parameters to its foot; the error settles in 3 or 4."""
+"""Number of fits of one net, the vertices' parameters moved to their feet in between; the error settles in 3 or 4."""
 SMOOTHING = 1e-4
-"""Bending energy against data at the net's own wave length: small beside the spline's error, of the same order."""
+"""Weight of the bending energy against the data at the net's own wave length.
+
+Small beside the spline's error, which is of the same order.
+"""
 GAIN = 0.95
-"""A finer net must bring the expected error below this share of the best so far, or the mesh supports no finer."""
+"""A finer net must reduce the expected error below this share of the best so far, or the mesh supports no finer one."""
 SUPPORT, FACET_SUPPORT = 0.5, 2.0
-"""Most control points a vertex: where vertices alone are followed, and where the facets between them are."""
+"""Maximum number of control points per vertex: on the vertices alone, and with points on the facets between them."""
 ROUGH = 2.0
-"""An error of more than so many times the mesh's own roughness is not noise."""
+"""An error above this multiple of the mesh's own roughness is not noise."""
 NEAR = 1e-3
-"""Of the diagonal: a net that is further off somewhere than this is not yet held by vertices alone."""
-PATIENCE = 2
-"""So many finer nets in a row without that gain end the search: one alone may be bad luck."""
-COARSEST, RUNGS = 8, 18
+"""Largest distance over the diagonal at which the vertices alone determine the next net."""
+MAX_IDLE_NETS = 2
+"""Maximum number of finer nets in a row without that gain; one alone may be chance."""
+COARSEST, LEAST, LEVELS = 8, 4, 18
+"""Spans of the coarsest net in u, least number of spans in v, and number of nets."""
+SLENDER = 16.0
+"""Largest ratio of spans in v and in u, either way round; beyond it spans are no longer square."""
+FREEDOM = 1e-3
+"""Least share of the data's degrees of freedom that a net leaves, so that the expected error stays finite."""
 
 
 @dataclass(frozen=True)
 class _Fitted:
-    """One net's fit: the surface, the samples at their feet, and the trusted vertices' distances.
+    """The fit of one net: the surface, the samples at their feet, and the trusted vertices' distances.
 
-    expected is the rms distance to be expected of vertices that were not fitted (generalised cross-validation,
-    Craven and Wahba 1979): it grows where a net follows noise.
+    rms and largest are of these distances; expected is the rms distance to be expected of vertices that were not fitted
+    (generalised cross-validation, Craven and Wahba 1979): it grows where a net follows noise.
     """
 
     surface: Surface
@@ -91,15 +99,15 @@ def fit(chart: Chart, tolerance: float = FIT_TOLERANCE) -> Surface:
     diagonal = float(np.linalg.norm(np.ptp(annulus.vertices, axis=0)))
     samples = Samples.of(chart)
     lengths = _lengths(chart)
-    best, *finer = _ladder(lengths)
+    coarsest, *finer = _nets(lengths)
     count = len(annulus.vertices)
     # one thread of BLAS: the bands are narrow, more threads cost up to ten times as much and blur the last bits
     with ThreadpoolController().limit(limits=1, user_api="blas"):
-        fitted = _fit(samples, best, lengths)
+        fitted = _fit(samples, coarsest, lengths)
         idle = 0
         for spans in finer:
             size = spans[0] * (spans[1] + DEGREE)
-            smooth = size <= SUPPORT * count and idle < PATIENCE
+            smooth = size <= SUPPORT * count and idle < MAX_IDLE_NETS
             if fitted.largest <= tolerance * diagonal or not smooth:
                 break
             trial = _fit(fitted.samples, spans, lengths)
@@ -113,22 +121,22 @@ def fit(chart: Chart, tolerance: float = FIT_TOLERANCE) -> Surface:
 
 
 def _lengths(chart: Chart) -> tuple[float, float]:
-    """Mean length on the part of a turn of u and of v from end to end."""
+    """Mean lengths on the part: once around in u, and from end to end in v."""
     area, s_u, s_v = speeds(chart.annulus, chart.corner_uv)
     return float(np.average(s_u, weights=area)), float(np.average(s_v, weights=area))
 
 
 def _follow_facets(fitted: _Fitted, finer: list[tuple[int, int]], lengths: tuple[float, float], count: int) -> _Fitted:
-    """Refine past what the vertices alone support, on the points between them, while the facets come nearer.
+    """Refine past what the vertices alone support, with points between them, while surface and facets come nearer.
 
-    For a mesh that is neither smooth nor noisy: creases and long flat triangles, as from a CAD program.
+    For a mesh that is neither smooth nor noisy: creases and long flat triangles, as CAD programs write them.
     """
     best, idle = fitted.both_ways(), 0
     for spans in finer:
         size = spans[0] * (spans[1] + DEGREE)
         if size <= fitted.surface.control_points.size / 3:
             continue
-        if size > FACET_SUPPORT * count or idle == PATIENCE:
+        if size > FACET_SUPPORT * count or idle == MAX_IDLE_NETS:
             break
         trial = _fit(fitted.samples, spans, lengths)
         found = trial.both_ways()
@@ -138,15 +146,15 @@ def _follow_facets(fitted: _Fitted, finer: list[tuple[int, int]], lengths: tuple
     return fitted
 
 
-def _ladder(lengths: tuple[float, float]) -> list[tuple[int, int]]:
-    """Nets with square spans on the part, each with about twice the control points of the one before."""
-    across = min(max(lengths[1] / lengths[0], 1 / 16), 16.0)
-    sizes = [int(np.ceil(COARSEST * 2 ** (k / 2))) for k in range(RUNGS)]
-    return [(size, max(4, round(size * across))) for size in sizes]
+def _nets(lengths: tuple[float, float]) -> list[tuple[int, int]]:
+    """Spans of nets with square spans on the part, each with about twice the control points of the one before."""
+    aspect = min(max(lengths[1] / lengths[0], 1 / SLENDER), SLENDER)
+    sizes = [int(np.ceil(COARSEST * 2 ** (k / 2))) for k in range(LEVELS)]
+    return [(size, max(LEAST, round(size * aspect))) for size in sizes]
 
 
 def _fit(samples: Samples, spans: tuple[int, int], lengths: tuple[float, float]) -> _Fitted:
-    """Fit one net, correcting the samples' parameters between the rounds."""
+    """Fit one net in several rounds, moving the samples to their feet in between."""
     nu, nv = spans[0], spans[1] + 3
     bending = normal_equations.thin_plate(*spans, *lengths)
     pitch = lengths[0] / spans[0], lengths[1] / spans[1]
@@ -165,7 +173,7 @@ def _fit(samples: Samples, spans: tuple[int, int], lengths: tuple[float, float])
     samples, distance = samples.corrected(surface)
     distance = distance[samples.trusted]
     rms = float(np.sqrt(np.mean(distance**2)))
-    expected = rms / max(1.0 - nu * nv / len(distance), 1e-3)
+    expected = rms / max(1.0 - nu * nv / len(distance), FREEDOM)
     largest = float(distance.max())
     size = float(np.linalg.norm(np.ptp(samples.points, axis=0)))
     return _Fitted(surface, replace(samples, near=largest <= NEAR * size), rms, expected, largest)

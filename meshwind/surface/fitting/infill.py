@@ -18,16 +18,16 @@ Int8s: TypeAlias = NDArray[np.int8]
 
 ANGLE = igl.PER_VERTEX_NORMALS_WEIGHTING_TYPE_ANGLE
 CREASE = np.cos(np.radians(30))
-"""A corner whose vertex normal leans further than this from the facet's lies at a crease."""
+"""Cosine of the angle between vertex normal and facet normal beyond which a corner lies at a crease."""
 FINEST = 24
-"""Most points along an edge."""
+"""Maximum number of pieces that an edge is divided into."""
 
 
 def infill(corners: Floats, normals: Floats, corner_uv: Floats, pieces: Int8s) -> tuple[Floats, Floats]:
     """Points (k, 2) in the plane and (k, 3) in space that leave no span of the net without data.
 
-    Each of the triangles with corners (c, 3, 3) in space, normals (c, 3, 3) there and corner_uv (c, 3, 2) in the
-    plane gets a lattice of so many `pieces` (c,) an edge, without the corners.
+    Each triangle has corners (c, 3, 3) in space, normals (c, 3, 3) there and corner_uv (c, 3, 2) in the plane.  It gets
+    a lattice that divides its edges into `pieces` (c,), without the corners.
     """
     tangent = _tangent_normals(corners, normals)
     found = []
@@ -41,10 +41,10 @@ def infill(corners: Floats, normals: Floats, corner_uv: Floats, pieces: Int8s) -
 def spans_across(
     first: int, last: int, faces: Ints, uv: Floats, turns: Int8s, spans: tuple[int, int], out: Int8s
 ) -> None:
-    """Write into `out` how many spans each of the triangles first to last is across, at most FINEST.
+    """Write into `out` (m,) the widths of the triangles first to last in spans, at most FINEST.
 
-    uv (n, 2) are the vertices' places, turns (m, 3) the turns of u by which a triangle's corners lie off them.  One
-    pass over the faces: whole arrays cost ten times as much, and there are few coarse triangles or none.
+    uv (n, 2) are the vertices' parameters, turns (m, 3) the turns of u by which a triangle's corners differ from them.
+    One pass over the faces: array expressions cost ten times as much, and there are few coarse triangles or none.
     """
     for m in range(first, last):
         i, j, k = faces[m, 0], faces[m, 1], faces[m, 2]

@@ -1,34 +1,40 @@
-"""How rough the mesh itself is: what no smooth surface can or should follow."""
+"""The roughness of the mesh itself, which no smooth surface can or should follow."""
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from meshwind.core.cast import Floats
 
-NEIGHBOURS = 20
-"""Points of a local quadric: twice its unknowns and some."""
+UNKNOWNS = 6
+"""Coefficients of a quadric z = a + b x + c y + d x^2 + e x y + f y^2."""
+NEIGHBOURS, LEAST = 20, 10
+"""Number of points that a local quadric is fitted to, more than three times its unknowns; and the least number."""
 MOST = 2000
-"""Vertices that are looked at; the median of so many is good to 3 %."""
+"""Maximum number of vertices taken; the median of so many is good to 3 %."""
+RANK = 1e-9
+"""Singular values below this share of the largest are 0: the points lie on a curve."""
+TINY = 1e-300
+"""Keeps a quotient finite where the points coincide."""
 
 
 def roughness(points: Floats) -> float:
     """Median rms distance of a vertex's neighbourhood to its own best quadric, in the mesh's units.
 
-    Curvature is in the quadric and creases hold few vertices, so on a smooth or creased mesh this is far below
-    any curvature's sagitta, and on a scan it is the scanner's noise.
+    The quadric follows curvature and few vertices lie at creases, so that on a smooth or creased mesh this is far below
+    the sagitta of any curvature, and on a scan it is the scanner's noise.
     """
     count = min(NEIGHBOURS, len(points))
-    if count < 10:
+    if count < LEAST:
         return 0.0
     chosen = points[:: max(1, len(points) // MOST)]
     near = points[cKDTree(points).query(chosen, k=count)[1]]
     local = near - near.mean(axis=1, keepdims=True)
     _, size, axes = np.linalg.svd(local, full_matrices=False)
-    flat = np.einsum("nkc,nac->nka", local, axes) / np.maximum(size[:, None, :1], 1e-300)
+    flat = np.einsum("nkc,nac->nka", local, axes) / np.maximum(size[:, None, :1], TINY)
     x, y, z = np.moveaxis(flat, 2, 0)
     basis = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=2)
     left, value, _ = np.linalg.svd(basis, full_matrices=False)
-    left = left * (value > 1e-9 * value[:, :1])[:, None]
-    rest = z - np.einsum("nkp,np->nk", left, np.einsum("nkp,nk->np", left, z))
-    rms = np.sqrt((rest**2).sum(axis=1) / (count - 6)) * size[:, 0]
+    left = left * (value > RANK * value[:, :1])[:, None]
+    residual = z - np.einsum("nkp,np->nk", left, np.einsum("nkp,nk->np", left, z))
+    rms = np.sqrt((residual**2).sum(axis=1) / (count - UNKNOWNS)) * size[:, 0]
     return float(np.median(rms))

@@ -10,7 +10,7 @@ from meshwind.core.cast import Floats, Ints
 from meshwind.surface.evaluate import basis
 
 REACH = 3
-"""Two control points interact when they are at most this many rows and columns apart."""
+"""Largest number of rows or columns between two control points that share a span."""
 
 
 @njit(cache=True)
@@ -18,9 +18,9 @@ def accumulate(uv, points, weight, spans_u, spans_v, stencil, right):
     """Add every weighted sample to the normal matrix's stencil (nu, nv, 4, 7) and right side (nu, nv, 3).
 
     stencil[i, j, r, s] couples control point (i, j) to (i + r, j + s - 3).  The matrix is symmetric: only the half
-    ahead is kept, that is s >= 3 where r is 0; what else is written there means nothing.
+    ahead is kept, that is s >= 3 where r is 0; the other entries have no meaning.
     """
-    # flat and unsigned, which spares the compiler's care for negative indices: a third of the time
+    # flat and unsigned, so that no index can be negative: a third of the time
     flat, sums, one, row_of = stencil.reshape(-1), right.reshape(-1), np.uint64(1), np.uint64(2 * REACH + 1)
     for n in range(len(uv)):
         x = (uv[n, 0] - floor(uv[n, 0])) * spans_u
@@ -83,43 +83,43 @@ def thin_plate(spans_u: int, spans_v: int, length_u: float, length_v: float) -> 
 
 
 def _fold(rows: int) -> Ints:
-    """Order of periodic rows 0, n-1, 1, n-2, ... in which neighbours around the ring stay within 2 places."""
-    place = np.empty(rows, dtype=np.int64)
+    """Numbers of the rows in the order 0, n-1, 1, n-2, ...: neighbours around the period differ by 2 at most."""
+    number = np.empty(rows, dtype=np.int64)
     half = (rows + 1) // 2
-    place[:half] = 2 * np.arange(half)
-    place[half:] = 2 * np.arange(rows - half)[::-1] + 1
-    return place
+    number[:half] = 2 * np.arange(half)
+    number[half:] = 2 * np.arange(rows - half)[::-1] + 1
+    return number
 
 
 @njit(cache=True)
-def _fill(stencil, place, band):
-    """Write a stencil (nu, nv, 4, 7) into the lower band (unknowns, width); place (nu, nv) numbers the unknowns."""
-    nu, nv = place.shape
+def _fill(stencil, number, band):
+    """Write a stencil (nu, nv, 4, 7) into the lower band (unknowns, width); number (nu, nv) is that of an unknown."""
+    nu, nv = number.shape
     for i in range(nu):
         for r in range(REACH + 1):
             far = (i + r) % nu
             for j in range(nv):
-                here = place[i, j]
+                here = number[i, j]
                 for s in range(0 if r > 0 else REACH, 2 * REACH + 1):
                     if 0 <= j + s - REACH < nv:
-                        there = place[far, j + s - REACH]
+                        there = number[far, j + s - REACH]
                         band[min(here, there), abs(here - there)] += stencil[i, j, r, s]
 
 
 def solve(stencil: Floats, right: Floats) -> Floats:
-    """Solve for the net (nu, nv, 3): banded Cholesky with the rows folded so that the period keeps a band.
+    """Solve for the net (nu, nv, 3) by banded Cholesky factorisation, the periodic rows folded to keep the band.
 
-    The band runs over whichever direction makes it narrower; cost nu nv band^2.
+    The unknowns are numbered along the direction that makes the band narrower; the cost is nu nv band^2.
     """
     nu, nv = right.shape[:2]
     fold, along = _fold(nu)[:, None], np.arange(nv)
     if 2 * nv <= nu:
-        place, width = fold * nv + along, 2 * REACH * nv + REACH + 1
+        number, width = fold * nv + along, 2 * REACH * nv + REACH + 1
     else:
-        place, width = along * nu + fold, REACH * nu + 2 * REACH + 1
+        number, width = along * nu + fold, REACH * nu + 2 * REACH + 1
     band = np.zeros((nu * nv, width))
-    _fill(stencil, place, band)
+    _fill(stencil, number, band)
     flat = np.empty((nu * nv, 3), order="F")
-    flat[place.ravel()] = right.reshape(-1, 3)
+    flat[number.ravel()] = right.reshape(-1, 3)
     net = solveh_banded(band.T, flat, lower=True, overwrite_ab=True, overwrite_b=True, check_finite=False)
-    return np.asarray(net[place])
+    return np.asarray(net[number])

@@ -1,4 +1,4 @@
-"""The mesh's vertices as data for a fit: where they lie in space and, corrected round by round, in the plane."""
+"""The mesh's vertices as data for a fit: positions in space, and parameters that are corrected in every round."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -14,25 +14,26 @@ from meshwind.surface.fitting.infill import ANGLE, Int8s, infill, spans_across
 from meshwind.surface.foot import near_feet
 from meshwind.surface.surface import Surface
 
-LOOSE = 0.1
-"""Weight of a vertex that trimming made, against one of the part's own."""
+CUT_WEIGHT = 0.1
+"""Weight of a vertex that trimming made, against 1 for a vertex of the part."""
 CLOSE = 1e-5
-"""Of the plane: a foot's last step is at most so long, and what it leaves is of the order of its square."""
-INFILL, FAIR, SLIGHT = 0.05, 5e-3, 5e-5
-"""Weight of a point between vertices: enough to hold a span that has nothing else; next to a cut, where the vertices
-that trimming made are few and count for little; and among spans that all hold vertices of the part, where its own error
-(second order next to a rim, whose normals are one-sided) would show in the surface.
+"""Longest last step of a foot search in the plane; the error that it leaves is of the order of its square."""
+SPARSE, NEAR_CUT, DENSE = 0.05, 5e-3, 5e-5
+"""Weights of a point between vertices.
 
-At openings of 14 to 18 mm in the sample bottle FAIR keeps the surface within 0.024 mm of the true part, where SLIGHT
-let it swing by up to 0.1 mm between vertices that it followed to 0.004 mm.
+SPARSE is enough to determine a span that has no other data.  NEAR_CUT is for the spans next to a cut, where the
+vertices that trimming made are few and have little weight.  DENSE is for spans surrounded by spans with vertices of the
+part, where the point's own error (second order next to a rim, whose normals are one-sided) would show in the surface.
+At openings of 14 to 18 mm in the sample bottle NEAR_CUT keeps the surface within 0.024 mm of the true part, where DENSE
+lets it swing by up to 0.1 mm between vertices that it follows to 0.004 mm.
 """
-NEXT = 2
-"""Spans that a cut makes itself felt over."""
+CUT_REACH = 2
+"""Number of spans from a cut over which NEAR_CUT applies."""
 
 
 @dataclass(frozen=True)
 class Facets:
-    """The triangles (m, 3) between points (n, 3), with a search tree and normals made on first use."""
+    """Triangles (m, 3) between points (n, 3), with a search tree and normals that are computed on first use."""
 
     points: Floats
     faces: Ints
@@ -53,10 +54,10 @@ class Facets:
 
 @dataclass(frozen=True)
 class Samples:
-    """Vertices about the part's middle (n, 3), their place in the plane (n, 2), and how far they count (n,).
+    """Vertices about the part's middle (n, 3), their parameters (n, 2), and their weights (n,).
 
-    turns (m, 3) are the turns of u by which the corners of a triangle lie off their vertices' places; facets finds
-    the nearest facet.
+    rim, trusted (n,): whether a vertex lies on a rim, and whether it is one of the part's own; turns (m, 3): the turns
+    of u by which the corners of a triangle differ from its vertices' parameters; facets: the triangles between points.
     """
 
     points: Floats
@@ -67,25 +68,25 @@ class Samples:
     middle: Floats
     chart: Chart
     turns: Int8s
-    facets: "Facets"
+    facets: Facets
     near: bool = False
-    """Whether the last net came near everywhere: only then can vertices be left to hold the next one alone."""
+    """Whether the last net came near everywhere: only then do the vertices alone determine the next one."""
 
     @staticmethod
     def of(chart: Chart) -> "Samples":
-        """All vertices of a chart's annulus, at their places on the chart."""
+        """All vertices of a chart's annulus, at their parameters on the chart."""
         annulus = chart.annulus
         middle = annulus.vertices.mean(axis=0)
         rim = np.zeros(len(annulus.vertices), dtype=bool)
         rim[np.concatenate(annulus.rims)] = True
-        weight = np.where(annulus.trusted, 1.0, LOOSE)
+        weight = np.where(annulus.trusted, 1.0, CUT_WEIGHT)
         points = annulus.vertices - middle
         turns = np.round(chart.corner_uv[..., 0] - chart.uv[annulus.faces, 0]).astype(np.int8)
         facets = Facets(points, annulus.faces)
         return Samples(points, np.array(chart.uv), weight, rim, annulus.trusted, middle, chart, turns, facets)
 
     def between(self, spans: tuple[int, int]) -> tuple[Floats, Floats, Floats]:
-        """Points between vertices for a net: in the plane (k, 2), about the middle (k, 3), weights (k,)."""
+        """Points between vertices for a net with so many spans: uv (k, 2), positions (k, 3) and weights (k,)."""
         annulus = self.chart.annulus
         across = np.empty(len(annulus.faces), dtype=np.int8)
         spread(spans_across, len(across), 20_000, annulus.faces, self.uv, self.turns, spans, across)
@@ -96,23 +97,23 @@ class Samples:
         corners[..., 0] += self.turns[coarse]
         chosen = annulus.faces[coarse]
         uv, points = infill(self.points[chosen], self.facets.normals[chosen], corners, across[coarse])
-        return uv, points, self._hold(uv, spans)
+        return uv, points, self._infill_weights(uv, spans)
 
-    def _hold(self, uv: Floats, spans: tuple[int, int]) -> Floats:
-        """How far points (k, 2) between vertices count: little where all spans about them hold vertices."""
+    def _infill_weights(self, uv: Floats, spans: tuple[int, int]) -> Floats:
+        """Weights (k,) of points at uv (k, 2) between vertices: low where all spans around them contain vertices."""
         if not self.near:
-            return np.full(len(uv), INFILL)
-        held = np.zeros(spans, dtype=bool)
-        held[_span(self.uv, spans)] = True
+            return np.full(len(uv), SPARSE)
+        filled = np.zeros(spans, dtype=bool)
+        filled[_span(self.uv, spans)] = True
         cut = np.zeros(spans, dtype=bool)
         cut[_span(self.uv[~self.trusted], spans)] = True
-        for _ in range(NEXT):
+        for _ in range(CUT_REACH):
             cut = ~_inner(~cut)
-        there = _span(uv, spans)
-        return np.where(_inner(held)[there], np.where(cut[there], FAIR, SLIGHT), INFILL)
+        span = _span(uv, spans)
+        return np.where(_inner(filled)[span], np.where(cut[span], NEAR_CUT, DENSE), SPARSE)
 
     def corrected(self, surface: Surface) -> tuple["Samples", Floats]:
-        """Every vertex moved to its foot in the plane, on a rim along the rim; and the distances (n,)."""
+        """The samples with every vertex at its foot, on a rim the foot on that rim; and the distances (n,)."""
         moved, distance = self.uv.copy(), np.empty(len(self.uv))
         spread(near_feet, len(moved), 6000, surface.net, self.points, CLOSE, moved, distance)
         rim = np.flatnonzero(self.rim)
@@ -125,13 +126,13 @@ class Samples:
 
 
 def _inner(spans: Bools) -> Bools:
-    """Those of the marked spans (nu, nv) that have only marked ones about them; nothing lies beyond the rims."""
+    """The marked spans (nu, nv) that only marked ones surround; beyond the rims all count as marked."""
     wide = np.pad(spans, ((0, 0), (1, 1)), constant_values=True)
     wide = wide[:, :-2] & wide[:, 1:-1] & wide[:, 2:]
     return np.asarray(wide & np.roll(wide, 1, axis=0) & np.roll(wide, -1, axis=0))
 
 
 def _span(uv: Floats, spans: tuple[int, int]) -> tuple[Ints, Ints]:
-    """Indices of the span that each of the points (n, 2) lies in."""
+    """Indices of the spans that points (n, 2) lie in."""
     index = np.floor(uv * spans).astype(np.int64)
     return index[:, 0] % spans[0], np.clip(index[:, 1], 0, spans[1] - 1)
