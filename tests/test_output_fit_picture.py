@@ -10,7 +10,7 @@ from PIL import Image
 from test_notes import horned
 
 import meshwind as mw
-from meshwind.appearance.view import around, place_view
+from meshwind.appearance.view import around, merit_view
 from meshwind.cli.summary import run_lines
 from meshwind.core.cast import Floats, frozen
 from meshwind.layup.layup import assess
@@ -18,6 +18,7 @@ from meshwind.mesh import mesh_from
 from meshwind.mesh.opening.ends import place
 from meshwind.pictures import driver
 from meshwind.pictures.fit_scene import fit_scene
+from meshwind.pictures.scenes import Drawing
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.results.schema import FIT_PICTURE
@@ -95,21 +96,22 @@ def test_distances_do_not_stop_at_the_facets_of_a_sample() -> None:
 def test_the_worst_place_is_in_sight(turn: float) -> None:
     surface, opened = bumped({row(turn, 2.0): 0.4})
     seen = fit_scene(surface, opened, "tube", "mm")
-    assert seen["seen"][0].all()
-    assert seen["eye"] @ outward(turn) > 0.1
-    axes = np.stack([seen["right"], seen["up"], seen["eye"]])
+    view = seen.frame.view
+    assert seen.seen[0].all()
+    assert view.eye @ outward(turn) > 0.1
+    axes = np.stack([view.right, view.up, view.eye])
     assert axes @ axes.T == pytest.approx(np.eye(3), abs=1e-12)
     assert np.linalg.det(axes) == pytest.approx(1.0)
-    flat = (opened.vertices - seen["centre"]) @ axes.T
-    assert 2.0 * np.abs(flat[:, :2]).max(axis=0) == pytest.approx(seen["extent"])
-    assert seen["most"] == pytest.approx(0.4, abs=1e-5)
-    assert "0.4 mm" in seen["subtitle"] and "tube" in seen["title"]
+    flat = (opened.vertices - view.centre) @ axes.T
+    assert 2.0 * np.abs(flat[:, :2]).max(axis=0) == pytest.approx([view.width, view.height])
+    assert seen.most == pytest.approx(0.4, abs=1e-5)
+    assert "0.4 mm" in seen.frame.subtitle and "tube" in seen.frame.title
 
 
 def test_a_place_on_the_far_side_is_told_as_out_of_sight() -> None:
     surface, opened = bumped({row(0.25, 2.0): 0.5, row(0.75, 2.0): -0.45})
     seen = fit_scene(surface, opened, "tube")
-    assert seen["seen"].tolist() == [[True, True], [False, False]]
+    assert seen.seen.tolist() == [[True, True], [False, False]]
 
 
 def test_directions_are_even_all_around() -> None:
@@ -123,8 +125,8 @@ def test_directions_are_even_all_around() -> None:
 def test_merit_outweighs_the_shadow() -> None:
     vertices, faces = tube(lambda z: 1.0 + 0.0 * z)
     eyes = np.eye(3)
-    assert place_view(vertices, faces, eyes, np.array([0.0, 0.0, 3.0])).eye == pytest.approx([0, 0, 1])
-    upright = place_view(vertices, faces, eyes, np.array([0.0, 0.1, 0.0]))
+    assert merit_view(vertices, faces, eyes, np.array([0.0, 0.0, 3.0])).eye == pytest.approx([0, 0, 1])
+    upright = merit_view(vertices, faces, eyes, np.array([0.0, 0.1, 0.0]))
     assert upright.eye == pytest.approx([0, 1, 0])
     assert upright.up == pytest.approx([0, 0, 1])
     assert (upright.width, upright.height) == pytest.approx((2.0, 3.0))
@@ -158,7 +160,8 @@ def test_a_fit_without_any_error_can_be_drawn(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("opengl")
 def test_one_process_draws_both_and_says_which_one_fails(tmp_path: Path) -> None:
-    wound, fit = winding_scene(subject(assess(bridged()), "waist")), fit_scene(*bumped({row(0.5, 2.0): 0.5}), "tube")
+    wound = Drawing(winding_scene(subject(assess(bridged()), "waist")))
+    fit = Drawing(fit_scene(*bumped({row(0.5, 2.0): 0.5}), "tube"))
     assert driver.paint({tmp_path / "winding.png": wound, tmp_path / "fit_error.png": fit}) == ""
     assert sorted(file.name for file in tmp_path.iterdir()) == ["fit_error.png", "winding.png"]
     note = driver.paint({tmp_path / "a.png": wound, tmp_path / "nowhere" / "b.png": fit})
@@ -168,9 +171,9 @@ def test_one_process_draws_both_and_says_which_one_fails(tmp_path: Path) -> None
 
 def test_the_title_tells_the_revolutions_that_were_asked_for() -> None:
     layup = assess(bridged())
-    assert "0.8 revolutions" in winding_scene(subject(layup, "waist", revolutions=0.8))["title"]
+    assert "0.8 revolutions" in winding_scene(subject(layup, "waist", revolutions=0.8)).frame.title
     mean = float(np.abs(layup.paths.uv[:, -1, 0] - layup.paths.uv[:, 0, 0]).mean())
-    assert f"{mean:.4g} revolutions" in winding_scene(subject(layup, "waist"))["title"]
+    assert f"{mean:.4g} revolutions" in winding_scene(subject(layup, "waist")).frame.title
 
 
 def test_a_note_names_its_picture_only_where_it_is() -> None:

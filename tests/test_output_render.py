@@ -141,7 +141,7 @@ def test_bridges_are_drawn_straight() -> None:
 
 
 @pytest.mark.parametrize("failed", [[], [0, 5], list(range(8))])
-def test_picture_and_report_tell_the_same_figures(failed: list[int]) -> None:
+def test_picture_and_report_have_the_same_figures(failed: list[int]) -> None:
     paths = bridged()
     status = np.zeros(len(paths), dtype=np.int64)
     status[np.array(failed, dtype=int)] = 2
@@ -151,18 +151,18 @@ def test_picture_and_report_tell_the_same_figures(failed: list[int]) -> None:
     figures = report(layup, Mesh(np.eye(3), np.array([[0, 1, 2]])), None, RunFacts(0.5))
     seen = winding_scene(subject(layup, "waist", "in"))
     told = figures["paths"]
-    assert f"bridged {100 * told['bridged_fraction']:.1f} %" in seen["subtitle"]
-    assert f"length {quantity(told['length_total'], 'in')}" in seen["subtitle"]
-    assert f"{figures['crossings']['count']} crossings" in seen["subtitle"]
-    assert (f"{told['converged']} of {len(paths)} at rest" in seen["subtitle"]) == bool(failed)
-    assert seen["max_gap"] == told["max_gap"] == seen["bridge_gap"].max()
-    assert len(seen["bridge_sizes"]) == told["bridges"]
+    assert f"bridged {100 * told['bridged_fraction']:.1f} %" in seen.frame.subtitle
+    assert f"length {quantity(told['length_total'], 'in')}" in seen.frame.subtitle
+    assert f"{figures['crossings']['count']} crossings" in seen.frame.subtitle
+    assert (f"{told['converged']} of {len(paths)} at rest" in seen.frame.subtitle) == bool(failed)
+    assert seen.max_gap == told["max_gap"] == seen.bridges.gap.max()
+    assert len(seen.bridges.sizes) == told["bridges"]
 
 
 @pytest.mark.usefixtures("opengl")
 def test_a_picture_without_a_unit_names_none(tmp_path: Path) -> None:
     layup = assess(bridged())
-    assert "in" not in winding_scene(subject(layup, "waist"))["subtitle"].split()
+    assert "in" not in winding_scene(subject(layup, "waist")).frame.subtitle.split()
     images = []
     for units in ("", "in"):
         driver.start_probe()
@@ -177,10 +177,10 @@ def test_a_picture_without_a_unit_names_none(tmp_path: Path) -> None:
 def test_thinning_keeps_the_ends_of_paths_and_bridges() -> None:
     layup = assess(bridged(particles=801))
     seen = winding_scene(subject(layup, "waist"))
-    assert seen["paths"].shape[1] <= 252
-    assert np.array_equal(seen["paths"][:, [0, -1]], layup.paths.points[:, [0, -1]])
-    ends = np.cumsum(seen["bridge_sizes"])
-    assert ends[-1] == len(seen["bridges"])
-    assert (seen["bridge_gap"][ends - 1] == 0.0).all()
-    assert (seen["bridge_gap"][ends - seen["bridge_sizes"]] == 0.0).all()
-    assert seen["bridge_gap"].max() == pytest.approx(seen["max_gap"], rel=1e-3)
+    assert seen.fibres.points.shape[1] <= 252
+    assert np.array_equal(seen.fibres.points[:, [0, -1]], layup.paths.points[:, [0, -1]])
+    ends = np.cumsum(seen.bridges.sizes)
+    assert ends[-1] == len(seen.bridges.points)
+    assert (seen.bridges.gap[ends - 1] == 0.0).all()
+    assert (seen.bridges.gap[ends - seen.bridges.sizes] == 0.0).all()
+    assert seen.bridges.gap.max() == pytest.approx(seen.max_gap, rel=1e-3)

@@ -17,18 +17,19 @@ from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.path.paths import Paths
 from meshwind.pictures import driver
 from meshwind.pictures.animation_scene import laid_before, turning
-from meshwind.pictures.encoder import encoder
-from meshwind.pictures.kinds import PICTURES
+from meshwind.pictures.gallery import layout
+from meshwind.pictures.layup_scenes import slip_scene
 from meshwind.pictures.map_scene import spread_out
+from meshwind.pictures.movie import encoder
 from meshwind.pictures.page import Page, parse_size
 from meshwind.pictures.redesign_scene import draw_redesign
 from meshwind.pictures.render import render
-from meshwind.pictures.sheet import layout
+from meshwind.pictures.scenes import Drawing
 from meshwind.pictures.slip_picture import runs
-from meshwind.pictures.slip_scene import slip_scene
 from meshwind.pictures.subject import subject_of
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.results.reading import read_results
+from meshwind.results.schema import PICTURES
 from meshwind.results.write import write_files
 from meshwind.surface.grid import grid
 
@@ -96,8 +97,8 @@ def pages(waist: Path, tmp_path_factory: pytest.TempPathFactory, opengl: None) -
         "tall": Page(300, 700),
     }
     results = read_results(waist)
-    scenes = {name: winding_scene(subject_of(results, page.view)) | page.told for name, page in kinds.items()}
-    assert driver.paint({out / f"{name}.png": scene for name, scene in scenes.items()}) == ""
+    drawings = {name: Drawing(winding_scene(subject_of(results, page.view)), page) for name, page in kinds.items()}
+    assert driver.paint({out / f"{name}.png": drawing for name, drawing in drawings.items()}) == ""
     return out
 
 
@@ -131,21 +132,21 @@ def test_slip_off_the_surface_is_no_number(waist: Path) -> None:
     of = subject_of(read_results(waist))
     seen = slip_scene(of)
     off = ~of.paths.on_surface[:, of.kept]
-    assert np.isnan(seen["shares"][off]).all()
-    assert np.isnan(seen["shares"][:, [0, -1]]).all()
-    known = seen["shares"][np.isfinite(seen["shares"])]
+    assert np.isnan(seen.shares[off]).all()
+    assert np.isnan(seen.shares[:, [0, -1]]).all()
+    known = seen.shares[np.isfinite(seen.shares)]
     assert known == pytest.approx(0.5)
-    wanted = np.isfinite(seen["shares"][:, 1:]) & np.isfinite(seen["shares"][:, :-1])
-    lines = runs(seen["paths"], seen["shares"], wanted)
+    wanted = np.isfinite(seen.shares[:, 1:]) & np.isfinite(seen.shares[:, :-1])
+    lines = runs(seen.fibres.points, seen.shares, wanted)
     assert np.isfinite(lines.point_data["share"]).all()
     assert lines.n_lines == 2 * len(of.paths)  # below and above the waist
 
 
 def test_without_friction_slip_needs_no_scale(tmp_path: Path) -> None:
     seen = slip_scene(subject_of(read_results(left(tmp_path, helices(4, 0.5, 41, cylinder(64))))))
-    assert not seen["needed"]
-    assert "no friction needed" in seen["subtitle"]
-    assert not seen["bridges"]
+    assert not seen.needed
+    assert "no friction needed" in seen.frame.subtitle
+    assert not seen.bridges
 
 
 @pytest.mark.parametrize(("given", "says"), [
@@ -155,9 +156,7 @@ def test_without_friction_slip_needs_no_scale(tmp_path: Path) -> None:
     ({"animate": ["gif"], "seconds": 0.1}, "seconds is 0.1; give a number from 1 to 120"),
     ({"page": Page(view="left")}, "view 'left' is not known; give auto, x, -x"),
 ])  # fmt: skip
-def test_wishes_that_cannot_be_met_are_refused(
-    waist: Path, tmp_path: Path, given: dict[str, object], says: str
-) -> None:
+def test_what_cannot_be_drawn_is_refused(waist: Path, tmp_path: Path, given: dict[str, object], says: str) -> None:
     with pytest.raises(BadInputError, match=says):
         render(waist, out=tmp_path / "out", **given)  # type: ignore[arg-type]
     assert not (tmp_path / "out").exists()
@@ -181,13 +180,13 @@ def test_without_a_driver_nothing_is_written(waist: Path, tmp_path: Path, monkey
 
 @pytest.mark.usefixtures("opengl")
 def test_the_movie_lays_all_fibre(waist: Path, tmp_path: Path) -> None:
-    told: list[tuple[int, int]] = []
+    counted: list[tuple[int, int]] = []
     done = render(
         waist, page=Page(320, 240), animate=["gif", "mp4"], seconds=1.0, out=tmp_path,
-        tell=lambda _what, made, total: told.append((made, total)),
+        progress=lambda _what, made, total: counted.append((made, total)),
     )  # fmt: skip
     assert [file.name for file in done.files] == ["winding.gif", "winding.mp4"]
-    assert told[-1] == (26, 26)
+    assert counted[-1] == (26, 26)
     with Image.open(tmp_path / "winding.gif") as movie:
         frames = []
         for k in range(movie.n_frames):
@@ -222,7 +221,7 @@ def test_a_turning_part_stays_on_the_picture() -> None:
     assert worst == pytest.approx(extent, rel=1e-3)
 
 
-def test_glyphs_keep_apart_and_leave_no_gap() -> None:
+def test_fans_keep_apart_and_leave_no_gap() -> None:
     points = np.random.default_rng(1).uniform(size=(2000, 3))
     chosen = points[spread_out(points, 0.2)]
     apart = np.linalg.norm(chosen[:, None] - chosen[None], axis=2) + np.eye(len(chosen))

@@ -67,7 +67,7 @@ def best_view(points: Floats, quads: Ints, axis: Floats, marks: Floats, outward:
     return _framed(np.concatenate([points, marks]), right, up, eye)
 
 
-def place_view(points: Floats, faces: Ints, eyes: Floats, merit: Floats) -> View:
+def merit_view(points: Floats, faces: Ints, eyes: Floats, merit: Floats) -> View:
     """Look from the best of the directions `eyes` (k, 3), by their merit (k,) and by how much of a part they show.
 
     points (n, 3) and faces (m, 3) are the part.  Upright or lying as in `best_view`.

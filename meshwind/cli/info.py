@@ -81,7 +81,7 @@ def _mesh(file: Path) -> tuple[list[str], dict[str, Any]]:
 def _installation() -> dict[str, Any]:
     """Versions by library, None where there is none; pictures and movies: "" or what is missing; extras: presence."""
     from meshwind.pictures.driver import can_draw
-    from meshwind.pictures.encoder import encoder
+    from meshwind.pictures.movie import encoder
 
     try:
         movies = "" if encoder() else "none"

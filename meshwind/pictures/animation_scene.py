@@ -1,18 +1,18 @@
 """What is to be seen while a part is wound: the fibres in the order they are laid, and the axis it turns about."""
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.path.lengths import lengths
+from meshwind.pictures.scenes import AnimationScene
 from meshwind.pictures.subject import Subject
 from meshwind.pictures.winding_scene import winding_scene
 
-A_SECOND = 25
-"""Frames a second."""
+FRAMES_PER_SECOND = 25
 SHORTEST, LONGEST = 1.0, 120.0
 """Seconds of a movie."""
 _TURNS = 2
@@ -20,7 +20,7 @@ _MOST_POINTS = 40_000
 """Points of all fibres together that are drawn."""
 
 
-def animation_scene(of: Subject, seconds: float, movies: list[Path], encoder: str = "") -> dict[str, Any]:
+def animation_scene(of: Subject, seconds: float, movies: list[Path], encoder: str = "") -> AnimationScene:
     """The winding with how much fibre is laid before each of its points; movies: files to write, by an encoder.
 
     Raises BadInputError for seconds that are no length of a movie.
@@ -28,27 +28,30 @@ def animation_scene(of: Subject, seconds: float, movies: list[Path], encoder: st
     if not SHORTEST <= seconds <= LONGEST:
         raise BadInputError(f"seconds is {seconds:g}; give a number from {SHORTEST:g} to {LONGEST:g}")
     seen = winding_scene(of)
-    thin = -(-seen["paths"].shape[0] * seen["paths"].shape[1] // _MOST_POINTS)
+    view, fibres, bridges = seen.frame.view, seen.fibres, seen.bridges
+    thin = -(-fibres.points.shape[0] * fibres.points.shape[1] // _MOST_POINTS)
     chosen = np.unique(np.r_[np.arange(0, len(of.kept), thin), len(of.kept) - 1])
     arc = lengths(of.paths).arc_length
     before = laid_before(of.paths.family, arc[:, -1])[:, None] + arc
-    spin, centre, extent = turning(of.points, of.paths.points.reshape(-1, 3), of.view.up, of.view.right)
-    return seen | {
-        "kind": "animation",
-        "paths": seen["paths"][:, chosen],
-        "path_lift": seen["path_lift"][:, chosen],
-        "laid": before[:, of.kept[chosen]],
-        "bridge_laid": before[seen["bridge_path"], seen["bridge_particle"]],
-        "total": float(arc[:, -1].sum()),
-        "spin": spin,
-        "centre": centre,
-        "extent": extent,
-        "turns": _TURNS,
-        "frames": round(A_SECOND * seconds),
-        "a_second": A_SECOND,
-        "movies": np.array([str(movie.absolute()) for movie in movies]),
-        "encoder": encoder,
-    }
+    spin, centre, extent = turning(of.points, of.paths.points.reshape(-1, 3), view.up, view.right)
+    view = replace(view, centre=centre, width=float(extent[0]), height=float(extent[1]))
+    winding = replace(
+        seen,
+        frame=replace(seen.frame, view=view),
+        fibres=replace(fibres, points=fibres.points[:, chosen], lift=fibres.lift[:, chosen]),
+    )
+    return AnimationScene(
+        winding=winding,
+        laid=before[:, of.kept[chosen]],
+        bridge_laid=before[bridges.path, bridges.particle],
+        total=float(arc[:, -1].sum()),
+        spin=spin,
+        turns=_TURNS,
+        frames=round(FRAMES_PER_SECOND * seconds),
+        frames_per_second=FRAMES_PER_SECOND,
+        movies=tuple(str(movie.absolute()) for movie in movies),
+        encoder=encoder,
+    )
 
 
 def laid_before(family: Ints, length: Floats) -> Floats:

@@ -8,8 +8,12 @@ import pyvista as pv
 from matplotlib import get_data_path
 from PIL import Image, ImageDraw, ImageFont
 
-from meshwind.appearance.looks import round_below
+from meshwind.appearance.colours import colour_map
+from meshwind.appearance.looks import Scale, round_below
+from meshwind.appearance.view import View
+from meshwind.core.cast import Floats
 from meshwind.pictures.page import DESIGNED, Page
+from meshwind.pictures.scenes import Frame
 
 LEFT, RIGHT, TOP, BOTTOM = 60, 285, 150, 120
 """Margins around the part, for a page of 1600 x 1200: title above, ruler below, legend to the right."""
@@ -43,10 +47,10 @@ def legend_left(page: Page) -> float:
     return page.width - page.unit * (RIGHT - 20)
 
 
-def fitting(page: Page, scene: dict[str, Any]) -> float:
-    """Mesh units a pixel, so that the part fills the room for it."""
+def fitting(page: Page, view: View) -> float:
+    """Mesh units per pixel with which what is seen fills the room for it."""
     _, _, width, height = room(page)
-    return float(max(scene["extent"][0] / width, scene["extent"][1] / height))
+    return float(max(view.width / width, view.height / height))
 
 
 def middle(box: Box) -> tuple[float, float]:
@@ -60,15 +64,26 @@ def add_smooth(window: Any, mesh: Any, **look: Any) -> None:
     actor.prop.interpolation = "Phong"
 
 
-def aim(window: Any, page: Page, scene: dict[str, Any], target: Any, at: tuple[float, float], scale: float) -> None:
-    """Look at a target (3,) so that it comes to a place in pixels, at so many mesh units a pixel."""
-    right, up, eye = scene["right"], scene["up"], scene["eye"]
+def portrait(window: Any, page: Page, view: View, points: Floats) -> Any:
+    """The picture of what is in the window, in the middle of the room for it; points (k, 3) are the part's."""
+    aim(window, page, view, points, view.centre, middle(room(page)), fitting(page, view))
+    return shot(window, page)
+
+
+def aim(
+    window: Any, page: Page, view: View, points: Floats, target: Floats, at: tuple[float, float], scale: float
+) -> None:
+    """Look at a target (3,) so that it appears at a position in pixels, with `scale` mesh units per pixel.
+
+    points (k, 3) are the part's: in perspective the eye keeps its distance from the nearest.
+    """
+    right, up, eye = view.right, view.up, view.eye
     off = 0.5 * page.width - at[0], at[1] - 0.5 * page.height
     focus = target + scale * (off[0] * right + off[1] * up)
     half = 0.5 * page.height * scale
-    reach = 4.0 * float(np.linalg.norm(scene["extent"]))
+    reach = 4.0 * float(np.linalg.norm([view.width, view.height]))
     if page.perspective:  # what is nearest to the eye comes out as large as in parallel, so that nothing is cut off
-        reach = half / np.tan(_ANGLE) + 0.5 * float(np.ptp(scene["points"] @ eye))
+        reach = half / np.tan(_ANGLE) + 0.5 * float(np.ptp(points @ eye))
     window.camera_position = [focus + reach * eye, focus, up]
     window.camera.parallel_projection = not page.perspective  # the window's own switch would move the camera
     window.camera.parallel_scale = half
@@ -97,10 +112,10 @@ def blank(page: Page) -> Any:
     return Image.new(mode, (page.width, page.height), colour)
 
 
-def titled(image: Any, page: Page, scene: dict[str, Any]) -> Any:
+def titled(image: Any, page: Page, frame: Frame) -> Any:
     """A pen for the image, its title and subtitle written, small enough for the page."""
     drawn, s = pen(image), page.unit
-    for words, top, size, colour in ((str(scene["title"]), 36, 38, INK), (str(scene["subtitle"]), 88, 25, FAINT)):
+    for words, top, size, colour in ((frame.title, 36, 38, INK), (frame.subtitle, 88, 25, FAINT)):
         wide = drawn.textlength(words, font=face(page, size)) / (page.width - 2.0 * s * LEFT)
         drawn.text((s * LEFT, s * top), words, colour, font=face(page, size / max(wide, 1.0)))
     return drawn
@@ -117,12 +132,17 @@ def face(page: Page, size: float) -> Any:
 
 
 def legend(pen: Any, page: Page, rows: list[tuple[str, str]]) -> None:
-    """Which colour is what: a stroke and its words, a row each."""
+    """Which colour is what: a stroke and its words, one row each."""
     s = page.unit
     x, y = legend_left(page), s * (TOP + 40)
     for k, (colour, words) in enumerate(rows):
         pen.rectangle((x, y + s * (44 * k + 10), x + s * 44, y + s * (44 * k + 17)), fill=colour)
         pen.text((x + s * 58, y + s * 44 * k), words, INK, font=face(page, 25))
+
+
+def scale_bar(image: Any, pen: Any, page: Page, scale: Scale) -> None:
+    """A scale with its words and marks."""
+    colour_bar(image, pen, page, colour_map(scale.colours), list(scale.words), scale.marks)
 
 
 def colour_bar(
@@ -138,18 +158,19 @@ def colour_bar(
     pen.rectangle((round(x), round(top), round(x) + round(width), round(bottom)), outline=INK)
     for k, line in enumerate(words):
         pen.text((x, top - s * (50 + 34 * (len(words) - 1 - k))), line, INK, font=face(page, 25))
-    for share, told in marks:
+    for share, words_at in marks:
         y = bottom - (bottom - top) * share
         pen.line((x + width, y, x + width + 8 * s, y), fill=INK)
-        pen.text((x + width + 16 * s, y), told, INK, font=face(page, 21), anchor="lm")
+        pen.text((x + width + 16 * s, y), words_at, INK, font=face(page, 21), anchor="lm")
 
 
 def ruler(
     pen: Any, page: Page, scale: float, units: str, left: float = LEFT, base: float = 52.0, most: float = 320.0
 ) -> None:
-    """A bar of a round length, at most so long and so far from the page's left and lower rims, if one is wished.
+    """A bar of a round length, if the page has one.
 
-    scale: mesh units a pixel; left, base and most for a page of 1600 x 1200.
+    scale: mesh units per pixel; left, base, most: its distances from the page's left and lower edges and its largest
+    length, for a page of 1600 x 1200.
     """
     if not page.ruled:
         return
@@ -161,11 +182,11 @@ def ruler(
     pen.text((x + reach + 16 * s, y), f"{length:g} {units}".strip(), INK, font=face(page, 25), anchor="lm")
 
 
-def axes(pen: Any, page: Page, scene: dict[str, Any]) -> None:
+def axes(pen: Any, page: Page, view: View) -> None:
     """The model's axes as they point on the picture, the one towards the eye drawn last."""
-    toward, s = scene["eye"], page.unit
+    toward, s = view.eye, page.unit
     centre, reach = np.array([page.width - s * (RIGHT - 110.0), page.height - s * 110.0]), 62.0 * s
-    flat = np.stack([scene["right"], -scene["up"]], axis=1)
+    flat = np.stack([view.right, -view.up], axis=1)
     labels: list[Any] = []
     for axis in np.argsort(toward):
         tip = centre + reach * flat[axis]

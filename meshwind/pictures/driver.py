@@ -5,7 +5,6 @@ frame.  A second process is the probe for the one and hides the other behind the
 """
 
 import atexit
-import io
 import os
 import subprocess
 import sys
@@ -15,14 +14,11 @@ from contextlib import suppress
 from os import PathLike
 from pathlib import Path
 from threading import Timer
-from typing import Any
-
-import numpy as np
 
 from meshwind.layup.layup import Layup
 from meshwind.mesh.geometry.annulus import Annulus
 from meshwind.pictures.fit_scene import fit_scene
-from meshwind.pictures.page import Page
+from meshwind.pictures.scenes import Drawing, pack
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.surface.surface import Surface
@@ -31,10 +27,10 @@ NO_DRIVER = (
     "no picture: VTK found no OpenGL driver on this machine; install one "
     "(Debian: apt-get install libegl1 libgl1-mesa-dri)"
 )
-_PATIENCE = 120.0
+_SILENT_SECONDS = 120.0
 """Seconds without a sign of life after which a picture is given up."""
 
-Told = Callable[[str], None]
+Drawn = Callable[[str], None]
 """Called with the name of each picture, or "frame", as it is done."""
 
 _waiting: "list[Painter]" = []
@@ -67,24 +63,18 @@ class Painter:
             self._process.communicate()
         self._complaint.close()
 
-    def paint(self, scenes: Mapping[Path, dict[str, Any]], tell: Told | None = None) -> str:
-        """Draw a scene into each file; return "" or one line that says which picture there is not, and why."""
-        packed = io.BytesIO()
-        arrays: dict[str, Any] = {}
-        for number, (picture, seen) in enumerate(scenes.items()):
-            told = seen | {"picture": str(picture.absolute())}
-            arrays |= {f"{number}/{key}": value for key, value in told.items()}
-        np.savez(packed, **arrays)
-        names = [picture.name for picture in scenes]
-        words, late = self._work(packed.getvalue(), tell)
+    def paint(self, drawings: Mapping[Path, Drawing], drawn: Drawn | None = None) -> str:
+        """Draw each into its file; return "" or one line that says which picture there is not, and why."""
+        names = [picture.name for picture in drawings]
+        words, late = self._work(pack(drawings), drawn)
         complaint = self._complained()
         self.close()
-        for picture in scenes:
+        for picture in drawings:
             if picture.name not in words:
                 picture.unlink(missing_ok=True)  # a process that has stopped may leave half of it
         missing = " and ".join(name for name in names if name not in words)
         if late:
-            return f"no {missing}: drawing took more than {_PATIENCE:.0f} s"
+            return f"no {missing}: drawing took more than {_SILENT_SECONDS:.0f} s"
         if self._process.returncode == 0:
             return ""
         if "ready" not in words and (self._process.returncode < 0 or "OpenGL" in complaint):
@@ -92,24 +82,24 @@ class Painter:
         last = complaint.strip().splitlines()[-1:]
         return f"no {missing or 'picture'}: {''.join(last) or 'the renderer stopped'}"
 
-    def _work(self, packed: bytes, tell: Told | None) -> tuple[list[str], bool]:
-        """Hand the scenes over and follow the process to its end: what it said, and whether it had to be ended."""
+    def _work(self, packed: bytes, drawn: Drawn | None) -> tuple[list[str], bool]:
+        """Hand the scenes over and follow the process to its end: what it said, and whether it was ended."""
         process, words, late = self._process, [], False
         stdin, stdout = process.stdin, process.stdout
         assert stdin is not None and stdout is not None
-        watch = Timer(_PATIENCE, process.kill)
+        watch = Timer(_SILENT_SECONDS, process.kill)
         watch.start()
         try:
             for send in (lambda: stdin.write(packed), stdin.close):
-                with suppress(BrokenPipeError):  # it has crashed: what it said and how it ended tell why
+                with suppress(BrokenPipeError):  # it has crashed: what it said and how it ended say why
                     send()
             for line in stdout:
                 words.append(line.decode(errors="replace").strip())
                 watch.cancel()
-                watch = Timer(_PATIENCE, process.kill)
+                watch = Timer(_SILENT_SECONDS, process.kill)
                 watch.start()
-                if tell is not None and words[-1] != "ready":
-                    tell(words[-1])
+                if drawn is not None and words[-1] != "ready":
+                    drawn(words[-1])
             process.wait()
         finally:
             late = watch.finished.is_set()
@@ -144,24 +134,23 @@ def draw(
 ) -> str:
     """Draw the part and its fibres into a .png; return "" or one line that says why there is no picture.
 
-    revolutions: what was asked for, for the title.
+    revolutions: as given, for the title.
     """
-    return paint({Path(picture): winding_scene(subject(layup, name, units, revolutions))})
+    return paint({Path(picture): Drawing(winding_scene(subject(layup, name, units, revolutions)))})
 
 
 def draw_fit(picture: str | PathLike[str], surface: Surface, annulus: Annulus, name: str = "", units: str = "") -> str:
-    """Draw how far a surface and the mesh it was fitted to lie apart into a .png: both, and the worst place from near.
+    """Draw the distance between a surface and its mesh into a .png: both, and the worst place from near.
 
     Returns "" or one line that says why there is no picture; name: for the title, by default the mesh's.
     """
-    return paint({Path(picture): fit_scene(surface, annulus, name or annulus.mesh.name, units)})
+    return paint({Path(picture): Drawing(fit_scene(surface, annulus, name or annulus.mesh.name, units))})
 
 
-def paint(scenes: Mapping[Path, dict[str, Any]], page: Page | None = None, tell: Told | None = None) -> str:
-    """Draw scenes into .png files by one process; return "" or one line that says what is not there, and why."""
+def paint(drawings: Mapping[Path, Drawing], drawn: Drawn | None = None) -> str:
+    """Draw into .png files by one process; return "" or one line that says which there is not, and why."""
     start_probe()
-    looks = {} if page is None else page.told
-    return _waiting.pop().paint({picture: scene | looks for picture, scene in scenes.items()}, tell)
+    return _waiting.pop().paint(drawings, drawn)
 
 
 atexit.register(stop)

@@ -6,9 +6,11 @@ import numpy as np
 import pyvista as pv
 
 from meshwind.appearance.colours import colour_map
+from meshwind.core.cast import Floats, Ints
 from meshwind.pictures import canvas
 from meshwind.pictures.canvas import FAINT, INK, PAPER, Box, face
-from meshwind.pictures.page import Page, page_of
+from meshwind.pictures.page import Page
+from meshwind.pictures.scenes import FitScene
 
 DISTANCES = colour_map("distance")
 FAINTEST = 0.05
@@ -21,39 +23,44 @@ GAP, HEAD = 20, 44
 RING = 17
 LEGIBLE = 14.0
 """Pixels that an edge of the mesh must be long for a net of them not to hide all else."""
+_MESH, _SURFACE, _LOST = "mesh", "surface", "lost"
+"""What a view shows; the last is what the surface lost of the mesh."""
 
 
-def draw(window: Any, scene: dict[str, Any]) -> Any:
+def draw(window: Any, scene: FitScene, page: Page) -> Any:
     """Three views from one side, with words."""
-    page = page_of(scene)
+    seen_from, units = scene.frame.view, scene.frame.units
+    extent = seen_from.width, seen_from.height
     image = canvas.blank(page)
-    pen = canvas.titled(image, page, scene)
-    boxes = cells(page, scene["extent"])
+    pen = canvas.titled(image, page, scene.frame)
+    boxes = cells(page, extent)
     inner = [below(page, box) for box in boxes]
-    whole = max(float(scene["extent"][k]) / (inner[0][2 + k] - (40, 0)[k] * page.unit) for k in (0, 1))
-    near = 2.0 * float(scene["close_up"]) / min(inner[2][2:])
-    middle = scene["places"][0].mean(axis=0)
+    whole = max(extent[k] / (inner[0][2 + k] - (40, 0)[k] * page.unit) for k in (0, 1))
+    near = 2.0 * scene.close_up / min(inner[2][2:])
+    middle = scene.pairs[0].mean(axis=0)
     views = (
-        ("the mesh", ("mesh",), scene["centre"], whole, 0),
-        ("the surface fitted to it", ("surface",), scene["centre"], whole, 1),
-        ("place 1, lost mesh in blue", ("surface", "lost"), middle, near, 1),
+        ("the mesh", (_MESH,), seen_from.centre, whole, 0),
+        ("the surface fitted to it", (_SURFACE,), seen_from.centre, whole, 1),
+        ("place 1, lost mesh in blue", (_SURFACE, _LOST), middle, near, 1),
     )
     for k, (name, bodies, target, scale, side) in enumerate(views):
-        view(window, image, scene, inner[k], bodies, target, scale)
+        window.clear_actors()
+        for body in bodies:
+            add(window, scene, body, scale)
+        paste(window, image, page, scene, inner[k], target, scale)
         pen.text(boxes[k][:2], name, INK, font=face(page, 25))
-        seen = scene["seen"][:, side] | (np.arange(len(scene["places"])) == 0)
+        seen = scene.seen[:, side] | (np.arange(len(scene.pairs)) == 0)
         shown = np.flatnonzero(seen) if k < 2 else np.array([0])
-        rings(pen, page, inner[k], spots(scene, inner[k], target, scale, scene["places"][shown, side]), shown + 1)
-    legend(image, pen, scene)
-    units = str(scene["units"])
+        rings(pen, page, inner[k], spots(scene, inner[k], target, scale, scene.pairs[shown, side]), shown + 1)
+    legend(image, pen, scene, page)
     canvas.ruler(pen, page, whole, units)
     half = 0.5 * (page.width / page.unit + canvas.LEFT - canvas.RIGHT) + 60
     canvas.ruler(pen, page, near, f"{units} at place 1".strip(), half)
-    canvas.axes(pen, page, scene)
+    canvas.axes(pen, page, seen_from)
     return image
 
 
-def cells(page: Page, extent: Any) -> list[Box]:
+def cells(page: Page, extent: tuple[float, float]) -> list[Box]:
     """Left, top, width and height of three boxes: in a row, in a column, or two over one; as the part is largest."""
     left, top, width, height = canvas.room(page)
     gap, head = page.unit * GAP, page.unit * HEAD
@@ -72,79 +79,77 @@ def below(page: Page, box: Box) -> Box:
     return left, top + head, width, height - head
 
 
-def view(window: Any, image: Any, scene: Any, box: Box, bodies: Any, target: Any, scale: float) -> None:
-    """One view, its target in the middle of its box."""
-    page = page_of(scene)
+def paste(window: Any, image: Any, page: Page, scene: FitScene, box: Box, target: Floats, scale: float) -> None:
+    """Paste the window's view into a box of the image, its target in the middle."""
     left, top, width, height = (round(x) for x in box)
-    window.clear_actors()
-    for body in bodies:
-        add(window, scene, body, scale)
-    canvas.aim(window, page, scene, target, canvas.middle(box), scale)
+    canvas.aim(window, page, scene.frame.view, scene.mesh.points, target, canvas.middle(box), scale)
     image.paste(canvas.shot(window, page).crop((left, top, left + width, top + height)), (left, top))
 
 
-def add(window: Any, scene: Any, body: str, scale: float) -> None:
+def add(window: Any, scene: FitScene, name: str, scale: float) -> None:
     """The mesh or the surface coloured by its distance to the other, or as blue glass what the surface lost of it."""
-    name = "mesh" if body == "lost" else body
-    faces, share = scene[f"{name}_faces"], scene[f"{name}_away"] / float(scene["most"])
-    if body == "lost":
+    body = scene.surface if name == _SURFACE else scene.mesh
+    faces, share = body.faces, body.distances / scene.most
+    if name == _LOST:
         faces = faces[(share[faces] > LOST).any(axis=1)]
-        legible = float(scene["edge"]) > LEGIBLE * scale
+        legible = scene.edge > LEGIBLE * scale
         look = {"color": GLASS, "opacity": 0.3, "show_edges": legible, "edge_color": GLASS}
     else:
         look = {"scalars": "away", "cmap": DISTANCES, "clim": [0.0, 1.0], "show_scalar_bar": False}
     if len(faces):
-        part = pv.PolyData.from_regular_faces(scene[f"{name}_points"], faces)
+        part = pv.PolyData.from_regular_faces(body.points, faces)
         part.point_data["away"] = 1.0 - np.log(np.maximum(share, FAINTEST)) / np.log(FAINTEST)
         window.add_mesh(part, ambient=0.4, diffuse=0.7, render=False, **look)
 
 
-def spots(scene: Any, box: Box, target: Any, scale: float, points: Any) -> Any:
-    """Where points (k, 3) come to lie in a view, in pixels (k, 2)."""
-    flat = (points - target) @ np.stack([scene["right"], -scene["up"]], axis=1) / scale
-    return flat + np.array(canvas.middle(box))
+def spots(scene: FitScene, box: Box, target: Floats, scale: float, points: Floats) -> Floats:
+    """Where points (k, 3) appear in a view, in pixels (k, 2)."""
+    view = scene.frame.view
+    flat = (points - target) @ np.stack([view.right, -view.up], axis=1) / scale
+    return np.asarray(flat + np.array(canvas.middle(box)))
 
 
-def rings(pen: Any, page: Page, box: Box, at: Any, numbers: Any) -> None:
+def rings(pen: Any, page: Page, box: Box, at: Floats, numbers: Ints) -> None:
     """A ring about each place in a view, then the numbers beside them: to the left where the view ends."""
     s = page.unit
     for x, y in at:
         for width, colour in ((7, PAPER), (3, MARK)):
             reach = s * (RING + width / 2)
             pen.ellipse((x - reach, y - reach, x + reach, y + reach), outline=colour, width=max(round(s * width), 1))
-    look: dict[str, Any] = {"font": face(page, 28), "anchor": "mm", "stroke_width": round(4 * s), "stroke_fill": PAPER}
+    stroke = round(4 * s)
     for (x, y), number in zip(at, numbers, strict=True):
         side = -1 if x + s * (2 * RING + 16) > box[0] + box[2] else 1
-        pen.text((x + side * s * (RING + 16), y - s * (RING + 8)), str(number), MARK, **look)
+        position = x + side * s * (RING + 16), y - s * (RING + 8)
+        font = face(page, 28)
+        pen.text(position, str(number), MARK, font=font, anchor="mm", stroke_width=stroke, stroke_fill=PAPER)
 
 
-def legend(image: Any, pen: Any, scene: Any) -> None:
+def legend(image: Any, pen: Any, scene: FitScene, page: Page) -> None:
     """The places by number with their distance, and the scale of colours."""
-    page = page_of(scene)
     s = page.unit
     x, y = canvas.legend_left(page), s * (canvas.TOP + 6)
-    for k, away in enumerate(scene["away"]):
-        shade = INK if scene["seen"][k].any() else FAINT
+    for k, distance in enumerate(scene.distances):
+        shade = INK if scene.seen[k].any() else FAINT
         pen.text((x, y + s * 38 * k), f"{k + 1}", MARK, font=face(page, 25))
-        pen.text((x + s * 30, y + s * (38 * k + 2)), told(scene, float(away)), shade, font=face(page, 21))
-    if not scene["seen"].any(axis=1).all():
-        last = y + s * (38 * len(scene["away"]) + 2)
+        pen.text((x + s * 30, y + s * (38 * k + 2)), with_share(scene, float(distance)), shade, font=face(page, 21))
+    if not scene.seen.any(axis=1).all():
+        last = y + s * (38 * len(scene.distances) + 2)
         pen.text((x, last), "grey: out of sight", FAINT, font=face(page, 21))
-    units = str(scene["units"])
+    units = scene.frame.units
     words = ["distance" + (f" in {units}" if units else ""), "(% of the part)"]
     canvas.colour_bar(image, pen, page, DISTANCES, words, marks(scene))
 
 
-def marks(scene: Any) -> list[tuple[float, str]]:
+def marks(scene: FitScene) -> list[tuple[float, str]]:
     """1, 2 and 5 times powers of ten on the scale, with their shares of the part."""
-    most = float(scene["most"])
+    most = scene.most
     powers = 10.0 ** np.arange(np.floor(np.log10(FAINTEST * most)), np.ceil(np.log10(most)) + 1)
     values = np.outer(powers, [1.0, 2.0, 5.0]).ravel()
     share = 1.0 - np.log(values / most) / np.log(FAINTEST)
     inside = (share >= 0.0) & (share <= 1.0)
-    return [(float(share[k]), told(scene, float(values[k]))) for k in np.flatnonzero(inside)]
+    return [(float(share[k]), with_share(scene, float(values[k]))) for k in np.flatnonzero(inside)]
 
 
-def told(scene: Any, away: float) -> str:
+def with_share(scene: FitScene, distance: float) -> str:
     """A distance and its share of the part."""
-    return f"{away:.2g} ({100.0 * away / float(scene['diagonal']):.2g} %)"
+    return f"{distance:.2g} ({100.0 * distance / scene.diagonal:.2g} %)"

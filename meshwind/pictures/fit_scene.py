@@ -1,59 +1,46 @@
-"""What is to be seen on fit_error.png, gathered as arrays for the process that draws it."""
-
-from typing import Any
+"""What is to be seen on fit_error.png."""
 
 import numpy as np
 
-from meshwind.appearance.view import around, place_view
+from meshwind.appearance.view import around, merit_view
 from meshwind.appearance.words import quantity
 from meshwind.core.cast import Bools, Floats
 from meshwind.mesh.geometry.annulus import Annulus
 from meshwind.mesh.geometry.measure import edge_lengths
-from meshwind.surface.fitting.deviation import Deviation, Mismatch, Triangles, deviation
+from meshwind.pictures.scenes import FitScene, Frame, MeasuredBody
+from meshwind.surface.fitting.deviation import Deviation, Mismatch, deviation
 from meshwind.surface.surface import Surface
 
 _EYES = 240
 _EXACT = 1e-9
 """Over the diagonal: distances below are round-off, and the scale of colours does not go there."""
 _SKIP = 1e-3
-"""Over the diagonal: a ray from a place starts this far off it, clear of its own facets."""
+"""Over the diagonal: a ray from a point starts this far off it, clear of its own facets."""
 _CLOSE_UP = 8.0, 0.05, 0.15
 """Half a close-up's width over the worst distance, and its bounds over the diagonal."""
 
 
-def fit_scene(surface: Surface, annulus: Annulus, name: str, units: str = "") -> dict[str, Any]:
-    """All that the renderer needs: mesh and surface with their distances, the worst places, the view, the words."""
+def fit_scene(surface: Surface, annulus: Annulus, name: str, units: str = "") -> FitScene:
+    """Mesh and surface with their distances, the worst places, the view and the words."""
     found = deviation(surface, annulus)
     diagonal = annulus.mesh.diagonal
     eyes = around(_EYES)
-    view = place_view(found.mesh.points, found.mesh.faces, eyes, _merit(found, eyes, _SKIP * diagonal))
-    towards = view.eye[None]
-    worst = found.regions[0]
+    view = merit_view(found.mesh.points, found.mesh.faces, eyes, _merit(found, eyes, _SKIP * diagonal))
+    worst = found.regions[0].distance
     size, least, most = _CLOSE_UP
-    return {
-        "kind": "fit",
-        "title": f"{name}: where the surface leaves the mesh",
-        "subtitle": _subtitle(found, diagonal, units),
-        "units": units,
-        "diagonal": diagonal,
-        "mesh_points": found.mesh.points,
-        "mesh_faces": found.mesh.faces,
-        "mesh_away": found.to_surface,
-        "edge": float(np.median(edge_lengths(found.mesh.points, found.mesh.faces))),
-        "surface_points": found.surface.points,
-        "surface_faces": found.surface.faces,
-        "surface_away": found.to_mesh,
-        "most": max(worst.distance, _EXACT * diagonal),
-        "places": np.array([[region.on_mesh, region.on_surface] for region in found.regions]),
-        "seen": np.array([_seen(found, region, towards, _SKIP * diagonal)[:, 0] for region in found.regions]),
-        "away": np.array([region.distance for region in found.regions]),
-        "close_up": float(np.clip(size * worst.distance, least * diagonal, most * diagonal)),
-        "right": view.right,
-        "up": view.up,
-        "eye": view.eye,
-        "centre": view.centre,
-        "extent": np.array([view.width, view.height]),
-    }
+    title = f"{name}: where the surface leaves the mesh"
+    return FitScene(
+        frame=Frame(title, _subtitle(found, diagonal, units), units, view),
+        diagonal=diagonal,
+        mesh=MeasuredBody(found.mesh.points, found.mesh.faces, found.to_surface),
+        surface=MeasuredBody(found.surface.points, found.surface.faces, found.to_mesh),
+        edge=float(np.median(edge_lengths(found.mesh.points, found.mesh.faces))),
+        most=max(worst, _EXACT * diagonal),
+        pairs=np.array([[region.on_mesh, region.on_surface] for region in found.regions]),
+        seen=np.array([_seen(found, region, view.eye[None], _SKIP * diagonal)[:, 0] for region in found.regions]),
+        distances=np.array([region.distance for region in found.regions]),
+        close_up=float(np.clip(size * worst, least * diagonal, most * diagonal)),
+    )
 
 
 def _merit(found: Deviation, eyes: Floats, skip: float) -> Floats:
@@ -68,9 +55,9 @@ def _merit(found: Deviation, eyes: Floats, skip: float) -> Floats:
 
 
 def _seen(found: Deviation, region: Mismatch, eyes: Floats, skip: float) -> Bools:
-    """Whether a place is in sight (2, k) from each direction (k, 3): on the mesh alone and on the surface alone."""
-    pairs: list[tuple[Triangles, Floats]] = [(found.mesh, region.on_mesh), (found.surface, region.on_surface)]
-    return np.stack([body.clear(point, eyes, skip) for body, point in pairs])
+    """Whether a region is in sight (2, k) from each direction (k, 3): on the mesh alone and on the surface alone."""
+    bodies = (found.mesh, region.on_mesh), (found.surface, region.on_surface)
+    return np.stack([body.clear(point, eyes, skip) for body, point in bodies])
 
 
 def _subtitle(found: Deviation, diagonal: float, units: str) -> str:

@@ -1,46 +1,98 @@
-"""What is to be seen on the pictures of crossings and of the quad mesh."""
-
-from typing import Any
+"""What is to be seen on the pictures of crossings, of the slip, of the quad mesh and of the unrolled part."""
 
 import numpy as np
 
-from meshwind.appearance.looks import Look, fixed
+from meshwind.appearance.looks import Look, Scale, fixed
+from meshwind.core.cast import Floats
+from meshwind.pictures.scenes import CrossingsScene, QuadsScene, SlipScene, UnrolledScene
 from meshwind.pictures.subject import Subject
 from meshwind.pictures.winding_scene import fibres
+from meshwind.surface.image import surface_image
 
 ANGLE = Look("crossing angle", "angle between\nthe families", "degrees", "viridis", fixed(0.0, 90.0), step=15.0)
+NO_SLIP = 1e-6
+"""Slip below this is round-off: the fibre is a geodesic."""
+_PIXELS = 384
 
 
-def crossings_scene(of: Subject) -> dict[str, Any]:
+def crossings_scene(of: Subject) -> CrossingsScene:
     """Where the two families cross, by the angle between them."""
-    met = of.layup.crossings
-    angle = np.degrees(met.angle)
+    crossings = of.layup.crossings
+    angle = np.degrees(crossings.angle)
     scale = ANGLE.scale(angle, of.units)
-    told = "the families do not cross"
-    if len(met):
+    subtitle = "the families do not cross"
+    if len(crossings):
         low, usual, high = np.quantile(angle, [0.0, 0.5, 1.0])
-        told = f"{len(met)} crossings at {low:.0f}° to {high:.0f}°, half of them above {usual:.0f}°"
-    normals = of.paths.surface.normals(met.uv) if len(met) else np.zeros((0, 3))
-    seen = of.framed("crossings", f"{of.name}: angle at which the families cross", told) | fibres(of) | scale.told
-    return seen | {"shares": scale.shares(angle), "crossings": met.points, "crossing_normals": normals}
+        subtitle = f"{len(crossings)} crossings at {low:.0f}° to {high:.0f}°, half of them above {usual:.0f}°"
+    normals = of.paths.surface.normals(crossings.uv) if len(crossings) else np.zeros((0, 3))
+    frame = of.frame(f"{of.name}: angle at which the families cross", subtitle)
+    return CrossingsScene(frame, of.part, fibres(of), scale, scale.shares(angle), crossings.points, normals)
 
 
-def quads_scene(of: Subject) -> dict[str, Any]:
+def quads_scene(of: Subject) -> QuadsScene:
     """The quad mesh: quads, triangles at the rims, and the corners that lie off the surface."""
     mesh = of.layup.quads
-    count = f"{len(mesh.quads)} quads, {len(mesh.triangles)} triangles"
     off = int((~mesh.on_surface).sum())
-    where = (
-        f"{off} of {len(mesh.points)} corners off the surface, where a fibre bridges"
-        if off
-        else "every corner on the surface"
-    )
-    told = f"{count}  ·  {where}"
+    where = "every corner on the surface"
+    if off:
+        where = f"{off} of {len(mesh.points)} corners off the surface, where a fibre bridges"
+    subtitle = f"{len(mesh.quads)} quads, {len(mesh.triangles)} triangles  ·  {where}"
     if not len(mesh.quads) + len(mesh.triangles):
-        told = f"no quad mesh: {mesh.note}" if mesh.note else "no quad mesh"
-    return of.framed("quads", f"{of.name}: quad mesh on the crossings", told) | {
-        "corners": mesh.points,
-        "corner_off": ~mesh.on_surface,
-        "mesh_quads": mesh.quads,
-        "mesh_triangles": mesh.triangles,
-    }
+        subtitle = f"no quad mesh: {mesh.note}" if mesh.note else "no quad mesh"
+    frame = of.frame(f"{of.name}: quad mesh on the crossings", subtitle)
+    return QuadsScene(frame, of.part, mesh.points, ~mesh.on_surface, mesh.quads, mesh.triangles)
+
+
+def slip_scene(of: Subject) -> SlipScene:
+    """Converged fibres by the friction that they need; NaN where it is not defined: off the surface, at the ends."""
+    friction, most = of.paths.friction, of.figures.max_slip
+    end = max(friction, most) if max(friction, most) > NO_SLIP else 0.0
+    scale = Scale(("slip:", "friction", "needed"), "viridis", 0.0, end or 1.0)
+    return SlipScene(
+        frame=of.frame(f"{of.name}: slip of the fibres", _slip_subtitle(of, end)),
+        part=of.part,
+        fibres=fibres(of),
+        scale=scale,
+        shares=scale.shares(of.paths.slip[:, of.kept]),
+        needed=end > 0.0,
+        bridges=not bool(of.paths.on_surface.all()),
+    )
+
+
+def _slip_subtitle(of: Subject, end: float) -> str:
+    friction, most = of.paths.friction, of.figures.max_slip
+    if end == 0.0:
+        return "no friction needed: wherever a fibre touches it is a geodesic"
+    parts = [f"friction {friction:g}" if friction else "wound without friction", f"largest slip {most:.3g}"]
+    if friction:
+        share = 100.0 * _at_limit(of.paths.slip, friction)
+        parts.append(f"{share:.0f} % of the fibre that touches needs all of the friction")
+    return "  ·  ".join(parts)
+
+
+def _at_limit(slip: Floats, friction: float) -> float:
+    """Share of the known slips that are at the friction: there the fibre has slipped until friction held it."""
+    known = slip[np.isfinite(slip)]
+    return float((known > 0.999 * friction).mean()) if len(known) and friction > 0.0 else 0.0
+
+
+def unrolled_scene(of: Subject) -> UnrolledScene:
+    """The chart, 1 x 1, its red, green and blue being x, y and z, and the fibres with their feet where they bridge."""
+    points = np.array(surface_image(of.paths.surface, _PIXELS, _PIXELS))
+    low, high = points.min(axis=(0, 1)), points.max(axis=(0, 1))
+    return UnrolledScene(
+        frame=of.frame(f"{of.name}: the part unrolled", _unrolled_subtitle(low, high, of.units)),
+        image=(points - low) / np.where(high > low, high - low, 1.0),
+        uv=of.paths.uv[:, of.kept],
+        bridging=~of.paths.on_surface[:, of.kept],
+        family=of.paths.family,
+        converged=of.converged,
+    )
+
+
+def _unrolled_subtitle(low: Floats, high: Floats, units: str) -> str:
+    step = 1e-3 * float((high - low).max())  # what is less is round-off, and would be shown as such
+    low, high = (np.rint(end / step) * step + 0.0 for end in (low, high))
+    tints = zip("xyz", low, high, ("red", "green", "blue"), strict=True)
+    spans = (f"{name} {a:.4g} to {b:.4g} as {tint}" for name, a, b, tint in tints)
+    return f"colour is the place in space: {', '.join(spans)}" + (f", in {units}" if units else "")

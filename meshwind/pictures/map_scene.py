@@ -1,6 +1,6 @@
 """What is to be seen on the pictures of a map: coverage, windability, distance to the mesh."""
 
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -9,60 +9,63 @@ from meshwind.appearance.looks import MAPS
 from meshwind.appearance.words import quantity
 from meshwind.core.cast import Floats, Ints
 from meshwind.layup.windability import CONCAVE, CONVEX, SADDLE
+from meshwind.pictures.scenes import Fans, MapScene
 from meshwind.pictures.subject import Subject
+from meshwind.results.schema import CLASS, COVERAGE, FIT_ERROR, PRESS_DIRECTION, PRESS_REACH, WINDABILITY, Field
 
-_GLYPHS = 26
-"""Glyphs along the longer side of the picture."""
+_FANS = 26
+"""Fans along the longer side of the picture."""
 _ALL_BUT = 80.0
-"""Where a fibre presses up to so many degrees to both sides, a glyph would be all but a full circle."""
+"""Where a fibre presses up to so many degrees to both sides, a fan would be all but a full circle."""
 _ASLANT = 0.25
-"""Cosine from the eye to the normal below which a glyph cannot be read."""
+"""Cosine from the eye to the normal below which a fan cannot be read."""
 
 
-def map_scene(of: Subject, name: str, title: str, subtitle: str) -> dict[str, Any]:
-    """The surface coloured by the map of this name."""
-    values = of.maps[name].astype(np.float64)
-    scale = MAPS[name].scale(values, of.units)
-    return of.framed("map", f"{of.name}: {title}", subtitle) | scale.told | {"shares": scale.shares(values)}
+def map_scene(of: Subject, field: Field, title: str, subtitle: str) -> MapScene:
+    """The surface coloured by a map."""
+    values = of.maps[field].astype(np.float64)
+    scale = MAPS[field].scale(values, of.units)
+    return MapScene(of.frame(f"{of.name}: {title}", subtitle), of.part, scale, scale.shares(values))
 
 
-def coverage_scene(of: Subject) -> dict[str, Any]:
-    """How many layers of fibre lie over each place."""
+def coverage_scene(of: Subject) -> MapScene:
+    """How many layers of fibre lie over each point."""
     bands = of.layup.bands
     shares = ("bare", bands.bare), ("once", bands.share(1)), ("twice", bands.share(2)), ("more often", bands.more)
     covered = ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in shares)
     width = quantity(bands.width, of.units, 3)
-    return map_scene(of, "coverage", "coverage", f"band {width} wide; area covered: {covered}")
+    return map_scene(of, COVERAGE, "coverage", f"band {width} wide; area covered: {covered}")
 
 
-def fit_map_scene(of: Subject) -> dict[str, Any]:
+def fit_map_scene(of: Subject) -> MapScene:
     """How far the surface lies from the mesh's facets, on a logarithmic scale."""
-    away = of.maps["fit_error"]
-    told = [("median", float(np.median(away))), ("99 % below", float(np.quantile(away, 0.99))), ("largest", away.max())]
-    subtitle = "  ·  ".join(f"{word} {quantity(float(value), of.units, 2)}" for word, value in told)
-    return map_scene(of, "fit_error", "distance of the surface to the mesh's facets", subtitle)
+    away = of.maps[FIT_ERROR]
+    figures = ("median", np.median(away)), ("99 % below", np.quantile(away, 0.99)), ("largest", away.max())
+    subtitle = "  ·  ".join(f"{word} {quantity(float(value), of.units, 2)}" for word, value in figures)
+    return map_scene(of, FIT_ERROR, "distance of the surface to the mesh's facets", subtitle)
 
 
-def windability_scene(of: Subject) -> dict[str, Any]:
+def windability_scene(of: Subject) -> MapScene:
     """In what share of the directions a taut fibre presses, with a fan of those directions where not all do."""
-    kind, area = of.maps["class"], _areas(of)
+    kind, area = of.maps[CLASS], _areas(of)
     share = {each: 100.0 * float(area[kind == each].sum() / area.sum()) for each in (CONVEX, SADDLE, CONCAVE)}
     subtitle = (
         f"a fibre presses in every direction on {share[CONVEX]:.0f} % of the area, in some on {share[SADDLE]:.0f} %, "
         f"in none on {share[CONCAVE]:.0f} %"
     )
-    seen = map_scene(of, "windability", "where a taut fibre presses", subtitle)
-    apart = max(of.view.width, of.view.height) / _GLYPHS
+    seen = map_scene(of, WINDABILITY, "where a taut fibre presses", subtitle)
+    apart = max(of.view.width, of.view.height) / _FANS
     facing = of.normals @ of.view.eye > _ASLANT * np.linalg.norm(of.normals, axis=1)
-    some = np.flatnonzero((kind == SADDLE) & (of.maps["press_reach"] < _ALL_BUT) & facing)
+    some = np.flatnonzero((kind == SADDLE) & (of.maps[PRESS_REACH] < _ALL_BUT) & facing)
     chosen = some[spread_out(of.points[some], apart)]
-    return seen | {
-        "glyph_points": of.points[chosen],
-        "glyph_normals": of.normals[chosen],
-        "glyph_directions": of.maps["press_direction"][chosen],
-        "glyph_reach": np.radians(of.maps["press_reach"][chosen]),
-        "glyph_size": 0.36 * apart,
-    }
+    fans = Fans(
+        points=of.points[chosen],
+        normals=of.normals[chosen],
+        directions=of.maps[PRESS_DIRECTION][chosen],
+        reach=np.radians(of.maps[PRESS_REACH][chosen]),
+        size=0.36 * apart,
+    )
+    return replace(seen, fans=fans)
 
 
 def spread_out(points: Floats, apart: float) -> Ints:

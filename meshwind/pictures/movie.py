@@ -1,28 +1,47 @@
 """Frames to GIF and MP4."""
 
+import shutil
 import subprocess
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from PIL import Image
 
+from meshwind.core.errors import BadInputError
 from meshwind.pictures.page import Page
 
 _COLOURS = 255
+"""Colours of a GIF's palette, which has room for 256."""
+
+
+def encoder() -> str:
+    """FFmpeg's executable: the machine's own, or that of imageio-ffmpeg; raises BadInputError where there is none."""
+    found = shutil.which("ffmpeg")
+    if found:
+        return found
+    if find_spec("imageio_ffmpeg") is None:
+        raise BadInputError(
+            "mp4 needs FFmpeg, which is not on this machine; install it (Debian: apt-get install ffmpeg; "
+            'or: pip install "meshwind[movie]"), or give gif instead'
+        )
+    from imageio_ffmpeg import get_ffmpeg_exe
+
+    return str(get_ffmpeg_exe())
 
 
 @contextmanager
-def writers(files: list[Path], page: Page, rate: int, encoder: str) -> Iterator[Callable[[Any], None]]:
-    """A function that takes one frame after the other and writes it to all files, at so many a second.
+def writers(files: list[Path], page: Page, rate: int, ffmpeg: str) -> Iterator[Callable[[Any], None]]:
+    """A function that takes one frame after the other and writes it to all files; rate: frames per second.
 
-    encoder: FFmpeg's executable, for what is no GIF.  Raises OSError where it fails.
+    ffmpeg: its executable, for what is no GIF.  Raises OSError where it fails.
     """
     with ExitStack() as stack:
         each = [
-            stack.enter_context(_gif(file, rate) if file.suffix == ".gif" else _mp4(file, page, rate, encoder))
+            stack.enter_context(_gif(file, rate) if file.suffix == ".gif" else _mp4(file, page, rate, ffmpeg))
             for file in files
         ]
 
@@ -44,12 +63,12 @@ def _gif(file: Path, rate: int) -> Iterator[Callable[[Any], None]]:
 
 
 @contextmanager
-def _mp4(file: Path, page: Page, rate: int, encoder: str) -> Iterator[Callable[[Any], None]]:
+def _mp4(file: Path, page: Page, rate: int, ffmpeg: str) -> Iterator[Callable[[Any], None]]:
     width, height = page.width - page.width % 2, page.height - page.height % 2  # the coding takes even sizes only
     asked = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", str(rate), "-i", "-"]
     made = ["-pix_fmt", "yuv420p", "-movflags", "+faststart", str(file)]
     process = subprocess.Popen(
-        [encoder, "-y", "-loglevel", "error", *asked, *made], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL
+        [ffmpeg, "-y", "-loglevel", "error", *asked, *made], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL
     )
     pipe: Any = process.stdin
 
@@ -62,4 +81,4 @@ def _mp4(file: Path, page: Page, rate: int, encoder: str) -> Iterator[Callable[[
         pipe.close()
         process.wait()
     if process.returncode:
-        raise OSError(f"{encoder} could not write {file.name}")
+        raise OSError(f"{ffmpeg} could not write {file.name}")

@@ -1,16 +1,13 @@
-"""The page that a picture is drawn on: its size in pixels and what may be asked of it."""
+"""The page that a picture is drawn on: its size in pixels, and how it is drawn."""
 
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
 
 from meshwind.core.errors import BadInputError
 
 LEAST, MOST = 240, 8192
 """Fewest pixels of a side that words can be read on, most that graphics can be trusted to draw."""
 DESIGNED = 1600, 1200
-"""The size that all measures of the drawing code are told for; other pages scale them."""
+"""The size that all measures in the drawing code are for; other pages scale them."""
 
 
 @dataclass(frozen=True)
@@ -65,22 +62,9 @@ class Page:
         """Whether there is a scale bar."""
         return not self.perspective if self.scale_bar is None else self.scale_bar
 
-    @property
-    def told(self) -> dict[str, Any]:
-        """The page as arrays, for the process that draws."""
-        return {"page": np.array([self.width, self.height, self.transparent, self.perspective, self.ruled])}
-
-
-def page_of(scene: dict[str, Any]) -> Page:
-    """The page of a scene that came with `Page.told`, else the usual one."""
-    if "page" not in scene:
-        return Page()
-    width, height, transparent, perspective, ruled = (int(value) for value in scene["page"])
-    return Page(width, height, bool(transparent), bool(perspective), bool(ruled))
-
 
 def parse_size(text: str) -> tuple[int, int]:
-    """Width and height in pixels from words as in 1920x1080; raises BadInputError where they are none."""
+    """Width and height in pixels from text as in 1920x1080; raises BadInputError where it holds none."""
     sides = text.lower().replace("×", "x").split("x")
     if len(sides) != 2 or not all(side.strip().isdecimal() for side in sides):
         raise BadInputError(f"size is {text!r}; give width and height in pixels, as in 1920x1080")

@@ -6,36 +6,37 @@ import numpy as np
 import pyvista as pv
 
 from meshwind.appearance.colours import colour_map
-from meshwind.pictures import canvas, map_picture
-from meshwind.pictures.page import Page, page_of
+from meshwind.pictures import canvas
+from meshwind.pictures.page import Page
+from meshwind.pictures.scenes import RedesignScene
 
 _GAP, _HEAD = 24, 44
 """Pixels between the views, and above each for its name."""
 
 
-def draw(window: Any, scene: dict[str, Any]) -> Any:
+def draw(window: Any, scene: RedesignScene, page: Page) -> Any:
     """The two views from one side, with words."""
-    page = page_of(scene)
+    view, both = scene.frame.view, np.concatenate([scene.before, scene.after])
     image = canvas.blank(page)
-    pen = canvas.titled(image, page, scene)
-    boxes = halves(page, scene["extent"])
-    head = page.unit * _HEAD
-    scale = max(float(scene["extent"][k]) / (boxes[0][2 + k] - (0.0, head)[k]) for k in (0, 1))
+    pen = canvas.titled(image, page, scene.frame)
+    extent, head = (view.width, view.height), page.unit * _HEAD
+    boxes = halves(page, extent)
+    scale = max(extent[k] / (boxes[0][2 + k] - (0.0, head)[k]) for k in (0, 1))
     for box, name in zip(boxes, ("before", "after"), strict=True):
         left, top, width, height = box[0], box[1] + head, box[2], box[3] - head
         window.clear_actors()
-        add(window, scene, name)
-        canvas.aim(window, page, scene, scene["centre"], canvas.middle((left, top, width, height)), scale)
+        add(window, scene, name == "after")
+        canvas.aim(window, page, view, both, view.centre, canvas.middle((left, top, width, height)), scale)
         edges = round(left), round(top), round(left + width), round(top + height)
         image.paste(canvas.shot(window, page).crop(edges), edges[:2])
         pen.text(box[:2], name, canvas.INK, font=canvas.face(page, 25))
-    map_picture.bar(image, pen, scene)
-    canvas.ruler(pen, page, scale, str(scene["units"]))
-    canvas.axes(pen, page, scene)
+    canvas.scale_bar(image, pen, page, scene.scale)
+    canvas.ruler(pen, page, scale, scene.frame.units)
+    canvas.axes(pen, page, view)
     return image
 
 
-def halves(page: Page, extent: Any) -> list[canvas.Box]:
+def halves(page: Page, extent: tuple[float, float]) -> list[canvas.Box]:
     """Two boxes side by side or one above the other, as the part comes out larger."""
     left, top, width, height = canvas.room(page)
     gap, head = page.unit * _GAP, page.unit * _HEAD
@@ -45,12 +46,12 @@ def halves(page: Page, extent: Any) -> list[canvas.Box]:
     return max((beside, above), key=lambda boxes: min(boxes[0][2] / extent[0], (boxes[0][3] - head) / extent[1]))
 
 
-def add(window: Any, scene: dict[str, Any], name: str) -> None:
+def add(window: Any, scene: RedesignScene, after: bool) -> None:
     """The part before, plain, or after, coloured."""
-    part = pv.PolyData.from_regular_faces(scene[name], scene["faces"])
-    part.point_data["shares"] = np.asarray(scene["shares"])
+    part = pv.PolyData.from_regular_faces(scene.after if after else scene.before, scene.faces)
+    part.point_data["shares"] = np.asarray(scene.shares)
     look: dict[str, Any] = {"color": canvas.PART, "ambient": 0.3, "diffuse": 0.8}
-    if name == "after":
-        colours = colour_map(str(scene["colours"]))
+    if after:
+        colours = colour_map(scene.scale.colours)
         look = {"scalars": "shares", "cmap": colours, "clim": [0.0, 1.0], "ambient": 0.55, "diffuse": 0.5}
     window.add_mesh(part, show_scalar_bar=False, render=False, **look)

@@ -2,21 +2,23 @@
 
 from os import PathLike
 from pathlib import Path
-from typing import Any
 
 import igl
 import numpy as np
 
 from meshwind.appearance.looks import DIVERGING, Look, both_ways
-from meshwind.appearance.view import around, named_view, place_view
+from meshwind.appearance.view import around, merit_view, named_view
 from meshwind.appearance.words import quantity
 from meshwind.core.cast import Floats, Ints, floats, ints
 from meshwind.pictures import driver
 from meshwind.pictures.page import Page
+from meshwind.pictures.scenes import Drawing, Frame, RedesignScene
 from meshwind.results.reading import read_edited
 
 _MOVES = Look("displacement", "moved outward\n(red) or\ninward (blue)", "{u}", DIVERGING, both_ways)
 _EYES = 240
+_MOVED = 0.01
+"""Of the largest displacement: vertices that move by more count as moved."""
 
 
 def draw_redesign(
@@ -69,17 +71,18 @@ def draw_redesign(
     >>> mw.draw_redesign("moved.png", mesh.vertices, moves, mesh.faces, "elbow", page=mw.Page(400, 300))
     ''
     """
-    return driver.paint({Path(picture): redesign_scene(before, moves, faces, name, units)}, page)
+    scene = redesign_scene(before, moves, faces, name, units)
+    return driver.paint({Path(picture): Drawing(scene, page or Page())})
 
 
-def redesign_in(folder: Path, name: str, units: str = "", seen_from: str = "auto") -> dict[str, Any]:
+def redesign_in(folder: Path, name: str, units: str = "", seen_from: str = "auto") -> RedesignScene:
     """The scene of a redesign's folder; raises BadInputError where its edited mesh is none."""
     return redesign_scene(*read_edited(folder), name, units, seen_from)
 
 
 def redesign_scene(
     before: Floats, moves: Floats, faces: Ints, name: str, units: str = "", seen_from: str = "auto"
-) -> dict[str, Any]:
+) -> RedesignScene:
     """The mesh before and after, seen from where most of the change is in sight, coloured by its outward part."""
     vertices, moved = floats(before, "before", -1, 3), floats(moves, "moves", len(before), 3)
     corners = ints(faces, "faces", -1, 3)
@@ -90,22 +93,14 @@ def redesign_scene(
     eyes = around(_EYES)
     shown = np.maximum(eyes @ normals.T, 0.0) @ size
     merit = 2.0 * shown / max(float(shown.max()), 1e-300) - 1e-3 * eyes[:, 1]
-    both = np.concatenate([vertices, vertices + moved])
-    view = place_view(vertices, corners, eyes, merit) if seen_from == "auto" else named_view(both, seen_from)
-    changed = 100.0 * float((size > 0.01 * max(float(size.max()), 1e-300)).mean())
-    return {
-        "kind": "redesign",
-        "title": f"{name}: before and after the redesign",
-        "subtitle": f"vertices move by up to {quantity(float(size.max()), units, 3)}; {changed:.0f} % of them move",
-        "units": units,
-        "points": both,
-        "before": vertices,
-        "after": vertices + moved,
-        "faces": corners,
-        "shares": scale.shares(outward),
-        "right": view.right,
-        "up": view.up,
-        "eye": view.eye,
-        "centre": view.centre,
-        "extent": np.array([view.width, view.height]),
-    } | scale.told
+    after = vertices + moved
+    view = (
+        merit_view(vertices, corners, eyes, merit)
+        if seen_from == "auto"
+        else named_view(np.concatenate([vertices, after]), seen_from)
+    )
+    changed = 100.0 * float((size > _MOVED * max(float(size.max()), 1e-300)).mean())
+    title = f"{name}: before and after the redesign"
+    subtitle = f"vertices move by up to {quantity(float(size.max()), units, 3)}; {changed:.0f} % of them move"
+    frame = Frame(title, subtitle, units, view)
+    return RedesignScene(frame, scale, scale.shares(outward), vertices, after, corners)

@@ -1,29 +1,27 @@
 """Draw a results folder: all that is needed is in it."""
 
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
-from typing import Any
 
 from meshwind.appearance.view import NAMED
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import unit_told
 from meshwind.pictures import driver
 from meshwind.pictures.animation_scene import animation_scene
-from meshwind.pictures.encoder import encoder
-from meshwind.pictures.kinds import scenes_of
+from meshwind.pictures.gallery import placed, scenes_of, write_sheet
+from meshwind.pictures.movie import encoder
 from meshwind.pictures.page import Page
 from meshwind.pictures.redesign_scene import redesign_in
-from meshwind.pictures.sheet import cell, write_sheet
+from meshwind.pictures.scenes import AnimationScene, Drawing, Scene
 from meshwind.pictures.subject import Subject, subject_of
 from meshwind.results.folder import beside
 from meshwind.results.reading import is_redesign, read_report, read_results
 from meshwind.results.schema import MOVIES, PATHS, PICTURES, REDESIGN, SHEET, movie, picture
 
-Scenes = dict[str, dict[str, Any]]
-Tell = Callable[[str, int, int], None]
+PictureProgress = Callable[[str, int, int], None]
 """Called with what was drawn, how many pictures and frames are done, and how many there are."""
 
 
@@ -41,7 +39,7 @@ def render(
     animate: Sequence[str] = (),
     seconds: float = 5.0,
     out: str | PathLike[str] | None = None,
-    tell: Tell | None = None,
+    progress: PictureProgress | None = None,
 ) -> Rendered:
     """Draw pictures and movies of a results folder.
 
@@ -62,7 +60,7 @@ def render(
         How long the fibres take to be laid in a movie.
     out : str or PathLike, optional
         Folder for the files.  By default the folder itself.
-    tell : callable, optional
+    progress : callable, optional
         Called with the name of each picture, how many pictures and frames are done, and how many there are.
 
     Returns
@@ -85,7 +83,7 @@ def render(
     """
     paper = page or Page()
     _check(only, animate, paper)
-    mp4 = encoder() if "mp4" in animate else ""
+    ffmpeg = encoder() if "mp4" in animate else ""
     source, target = Path(folder), Path(folder if out is None else out)
     driver.start_probe()
     try:
@@ -95,12 +93,12 @@ def render(
         if lacking or (animate and of is None):
             raise BadInputError(f"{source} holds nothing to draw {(lacking or list(animate))[0]} from; leave it out")
         with beside(target) as staging, tempfile.TemporaryDirectory(dir=staging) as cells:
-            work = placed(scenes, only or (() if animate else (*scenes, SHEET)), paper, staging, Path(cells))
-            pictures = list(work)
+            drawings = placed(scenes, only or (() if animate else (*scenes, SHEET)), paper, staging, Path(cells))
+            pictures = list(drawings)
             if animate and of is not None:
-                files = [staging / movie(kind) for kind in dict.fromkeys(animate)]
-                work[files[0]] = animation_scene(of, seconds, files, mp4) | replace(paper, transparent=False).told
-            _paint(work, tell)
+                movies = [staging / movie(kind) for kind in dict.fromkeys(animate)]
+                drawings[movies[0]] = _animation(of, seconds, movies, ffmpeg, paper)
+            _paint(drawings, progress)
             if SHEET in only or not (only or animate):
                 write_sheet(staging / picture(SHEET), pictures, paper.transparent)
             names = sorted(path.name for path in staging.iterdir() if path.is_file())
@@ -109,24 +107,13 @@ def render(
     return Rendered(tuple(target / name for name in names))
 
 
-def placed(scenes: Scenes, names: Sequence[str], page: Page, out: Path, cells: Path) -> dict[Path, dict[str, Any]]:
-    """Where to draw each scene: those of the names into `out` and, for a sheet, all others into `cells`, small."""
-    work = {}
-    for name, scene in scenes.items():
-        if name in names:
-            work[out / picture(name)] = scene | page.told
-        elif SHEET in names:
-            work[cells / picture(name)] = scene | cell(page).told
-    return work
-
-
 def _check(only: Sequence[str], animate: Sequence[str], page: Page) -> None:
     views = "auto", *NAMED
     choices = ("picture", only, (*PICTURES, REDESIGN, SHEET)), ("movie", animate, MOVIES), ("view", [page.view], views)
     for what, names, known in choices:
-        strange = [name for name in names if name not in known]
-        if strange:
-            raise BadInputError(f"{what} {strange[0]!r} is not known; give {', '.join(known)}")
+        unknown = [name for name in names if name not in known]
+        if unknown:
+            raise BadInputError(f"{what} {unknown[0]!r} is not known; give {', '.join(known)}")
 
 
 def _subject(source: Path, page: Page) -> Subject | None:
@@ -136,16 +123,16 @@ def _subject(source: Path, page: Page) -> Subject | None:
     return subject_of(read_results(source), page.view)
 
 
-def _scenes(source: Path, of: Subject | None, page: Page) -> Scenes:
+def _scenes(source: Path, of: Subject | None, page: Page) -> dict[str, Scene]:
     scenes = {} if of is None else scenes_of(of)
     if is_redesign(source):
-        name, units = _called(source) if of is None else (of.name, of.units)
+        name, units = _part(source) if of is None else (of.name, of.units)
         scenes[REDESIGN] = redesign_in(source, name, units, page.view)
     return scenes
 
 
-def _called(source: Path) -> tuple[str, str]:
-    """Name and unit of the part that a redesign's report tells of, or the folder's name."""
+def _part(source: Path) -> tuple[str, str]:
+    """Name and unit of the part by a redesign's report, or the folder's name."""
     try:
         part = read_report(source)["mesh"]
         return str(part["name"]), unit_told(str(part["units"]))
@@ -153,16 +140,21 @@ def _called(source: Path) -> tuple[str, str]:
         return source.name, ""
 
 
-def _paint(work: dict[Path, dict[str, Any]], tell: Tell | None) -> None:
-    total = sum(int(scene.get("frames", 0)) + 1 for scene in work.values())
+def _animation(of: Subject, seconds: float, movies: list[Path], ffmpeg: str, page: Page) -> Drawing:
+    return Drawing(animation_scene(of, seconds, movies, ffmpeg), replace(page, transparent=False))
+
+
+def _paint(drawings: Mapping[Path, Drawing], progress: PictureProgress | None) -> None:
+    scenes = [drawing.scene for drawing in drawings.values()]
+    total = sum(1 + (scene.frames if isinstance(scene, AnimationScene) else 0) for scene in scenes)
     done = 0
 
     def count(word: str) -> None:
         nonlocal done
         done += 1
-        if tell is not None:
-            tell(word, done, total)
+        if progress is not None:
+            progress(word, done, total)
 
-    missing = driver.paint(work, tell=count)
+    missing = driver.paint(drawings, count)
     if missing:
         raise BadInputError(missing)

@@ -4,37 +4,37 @@ Says "ready" once the machine has proved that it can draw, then the name of each
 for each frame of a movie; without input it ends quietly.  Of meshwind it loads nothing but what draws.
 """
 
-import io
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pyvista as pv  # noqa: F401  (before the next line, so that nothing beside meshwind can shadow it)
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 from meshwind.pictures import (
-    animation,
+    animation_picture,
     canvas,
     crossings_picture,
     fit_picture,
     map_picture,
     quads_picture,
     redesign_picture,
+    scenes,
     slip_picture,
-    unrolled,
+    unrolled_picture,
     winding_picture,
 )
 
-DRAWN_BY = {
-    "winding": winding_picture.draw,
-    "fit": fit_picture.draw,
-    "map": map_picture.draw,
-    "slip": slip_picture.draw,
-    "crossings": crossings_picture.draw,
-    "quads": quads_picture.draw,
-    "unrolled": unrolled.draw,
-    "redesign": redesign_picture.draw,
+DRAWN_BY: dict[type, Callable[..., Any]] = {
+    scenes.WindingScene: winding_picture.draw,
+    scenes.FitScene: fit_picture.draw,
+    scenes.MapScene: map_picture.draw,
+    scenes.SlipScene: slip_picture.draw,
+    scenes.CrossingsScene: crossings_picture.draw,
+    scenes.QuadsScene: quads_picture.draw,
+    scenes.UnrolledScene: unrolled_picture.draw,
+    scenes.RedesignScene: redesign_picture.draw,
 }
 FRAME = "frame"
 
@@ -43,30 +43,19 @@ def main() -> None:
     """Prove that the machine draws, read scenes, draw them."""
     window = canvas.plotter()
     say("ready")
-    for scene in scenes(sys.stdin.buffer.read()):
+    for file, drawing in scenes.unpack(sys.stdin.buffer.read()):
         window.clear_actors()
-        if str(scene["kind"]) == "animation":
-            animation.draw(window, scene, lambda: say(FRAME))
+        if isinstance(drawing.scene, scenes.AnimationScene):
+            animation_picture.draw(window, drawing.scene, drawing.page, lambda: say(FRAME))
         else:
-            image = DRAWN_BY[str(scene["kind"])](window, scene)
-            image.save(str(scene["picture"]), compress_level=1)
-        say(Path(str(scene["picture"])).name)
+            image = DRAWN_BY[type(drawing.scene)](window, drawing.scene, drawing.page)
+            image.save(str(file), compress_level=1)
+        say(file.name)
     window.close()
 
 
-def scenes(packed: bytes) -> list[dict[str, Any]]:
-    """The scenes of an .npz whose arrays are named 0/title, 0/points, ..., 1/title, ..."""
-    found: dict[str, dict[str, Any]] = {}
-    if packed:
-        with np.load(io.BytesIO(packed)) as arrays:
-            for name, array in arrays.items():
-                number, key = name.split("/")
-                found.setdefault(number, {})[key] = array
-    return list(found.values())
-
-
 def say(word: str) -> None:
-    """Tell the process that waits."""
+    """Send a word to the process that waits."""
     sys.stdout.write(f"{word}\n")
     sys.stdout.flush()
 

@@ -14,6 +14,7 @@ from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.layup.layup import Layup
 from meshwind.path.lengths import lengths
 from meshwind.path.paths import Paths, Status
+from meshwind.pictures.scenes import Frame, Part
 from meshwind.results.figures import PathFigures, path_figures
 from meshwind.results.reading import Results, read_surface_grid
 from meshwind.results.schema import NORMAL
@@ -27,7 +28,8 @@ _MOST_POINTS, _FEWEST_POINTS, _ALL_POINTS = 250, 40, 60_000
 class Subject:
     """A layup and its surface as outward quads (q, 4) between points (k, 3) with normals (k, 3) and maps (k,).
 
-    name and units of the part for titles and legends; revolutions: what was asked for, None if that is not known.
+    name and units of the part for titles and legends; revolutions: as given, None if that is not known; seen_from:
+    "auto", the name of a side, or a view.
     """
 
     layup: Layup
@@ -46,8 +48,8 @@ class Subject:
         return self.layup.paths
 
     @property
-    def taut(self) -> Bools:
-        """Which paths (p,) came to rest."""
+    def converged(self) -> Bools:
+        """Which paths (p,) converged."""
         return np.asarray(self.paths.status == Status.CONVERGED)
 
     @cached_property
@@ -57,7 +59,7 @@ class Subject:
 
     @cached_property
     def view(self) -> View:
-        """Square onto the long side that shows most of the part, its bend and its bridges, or the side asked for."""
+        """Square onto the long side that shows most of the part, its bend and its bridges, or the given side."""
         paths = self.paths
         if isinstance(self.seen_from, View):
             return self.seen_from
@@ -87,24 +89,14 @@ class Subject:
         each = lengths(self.paths).polyline_length.sum() / len(np.unique(self.paths.family))
         return float(self.layup.coverage.area.sum() / max(each, 1e-300))
 
-    def framed(self, kind: str, title: str, subtitle: str) -> dict[str, Any]:
-        """What every scene of the part holds: words, surface, view."""
-        view = self.view
-        return {
-            "kind": kind,
-            "title": title,
-            "subtitle": subtitle,
-            "units": self.units,
-            "points": self.points,
-            "quads": self.quads,
-            "normals": self.normals,
-            "pitch": self.pitch,
-            "right": view.right,
-            "up": view.up,
-            "eye": view.eye,
-            "centre": view.centre,
-            "extent": np.array([view.width, view.height]),
-        }
+    @cached_property
+    def part(self) -> Part:
+        """The surface, with the fibres' pitch."""
+        return Part(self.points, self.quads, self.normals, self.pitch)
+
+    def frame(self, title: str, subtitle: str) -> Frame:
+        """The words and the view."""
+        return Frame(title, subtitle, self.units, self.view)
 
 
 def subject(
@@ -129,10 +121,10 @@ def subject_in(
 
     trusted: this very process has written the file.
     """
-    skin = read_surface_grid(folder, layup.paths.surface, trusted)
-    maps = dict(skin.point_data)
+    read = read_surface_grid(folder, layup.paths.surface, trusted)
+    maps = dict(read.point_data)
     normals = maps.pop(NORMAL)
-    return Subject(layup, skin.points, skin.quads, normals, name, units, revolutions, maps, seen_from)
+    return Subject(layup, read.points, read.quads, normals, name, units, revolutions, maps, seen_from)
 
 
 def subject_of(results: Results, seen_from: str = "auto") -> Subject:

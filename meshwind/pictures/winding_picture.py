@@ -7,55 +7,53 @@ import numpy as np
 from meshwind.appearance.colours import colour_map
 from meshwind.appearance.looks import round_below
 from meshwind.pictures import bodies, canvas
-from meshwind.pictures.page import page_of
+from meshwind.pictures.page import Page
+from meshwind.pictures.scenes import Fibres, WindingScene
 
 GAPS = colour_map("gap")
 
 
-def draw(window: Any, scene: dict[str, Any]) -> Any:
+def draw(window: Any, scene: WindingScene, page: Page) -> Any:
     """The picture of the part and its fibres, with words."""
-    page = page_of(scene)
-    scale = canvas.fitting(page, scene)
-    thick = bodies.radius(scene, scale, page.unit)
-    bodies.add_part(window, scene)
-    bodies.add_fibres(window, scene, thick)
+    scale = canvas.fitting(page, scene.frame.view)
+    thick = bodies.radius(scene.part, scale, page.unit)
+    bodies.add_part(window, scene.part)
+    bodies.add_fibres(window, scene.fibres, thick)
     add_bridges(window, scene, thick)
-    canvas.aim(window, page, scene, scene["centre"], canvas.middle(canvas.room(page)), scale)
-    image = canvas.shot(window, page)
-    return lettered(image, scene, scale)
+    return lettered(canvas.portrait(window, page, scene.frame.view, scene.part.points), scene, page)
 
 
-def lettered(image: Any, scene: dict[str, Any], scale: float) -> Any:
+def lettered(image: Any, scene: WindingScene, page: Page) -> Any:
     """The image with its title, legend, scale of gaps, ruler and axes."""
-    page = page_of(scene)
-    pen = canvas.titled(image, page, scene)
-    canvas.legend(pen, page, families(scene))
-    units = str(scene["units"])
-    if len(scene["bridges"]):
-        words = ["bridges:", f"gap in {units}" if units else "gap"]
-        canvas.colour_bar(image, pen, page, GAPS, words, marks(scene["max_gap"]))
-    canvas.ruler(pen, page, scale, units)
-    canvas.axes(pen, page, scene)
+    frame = scene.frame
+    pen = canvas.titled(image, page, frame)
+    canvas.legend(pen, page, families(scene.fibres))
+    if len(scene.bridges.points):
+        words = ["bridges:", f"gap in {frame.units}" if frame.units else "gap"]
+        canvas.colour_bar(image, pen, page, GAPS, words, marks(scene.max_gap))
+    canvas.ruler(pen, page, canvas.fitting(page, frame.view), frame.units)
+    canvas.axes(pen, page, frame.view)
     return image
 
 
-def families(scene: dict[str, Any]) -> list[tuple[str, str]]:
+def families(fibres: Fibres) -> list[tuple[str, str]]:
     """Which colour is which family, for the legend."""
     rows = [(bodies.FAMILY[name], words) for name, words in bodies.NAMES.items()]
-    return rows if scene["taut"].all() else [*rows, (bodies.LOOSE, "not at rest")]
+    return rows if fibres.converged.all() else [*rows, (bodies.LOOSE, "not at rest")]
 
 
-def add_bridges(window: Any, scene: dict[str, Any], thick: float) -> None:
+def add_bridges(window: Any, scene: WindingScene, thick: float) -> None:
     """The spans off the surface, thicker and coloured by their gap."""
-    if not len(scene["bridges"]):
+    bridges = scene.bridges
+    if not len(bridges.points):
         return
-    lines = bodies.polylines(scene["bridges"] + thick * scene["bridge_lift"], scene["bridge_sizes"])
-    lines.point_data["gap"] = scene["bridge_gap"]
-    bodies.add_coloured_tubes(window, lines, 1.4 * thick, "gap", GAPS, float(scene["max_gap"]))
+    lines = bodies.polylines(bridges.points + thick * bridges.lift, bridges.sizes)
+    lines.point_data["gap"] = bridges.gap
+    bodies.add_coloured_tubes(window, lines, 1.4 * thick, "gap", GAPS, scene.max_gap)
 
 
 def marks(most: float) -> list[tuple[float, str]]:
     """Round values from 0 to most: their share of it, and their words."""
-    step = round_below(float(most) / 3.0)
+    step = round_below(most / 3.0)
     values = step * np.arange(int(most / step * (1.0 + 1e-9)) + 1)
     return [(float(value / most), f"{value:.4g}") for value in values]

@@ -1,6 +1,4 @@
-"""What is to be seen on winding.png, gathered as arrays for the process that draws it."""
-
-from typing import Any
+"""What is to be seen on winding.png."""
 
 import numpy as np
 
@@ -8,25 +6,22 @@ from meshwind.appearance.words import quantity
 from meshwind.core.cast import Floats, Ints
 from meshwind.path.lengths import Bridges, bridges, lengths
 from meshwind.path.paths import Paths
+from meshwind.pictures.scenes import BridgeLines, Fibres, WindingScene
 from meshwind.pictures.subject import Subject
 
 
-def winding_scene(of: Subject) -> dict[str, Any]:
+def winding_scene(of: Subject) -> WindingScene:
     """The part, the fibres, the bridges, the view and the words."""
     turns = f"{_turns(of):.4g}"
     title = f"{of.name}: {_families(of.paths)} fibres, {turns} revolution{'s' * (turns != '1')}"
-    seen = of.framed("winding", title, _subtitle(of))
-    return seen | {"max_gap": of.figures.max_gap} | fibres(of) | _bridges(of)
+    frame = of.frame(title, _subtitle(of))
+    return WindingScene(frame, of.part, fibres(of), _bridge_lines(of), of.figures.max_gap)
 
 
-def fibres(of: Subject) -> dict[str, Any]:
-    """The fibres as points (p, n, 3) and where to lift them (p, n, 3), in radii of the tube; which are at rest."""
-    return {
-        "paths": of.paths.points[:, of.kept],
-        "path_lift": lifts(of.paths)[:, of.kept],
-        "family": of.paths.family,
-        "taut": of.taut,
-    }
+def fibres(of: Subject) -> Fibres:
+    """The fibres by those of their particles that are drawn."""
+    kept = of.kept
+    return Fibres(of.paths.points[:, kept], lifts(of.paths)[:, kept], of.paths.family, of.converged)
 
 
 def lifts(paths: Paths) -> Floats:
@@ -55,7 +50,7 @@ def _inside(paths: Paths, spans: Bridges) -> tuple[Ints, Ints, Floats]:
     return row, column, (arc[row, column] - start) / np.repeat(spans.length, size)
 
 
-def _bridges(of: Subject) -> dict[str, Any]:
+def _bridge_lines(of: Subject) -> BridgeLines:
     """The bridges as polylines one after the other: every stride-th point and both ends."""
     paths, spans = of.paths, of.figures.spans
     row, column, _ = _inside(paths, spans)
@@ -65,14 +60,8 @@ def _bridges(of: Subject) -> dict[str, Any]:
     keep = (step % of.stride == 0) | (step == np.repeat(size - 1, size))
     sizes = np.add.reduceat(keep.astype(np.int64), begin) if len(begin) else begin
     row, column = row[keep], column[keep]
-    return {
-        "bridges": paths.points[row, column],
-        "bridge_lift": lifts(paths)[row, column],
-        "bridge_gap": paths.gap[row, column],
-        "bridge_path": row,
-        "bridge_particle": column,
-        "bridge_sizes": sizes,
-    }
+    lift = lifts(paths)[row, column]
+    return BridgeLines(paths.points[row, column], lift, paths.gap[row, column], row, column, sizes)
 
 
 def _families(paths: Paths) -> str:
@@ -80,7 +69,7 @@ def _families(paths: Paths) -> str:
 
 
 def _turns(of: Subject) -> float:
-    """Turns asked for; without them the paths' mean, which bent rims shift a little."""
+    """The given revolutions; without them the paths' mean, which bent rims shift a little."""
     mean = float(np.abs(of.paths.uv[:, -1, 0] - of.paths.uv[:, 0, 0]).mean())
     return mean if of.revolutions is None else of.revolutions
 
@@ -88,13 +77,9 @@ def _turns(of: Subject) -> float:
 def _subtitle(of: Subject) -> str:
     """The report's figures in a line."""
     figures, paths = of.figures, of.paths
-    bridged = f"bridged {100.0 * figures.bridged_share:.1f} %" if len(figures.spans) else "no bridges"
-    parts = [
-        f"fibre length {quantity(figures.fibre_length, of.units)}",
-        bridged,
-        f"{len(of.layup.crossings)} crossings",
-    ]
+    length = f"fibre length {quantity(figures.fibre_length, of.units)}"
     if figures.converged < len(paths):
         whose = "these" if figures.converged else "all"
-        parts[0] = f"{figures.converged} of {len(paths)} at rest; {whose}: {parts[0]}"
-    return "  ·  ".join(parts)
+        length = f"{figures.converged} of {len(paths)} at rest; {whose}: {length}"
+    bridged = f"bridged {100.0 * figures.bridged_share:.1f} %" if len(figures.spans) else "no bridges"
+    return "  ·  ".join([length, bridged, f"{len(of.layup.crossings)} crossings"])

@@ -3,15 +3,14 @@
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
-from typing import Any
 
 from meshwind.core.version import version
 from meshwind.editing.redesign import Redesign
 from meshwind.editing.report import redesign_report
 from meshwind.layup.layup import assess
 from meshwind.pictures import driver
-from meshwind.pictures.page import Page
 from meshwind.pictures.redesign_scene import redesign_scene
+from meshwind.pictures.scenes import Drawing
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.results import folder
@@ -84,7 +83,7 @@ def write_redesign(
             write_edited(staging, edited.mesh, edited.displacement, units)
         if render:
             with clock.stage("render"):
-                missing = driver.paint(_pictures(staging, edited, units), Page())
+                missing = driver.paint(_pictures(staging, edited, units))
             notes += [str(Note(missing, warning=True))] if missing else []
         spent = dict(seconds or {}) | clock.seconds
         report = redesign_report(edited, command=command, units=units, seconds=spent, notes=notes)
@@ -94,12 +93,13 @@ def write_redesign(
     return report
 
 
-def _pictures(out: Path, edited: Redesign, units: str) -> dict[Path, dict[str, Any]]:
+def _pictures(out: Path, edited: Redesign, units: str) -> dict[Path, Drawing]:
     part, name, turns = edited.part, edited.part.name, edited.revolutions
     before = subject(assess(edited.before.paths), f"{name}, as it was", units, turns)
     after = subject(assess(edited.after.paths), f"{name}, edited", units, turns, before.view)
+    moved = redesign_scene(part.vertices, edited.displacement, part.faces, name, units)
     return {
-        out / BEFORE: winding_scene(before),
-        out / AFTER: winding_scene(after),
-        out / picture(REDESIGN): redesign_scene(part.vertices, edited.displacement, part.faces, name, units),
+        out / BEFORE: Drawing(winding_scene(before)),
+        out / AFTER: Drawing(winding_scene(after)),
+        out / picture(REDESIGN): Drawing(moved),
     }

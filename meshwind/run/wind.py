@@ -11,11 +11,10 @@ from meshwind.mesh import Mesh
 from meshwind.path import Paths, Status
 from meshwind.pictures import driver
 from meshwind.pictures.fit_scene import fit_scene
-from meshwind.pictures.kinds import scenes_of
+from meshwind.pictures.gallery import placed, scenes_of, write_sheet
 from meshwind.pictures.page import Page
-from meshwind.pictures.render import placed
 from meshwind.pictures.revolutions_picture import draw_revolutions
-from meshwind.pictures.sheet import write_sheet
+from meshwind.pictures.scenes import Drawing
 from meshwind.pictures.subject import subject_in
 from meshwind.results import folder
 from meshwind.results.config_file import write_config
@@ -317,7 +316,7 @@ def _draw(result: Result, out: Path) -> str:
         pictures = placed(scenes_of(of), (WINDING, SHEET), Page(), out, Path(cells))
         work = dict(pictures)
         if any(note.picture == FIT_PICTURE for note in result.notes):
-            work[out / FIT_PICTURE] = fit_scene(result.surface, result.chart.annulus, name, units)
+            work[out / FIT_PICTURE] = Drawing(fit_scene(result.surface, result.chart.annulus, name, units))
         missing = driver.paint(work)
         if not missing:
             write_sheet(out / picture(SHEET), list(pictures))

@@ -1,4 +1,4 @@
-"""unrolled.png: the chart as an image, a pixel's colour being its place in space, with the fibres on it."""
+"""unrolled.png: the chart as an image, a pixel's colour being its position in space, with the fibres on it."""
 
 from typing import Any
 
@@ -7,18 +7,20 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
+from meshwind.core.cast import Floats
 from meshwind.pictures import bodies, canvas
-from meshwind.pictures.page import page_of
+from meshwind.pictures.page import Page
+from meshwind.pictures.scenes import UnrolledScene
 
+_BRIDGING = "#b0127b"
 _PALE = 0.55
 """How far the image is led towards white, so that the fibres stand out."""
 _DPI = 100.0
 
 
-def draw(window: Any, scene: dict[str, Any]) -> Any:
+def draw(window: Any, scene: UnrolledScene, page: Page) -> Any:
     """The picture of the chart; the window is not needed."""
     del window
-    page = page_of(scene)
     s = page.unit
     figure = Figure(figsize=(page.width / _DPI, page.height / _DPI), dpi=_DPI, facecolor="none")
     agg = FigureCanvasAgg(figure)
@@ -32,30 +34,30 @@ def draw(window: Any, scene: dict[str, Any]) -> Any:
     drawn = Image.fromarray(np.asarray(agg.buffer_rgba()))
     image = canvas.blank(page)
     image.paste(drawn, (0, 0), drawn) if not page.transparent else image.alpha_composite(drawn)
-    pen = canvas.titled(image, page, scene)
+    pen = canvas.titled(image, page, scene.frame)
     rows = [(bodies.FAMILY[name], words) for name, words in bodies.NAMES.items()]
-    rows += [("#b0127b", "bridging")] if scene["bridging"].any() else []
-    canvas.legend(pen, page, rows if scene["taut"].all() else [*rows, (bodies.LOOSE, "not at rest")])
+    rows += [(_BRIDGING, "bridging")] if scene.bridging.any() else []
+    canvas.legend(pen, page, rows if scene.converged.all() else [*rows, (bodies.LOOSE, "not at rest")])
     return image
 
 
-def _fill(axes: Any, scene: dict[str, Any], s: float, width: float) -> None:
+def _fill(axes: Any, scene: UnrolledScene, s: float, width: float) -> None:
     """The image, the fibres, the words of the axes."""
-    thick = min(1.6 * s, 0.16 * width / len(scene["uv"]))
-    axes.imshow(_PALE + (1.0 - _PALE) * scene["image"], extent=(0.0, 1.0, 0.0, 1.0), origin="lower", aspect="auto")
-    for path, (uv, family) in enumerate(zip(scene["uv"], scene["family"], strict=True)):
-        colour = bodies.FAMILY[int(family)] if scene["taut"][path] else bodies.LOOSE
+    thick = min(1.6 * s, 0.16 * width / len(scene.uv))
+    axes.imshow(_PALE + (1.0 - _PALE) * scene.image, extent=(0.0, 1.0, 0.0, 1.0), origin="lower", aspect="auto")
+    for path, (uv, family) in enumerate(zip(scene.uv, scene.family, strict=True)):
+        colour = bodies.FAMILY[int(family)] if scene.converged[path] else bodies.LOOSE
         axes.plot(*_wrapped(uv), color=colour, linewidth=thick)
-        off = np.where(scene["bridging"][path][:, None], uv, np.nan)
-        if scene["bridging"][path].any():
-            axes.plot(*_wrapped(off), color="#b0127b", linewidth=1.8 * thick)
+        off = np.where(scene.bridging[path][:, None], uv, np.nan)
+        if scene.bridging[path].any():
+            axes.plot(*_wrapped(off), color=_BRIDGING, linewidth=1.8 * thick)
     axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
     axes.set_xlabel("u: turns around the part", fontsize=18 * s, color=canvas.INK)
     axes.set_ylabel("v: from end to end", fontsize=18 * s, color=canvas.INK)
     axes.tick_params(labelsize=15 * s, length=6 * s, width=s, colors=canvas.INK)
 
 
-def _wrapped(uv: Any) -> tuple[Any, Any]:
+def _wrapped(uv: Floats) -> tuple[Floats, Floats]:
     """A path (n, 2) whose u is unwrapped, drawn in [0, 1]: broken where it leaves one side and enters the other."""
     turn = np.floor(uv[:, 0])
     parts = []

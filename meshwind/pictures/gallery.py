@@ -1,0 +1,70 @@
+"""All pictures of a winding by name, where each is drawn, and the sheet that shows them on one page."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from PIL import Image
+
+from meshwind.pictures.layup_scenes import crossings_scene, quads_scene, slip_scene, unrolled_scene
+from meshwind.pictures.map_scene import coverage_scene, fit_map_scene, windability_scene
+from meshwind.pictures.page import LEAST, Page
+from meshwind.pictures.scenes import Drawing, Scene
+from meshwind.pictures.subject import Subject
+from meshwind.pictures.winding_scene import winding_scene
+from meshwind.results.schema import FIT, FIT_ERROR, PICTURES, SHEET, picture
+
+CELL = 800, 600
+"""Pixels of a picture on the sheet, at most."""
+_SCENES: tuple[Callable[[Subject], Scene], ...] = (
+    winding_scene, crossings_scene, coverage_scene, windability_scene, slip_scene, fit_map_scene, unrolled_scene,
+    quads_scene,
+)  # fmt: skip
+"""In the order of PICTURES."""
+
+
+def scenes_of(of: Subject) -> dict[str, Scene]:
+    """All pictures that there are of a winding; without its fit error the surface has no picture of that."""
+    named = zip(PICTURES, _SCENES, strict=True)
+    return {name: make(of) for name, make in named if name != FIT or FIT_ERROR in of.maps}
+
+
+def placed(
+    scenes: Mapping[str, Scene], names: Sequence[str], page: Page, out: Path, cells: Path
+) -> dict[Path, Drawing]:
+    """Drawings of scenes by file: those of the names in `out` and, for a sheet, all others in `cells`, small."""
+    drawings = {}
+    for name, scene in scenes.items():
+        if name in names:
+            drawings[out / picture(name)] = Drawing(scene, page)
+        elif SHEET in names:
+            drawings[cells / picture(name)] = Drawing(scene, cell(page))
+    return drawings
+
+
+def cell(page: Page) -> Page:
+    """The page for a picture that is drawn for the sheet alone: of the same shape, but no larger than need be."""
+    share = min(CELL[0] / page.width, CELL[1] / page.height, 1.0)
+    share = max(share, LEAST / min(page.width, page.height))
+    return replace(page, width=round(share * page.width), height=round(share * page.height))
+
+
+def write_sheet(sheet: Path, pictures: Sequence[Path], transparent: bool = False) -> None:
+    """Lay pictures of one shape out on a sheet, in their order, row by row."""
+    columns, rows = layout(len(pictures))
+    images = []
+    for file in pictures:
+        with Image.open(file) as opened:
+            opened.thumbnail(CELL, Image.Resampling.LANCZOS)
+            images.append(opened.convert("RGBA" if transparent else "RGB"))
+    width, height = (max(image.size[k] for image in images) for k in (0, 1))
+    page = Image.new(images[0].mode, (columns * width, rows * height), "#ffffff00" if transparent else "#ffffff")
+    for k, image in enumerate(images):
+        page.paste(image, (k % columns * width, k // columns * height))
+    page.save(sheet, compress_level=1)
+
+
+def layout(count: int) -> tuple[int, int]:
+    """Columns and rows for so many pictures: few blanks first, then about as many columns as rows."""
+    choices = [(columns, -(-count // columns)) for columns in range(1, count + 1) if columns <= 4]
+    return min(choices, key=lambda shape: (shape[0] * shape[1] - count) + 1.5 * abs(shape[0] - shape[1]))
