@@ -1,6 +1,7 @@
 """The README tells of every file, field, code and option, and its figures hold."""
 
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -9,8 +10,10 @@ import numpy as np
 import pytest
 import pyvista as pv
 from layup_shapes import bridged
+from typer.main import get_command
 
 import meshwind as mw
+from meshwind.cli.main import app
 from meshwind.core.option import options_of
 from meshwind.layup.layup import assess
 from meshwind.mesh.geometry.mesh import Mesh
@@ -59,6 +62,21 @@ def test_every_status_is_told() -> None:
 
 def test_every_file_is_told() -> None:
     assert {name for cells in rows("file") for name in re.findall(r"`([\w.]+)`", cells[0])} == RESULTS
+
+
+def test_commands_run_as_they_stand(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Their options are known and the meshes that they name are there."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "vase-wound").mkdir()
+    (tmp_path / "vase-wound" / "meshwind.toml").write_text('mesh = "vase.stl"\n')  # as the first command leaves it
+    blocks = re.findall(r"```sh\n(.*?)```", README, re.DOTALL)
+    lines = [line for block in blocks for line in block.splitlines() if line.startswith("meshwind ")]
+    assert len(lines) >= 10
+    for line in lines:
+        name, *arguments = shlex.split(line, comments=True)[1:]
+        get_command(app).commands[name].make_context(name, list(arguments))  # type: ignore[attr-defined]
+        for word in arguments:
+            assert not word.startswith("data/") or (ROOT / word).is_file()
 
 
 def test_every_option_is_told() -> None:
