@@ -1,17 +1,22 @@
-"""Exact synthetic layups: shapes of revolution as splines, with paths that are drawn rather than solved."""
+"""Layups to test with: shapes of revolution as splines with paths that are drawn, and windings that are solved."""
 
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import BSpline
 
+import meshwind as mw
 from meshwind.core.cast import Floats, frozen
 from meshwind.path.paths import Counters, Paths
+from meshwind.path.solve import solve
+from meshwind.planning.families import families
 from meshwind.surface.surface import Surface
 
 HEIGHT = 4.0
+DATA = Path(__file__).parents[1] / "data"
 
 
 def collocation(count: int, sites: Floats, periodic: bool) -> Floats:
@@ -112,3 +117,15 @@ def bridged(count: int = 16, revolutions: float = 0.25, particles: int = 201) ->
         on.holding_turns,
         on.holding_friction,
     )
+
+
+def wound(surface: Surface, paths: int, turns: float, particles: int = 145) -> Paths:
+    """Both families, `paths` each, wound by `turns` revolutions."""
+    rims = families(surface, paths, turns)
+    return solve(surface, rims.start, rims.end, particles=particles, family=rims.family)
+
+
+@cache
+def fitted(name: str) -> Surface:
+    """The surface of a part in data/."""
+    return mw.fit(mw.flatten(mw.annulus(mw.read(DATA / name))))

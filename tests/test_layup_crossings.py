@@ -7,7 +7,7 @@ import pytest
 from layup_shapes import HEIGHT, bridged, cylinder, drawn, helices, straight_uv
 
 from meshwind.core.cast import Floats
-from meshwind.layup.crossings import counts, crossings, own_crossings
+from meshwind.layup.crossings import cell_sides, counts, crossings, own_crossings
 from meshwind.path.paths import Paths
 from meshwind.surface import shapes
 
@@ -215,3 +215,15 @@ def test_cost_grows_with_crossings_not_with_pairs() -> None:
         return float(best)
 
     assert seconds(1600) < 9.0 * seconds(400) + 0.05
+
+
+@pytest.mark.parametrize(("count", "turns"), [(8, 1.0), (5, 1.3)])
+def test_sides_of_the_cells_of_helices(count: int, turns: float) -> None:
+    paths = helices(count, turns, 401, CYLINDER)
+    sides = cell_sides(paths, crossings(paths))
+    # a path crosses the other family every 1 / (2 R N) of its length
+    whole = np.hypot(2.0 * np.pi * turns, HEIGHT)
+    assert sides.d1 == pytest.approx(np.full(len(sides.d1), whole / (2 * turns * count)), rel=1e-3)
+    assert sides.d2 == pytest.approx(np.full(len(sides.d2), whole / (2 * turns * count)), rel=1e-3)
+    met = len(crossings(paths))
+    assert len(sides.d1) == met - count

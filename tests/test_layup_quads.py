@@ -1,15 +1,15 @@
-"""The quad mesh: an oriented manifold annulus, whatever the pattern."""
+"""The quad mesh: an oriented manifold annulus for every pattern; quality of quads against closed forms."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from layup_shapes import bridged, cylinder, drawn, helices, straight_uv
+from layup_shapes import HEIGHT, bridged, cylinder, drawn, fitted, helices, straight_uv, wound
 
 from meshwind.core.cast import Ints, frozen
 from meshwind.layup.crossings import crossings
 from meshwind.layup.layup import assess
-from meshwind.layup.quads import QuadMesh, edge_counts, quads
+from meshwind.layup.quads import QuadMesh, edge_counts, quad_quality, quads
 from meshwind.path.paths import Paths, Status
 
 CYLINDER = cylinder()
@@ -87,14 +87,14 @@ def test_bridges_are_marked() -> None:
     assert np.array_equal(mesh.on_surface, ~lifted)
 
 
-def test_no_crossing_is_said() -> None:
+def test_no_crossing_is_noted() -> None:
     mesh = meshed(helices(8, 0.0, 31, CYLINDER))
     assert len(mesh.quads) == len(mesh.triangles) == 0
     assert "more revolutions" in mesh.note
 
 
 @pytest.mark.parametrize("count", [1, 2])
-def test_too_few_paths_are_said(count: int) -> None:
+def test_too_few_paths_are_noted(count: int) -> None:
     mesh = meshed(helices(count, 1.0, 21, CYLINDER))
     assert len(mesh.quads) == len(mesh.triangles) == 0
     assert "more paths" in mesh.note
@@ -125,7 +125,7 @@ def test_a_path_that_runs_along_a_rim_is_left_out() -> None:
     check_annulus(mesh)
 
 
-def test_families_that_all_slide_along_a_rim_are_told() -> None:
+def test_families_that_all_slide_along_a_rim_are_noted() -> None:
     uv, family = straight_uv(8, 1.0, 201)
     uv[..., 1] = np.clip(2.0 * uv[..., 1] - 1.0, 0.0, 1.0)
     mesh = meshed(drawn(CYLINDER, uv, family))
@@ -169,3 +169,60 @@ def test_layup_meshes_the_converged_paths() -> None:
     check_annulus(result.quads)
     status[:6] = Status.STALLED
     assert len(assess(replace(paths, status=frozen(status))).crossings) == 120
+
+
+def one(*corners: tuple[float, float, float]) -> QuadMesh:
+    points = np.array(corners, dtype=np.float64)
+    uv = np.full((4, 2), 0.5)
+    none = np.zeros((0, 3), dtype=np.int64)
+    return QuadMesh(frozen(points), frozen(uv), np.array([[0, 1, 2, 3]]), none, np.ones(4, dtype=bool))
+
+
+def test_a_rectangle() -> None:
+    found = quad_quality(one((0, 0, 0), (3, 0, 0), (3, 1, 0), (0, 1, 0)))
+    assert (found.jacobian[0], found.aspect[0], found.warp[0]) == pytest.approx((1.0, 3.0, 0.0))
+    assert found.convex_share == 1.0
+
+
+@pytest.mark.parametrize("angle", [10.0, 45.0, 90.0, 135.0])
+def test_a_rhomb_has_the_sine_of_its_angle(angle: float) -> None:
+    a = np.radians(angle)
+    x, y = np.cos(a), np.sin(a)
+    found = quad_quality(one((0, 0, 0), (1, 0, 0), (1 + x, y, 0), (x, y, 0)))
+    assert (found.jacobian[0], found.aspect[0]) == pytest.approx((np.sin(a), 1.0))
+
+
+def test_a_dart_is_not_convex_and_a_crossed_quad_neither() -> None:
+    for corners in (((0, 0, 0), (2, -1, 0), (0.5, 0, 0), (2, 1, 0)), ((0, 0, 0), (2, 0, 0), (0, 1, 0), (2, 1, 0))):
+        found = quad_quality(one(*corners))
+        assert not found.convex[0]
+        assert found.jacobian[0] <= 0.0
+        assert found.convex_share == 0.0
+
+
+def test_warp_is_the_distance_of_the_diagonals() -> None:
+    found = quad_quality(one((0, 0, 0), (1, 0, 0.2), (1, 1, 0), (0, 1, 0.2)))
+    assert found.warp[0] == pytest.approx(0.2 / np.hypot(1.0, 0.2))
+
+
+def test_quads_of_helices_are_rhombs_of_the_crossing_angle() -> None:
+    mesh = assess(helices(48, 1.0, 401, cylinder())).quads
+    found = quad_quality(mesh)
+    between = 2.0 * np.arctan2(2.0 * np.pi, HEIGHT)
+    assert found.jacobian == pytest.approx(np.full(len(mesh.quads), np.sin(between)), rel=0.01)
+    assert found.aspect == pytest.approx(np.ones(len(mesh.quads)), rel=1e-3)
+    assert found.convex_share == 1.0
+    assert found.inner.all()  # at the rims there are triangles
+
+
+@pytest.mark.parametrize(("name", "turns"), [("vase.stl", 1.3), ("cast.ply", 2.06), ("bottle.obj", 0.5),
+                                             ("wing.stl", 0.54), ("elbow.obj", 1.0), ("tank.ply", 0.6)])  # fmt: skip
+def test_inner_quads_of_the_parts_are_convex(name: str, turns: float) -> None:
+    layup = assess(wound(fitted(name), 16, turns, 201))
+    mesh, found = layup.quads, quad_quality(layup.quads)
+    assert len(mesh.quads) >= 0.8 * (len(mesh.quads) + len(mesh.triangles))
+    assert mesh.euler == 0
+    assert found.convex_share >= 0.95
+    assert np.isfinite(found.aspect).all()
+    lifted = ~layup.paths.on_surface.all()
+    assert (~mesh.on_surface).any() == lifted

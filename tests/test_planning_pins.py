@@ -1,4 +1,4 @@
-"""Pins from a file: both forms, what they are moved to, and every way to get them wrong."""
+"""Pins from a file: both forms, what they are moved to, and wrong files."""
 
 from pathlib import Path
 
@@ -42,7 +42,7 @@ def test_points_are_moved_to_the_surface_and_turned_both_ways(tmp_path: Path) ->
     assert laid.points[0, 0] == pytest.approx(points[0], abs=1e-6)
 
 
-def test_a_column_of_revolutions_is_heeded(tmp_path: Path) -> None:
+def test_a_column_of_revolutions_is_used(tmp_path: Path) -> None:
     points = ELBOW.points(np.array([[0.2, 0.0], [0.3, 1.0]]))
     row = ",".join(repr(float(x)) for x in points.ravel())
     pins = read_pins(written(tmp_path, f"x0,y0,z0,x1,y1,z1,revolutions\n{row},-1\n{row},2\n"), ELBOW, 0.5)
@@ -63,14 +63,14 @@ WRONG = [
 
 
 @pytest.mark.parametrize(("text", "says"), WRONG)
-def test_wrong_files_are_told_in_one_line(tmp_path: Path, text: str, says: str) -> None:
+def test_wrong_files_are_refused_in_one_line(tmp_path: Path, text: str, says: str) -> None:
     with pytest.raises(BadInputError) as caught:
         read_pins(written(tmp_path, text), ELBOW, 0.5)
     assert says in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
-def test_a_file_that_is_not_there_or_no_text_is_told(tmp_path: Path) -> None:
+def test_a_file_that_is_missing_or_no_text_is_refused(tmp_path: Path) -> None:
     with pytest.raises(BadInputError, match="no such file"):
         read_pins(tmp_path / "none.csv", ELBOW, 0.5)
     (tmp_path / "pins.csv").write_bytes(bytes(range(128, 256)))

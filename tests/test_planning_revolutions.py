@@ -102,7 +102,7 @@ def test_clairaut_bounds_the_barrel() -> None:
 
 
 def test_trials_find_clairauts_bound_by_themselves() -> None:
-    """The same barrel, stretched along x by less than the eye sees but more than counts as one of revolution."""
+    """The same barrel, stretched along x by too much to count as one of revolution."""
     net = barrel().control_points * [1.0 + 1e-5, 1.0, 1.0]
     found = feasible_revolutions(Surface(net), most=1.0, paths=4)
     assert found.by == "trials"
@@ -208,7 +208,7 @@ def test_a_surface_that_is_no_annulus_is_refused() -> None:
         choose_revolutions(patch)
 
 
-def test_trials_tell_what_bridges() -> None:
+def test_trials_measure_what_bridges() -> None:
     flask = revolved(lambda v: 1.0 - 0.35 * np.exp(-(((v - 0.5) / 0.16) ** 2)), 32, 32)
     assert trial(flask, 0.1).bridged_share > 0.2
     assert trial(flask, 0.1).feasible

@@ -15,9 +15,9 @@ ERROR = 0.05
 """Margin of an error, relative; below FLOOR errors are round-off, or the spline's own."""
 FLOOR = 1e-8
 ROUGH = 2e-3
-"""Margin of an error of what did not come to rest: where a motion is caught depends on round-off."""
+"""Margin of an error where the method did not converge: the state after the last step depends on round-off."""
 COUNT, FEW = 0.1, 3
-"""Margin of a count: relative, and absolute for iterations and solves; evaluations have it a particle."""
+"""Margin of a count: relative, and absolute for iterations and solves; evaluations have it per particle."""
 PEERS = ("shooting-dop853", "collocation")
 """SciPy's own choice of steps may change from one of its versions to the next: only the magnitude is held."""
 
@@ -37,7 +37,7 @@ def test_every_method_and_problem_is_there(found: dict[str, Any]) -> None:
 def test_errors_and_counts(found: dict[str, Any], problem: str, method: str) -> None:
     now, then = found[problem][method], GOLDEN[problem][method]
     assert now["outcome"] == then["outcome"]
-    if then["outcome"] != "at rest":  # a motion caught half way, or exploding: only roughly the same
+    if then["outcome"] != "at rest":  # stopped half way, or diverging: only roughly the same
         if then["outcome"] == "stalled":
             assert now["error"] == pytest.approx(then["error"], rel=0.5, abs=ROUGH)
         return
@@ -53,7 +53,7 @@ def test_errors_and_counts(found: dict[str, Any], problem: str, method: str) -> 
 
 
 def test_ours_is_right_on_every_problem() -> None:
-    """What the golden file itself must say, whoever has written it."""
+    """The golden file itself."""
     for problem, methods in GOLDEN.items():
         assert methods["meshwind"]["outcome"] == "at rest"
         assert methods["meshwind"]["error"] < 0.03, problem

@@ -1,4 +1,4 @@
-"""The whole of a run with revolutions, spacing, band, density and pins, as its files and report tell it."""
+"""The whole of a run with revolutions, spacing, band, density and pins, in its files and its report."""
 
 import json
 from pathlib import Path
@@ -17,37 +17,37 @@ from meshwind.surface import shapes
 DATA = Path(__file__).parents[1] / "data"
 
 
-def test_auto_winds_within_its_bound_and_tells_why(tmp_path: Path) -> None:
+def test_auto_winds_within_its_bound_and_says_why(tmp_path: Path) -> None:
     result = mw.wind(DATA / "tank.ply", revolutions="auto", paths=8, particles=145, out=tmp_path, render=False)
-    told = json.loads((tmp_path / "report.json").read_text())
+    report = json.loads((tmp_path / "report.json").read_text())
     assert result.settled and result.chosen is not None
-    choice = told["revolutions"]
-    assert told["winding"]["revolutions"] == choice["chosen"] == result.revolutions
+    choice = report["revolutions"]
+    assert report["winding"]["revolutions"] == choice["chosen"] == result.revolutions
     assert choice["holding"]["by"] == "Clairaut"
     assert choice["chosen"] < choice["holding"]["high"] < choice["further"]["with_friction"]
     assert choice["pressing"]["share"] == pytest.approx(1.0)
-    assert any("slide off" in note for note in told["notes"])
-    assert told["windability"]["convex"] == pytest.approx(1.0)
-    assert told["crossings"]["own_family"] == 0
-    assert np.sum(told["crossings"]["by_region"]) == told["crossings"]["count"]
+    assert any("slide off" in note for note in report["notes"])
+    assert report["windability"]["convex"] == pytest.approx(1.0)
+    assert report["crossings"]["own_family"] == 0
+    assert np.sum(report["crossings"]["by_region"]) == report["crossings"]["count"]
 
 
 def test_spacing_width_and_density_are_in_the_report(tmp_path: Path) -> None:
     mw.wind(DATA / "elbow.obj", revolutions=1.0, paths=6, particles=145, spacing=15.0, band_width=4.0,
             linear_density=0.0012, out=tmp_path, render=False)  # fmt: skip
-    told = json.loads((tmp_path / "report.json").read_text())
-    near = told["spacing"]
+    report = json.loads((tmp_path / "report.json").read_text())
+    near = report["spacing"]
     assert near["neighbours"]["max"] <= 15.0
     assert near["kept"] == pytest.approx(near["neighbours"]["max"])
     assert near["paths_added"] > 0 and near["partings"] == []
     assert near["widest_gap"] == pytest.approx(near["neighbours"]["max"] - 4.0)
-    cover = told["coverage"]
+    cover = report["coverage"]
     assert cover["band_width"] == 4.0
     assert sum(cover[share] for share in ("bare", "once", "twice", "more")) == pytest.approx(1.0)
     assert cover["on_part"] == pytest.approx(1.0, abs=5e-3)
     assert cover["bare_caps"] == pytest.approx([np.pi * 30**2] * 2, rel=1e-3)
-    assert told["fibre"]["mass"] == pytest.approx(0.0012 * told["paths"]["length_total"])
-    assert told["quads"]["convex_inner"] >= 0.95
+    assert report["fibre"]["mass"] == pytest.approx(0.0012 * report["paths"]["length_total"])
+    assert report["quads"]["convex_inner"] >= 0.95
     layers = meshio.read(tmp_path / "surface.vtu").point_data["layers"]
     assert (layers == 0).mean() == pytest.approx(cover["bare"], abs=0.05)
 
@@ -62,7 +62,7 @@ def test_pins_take_the_place_of_even_ends(tmp_path: Path) -> None:
     assert result.report()["winding"]["paths_per_family"] == 4
 
 
-def test_partings_are_told() -> None:
+def test_partings_are_reported() -> None:
     result = mw.wind(DATA / "cast.ply", revolutions=2.0, paths=8, particles=145, spacing=15.0)
     assert any("no fibre rests between" in note.text for note in result.notes)
     assert result.report()["spacing"]["kept"] <= 15.0
