@@ -17,6 +17,7 @@ from pyarrow import parquet
 from meshwind.core.errors import BadInputError
 from meshwind.sweep import read_study, sweep
 from meshwind.sweep.local import run_local
+from meshwind.sweep.study import CaseStatus
 from meshwind.sweep.work import Done, grouped
 
 DATA = Path(__file__).parents[1] / "data"
@@ -131,7 +132,7 @@ def test_a_case_that_fails_is_a_row_with_its_reason(tmp_path: Path) -> None:
     swept = sweep(file, tmp_path / "out", processes=1)
     assert not swept.settled
     by_mesh = {(row["mesh"], row["opening"]): row for row in swept.rows}
-    assert "not found" in by_mesh["missing.stl", 1.0]["reason"]
+    assert "not found" in str(by_mesh["missing.stl", 1.0]["reason"])
     assert by_mesh["torn.stl", 1.0]["status"] == "refused" and by_mesh["torn.stl", 1.0]["reason"]
     assert by_mesh["vase.stl", 1.0]["status"] == "at rest"
 
@@ -176,7 +177,9 @@ def test_a_job_that_kills_every_worker_is_given_up_and_the_others_done(tmp_path:
     for _ in range(local.MAX_ATTEMPTS):
         came += list(local._requeue(queue, [job]))
         queue.retries.clear()
-    assert [number for number, _ in came] == [1] and came[0][1].lost and "killed" in came[0][1].reason
+    assert (
+        [number for number, _ in came] == [1] and came[0][1].status == CaseStatus.LOST and "killed" in came[0][1].reason
+    )
 
 
 def test_interrupted_and_started_again_every_case_is_there_once(tmp_path: Path) -> None:

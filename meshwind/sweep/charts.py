@@ -1,10 +1,11 @@
 """tradeoffs.png: the figures of a study against the swept options."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from meshwind.results.staging import staged
+from meshwind.sweep.study import CaseStatus, Row
 
 _FIGURES = {
     "bridged_share": "bridged, share of length",
@@ -17,14 +18,14 @@ _MARKS = "os^Dv*P"
 _DPI = 130
 
 
-def draw_tradeoffs(picture: Path, rows: Sequence[Mapping[str, Any]], swept: Sequence[str]) -> None:
+def draw_tradeoffs(picture: Path, rows: Sequence[Row], swept: Sequence[str]) -> None:
     """Draw a column for each option with several numbers and a row for each figure.
 
     A line joins cases whose other options are the same.  Cases that were refused or lost have no figures, and are
     counted in the title.
     """
     names = [_column(name) for name in swept]
-    done = [row for row in rows if row["status"] not in ("refused", "lost")]
+    done = [row for row in rows if CaseStatus(str(row["status"])).has_figures]
     numeric = [name for name in names if len(_numbers(done, name)) > 1]
     if not numeric:
         return
@@ -53,7 +54,7 @@ def draw_tradeoffs(picture: Path, rows: Sequence[Mapping[str, Any]], swept: Sequ
                 axes.set_xlabel(name.replace("_", " "))
     _legend(figure, grid[0, 0])
     failed = len(rows) - len(done)
-    at_rest = sum(row["status"] == "at rest" for row in done)
+    at_rest = sum(row["status"] == CaseStatus.AT_REST for row in done)
     figure.suptitle(
         f"{len(rows)} cases: {at_rest} at rest, {len(done) - at_rest} with paths that are not, {failed} without "
         "figures.  "
@@ -69,22 +70,21 @@ def _column(name: str) -> str:
     return {"paths": "paths_a_family"}.get(name, name.replace("-", "_"))
 
 
-def _numbers(rows: Sequence[Mapping[str, Any]], name: str) -> set[float]:
-    return {row[name] for row in rows if isinstance(row[name], int | float)}
+def _numbers(rows: Sequence[Row], name: str) -> set[float]:
+    return {value for row in rows if isinstance(value := row[name], int | float)}
 
 
-def _lines(
-    rows: Sequence[Mapping[str, Any]], name: str, others: Sequence[str]
-) -> list[tuple[Mapping[str, Any], list[Mapping[str, Any]]]]:
+def _lines(rows: Sequence[Row], name: str, others: Sequence[str]) -> list[tuple[Row, list[Row]]]:
     """The cases that have a number for `name`, grouped by their other options, each group by increasing numbers."""
-    groups: dict[str, list[Mapping[str, Any]]] = {}
+    groups: dict[str, list[tuple[float, Row]]] = {}
     for row in rows:
-        if isinstance(row[name], int | float):
-            groups.setdefault(repr([row[other] for other in others]), []).append(row)
-    return [(line[0], sorted(line, key=lambda row: float(row[name]))) for line in groups.values()]
+        value = row[name]
+        if isinstance(value, int | float):
+            groups.setdefault(repr([row[other] for other in others]), []).append((value, row))
+    return [(line[0][1], [row for _, row in sorted(line, key=lambda pair: pair[0])]) for line in groups.values()]
 
 
-def _style(row: Mapping[str, Any], rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+def _style(row: Row, rows: Sequence[Row]) -> dict[str, Any]:
     """A colour and a mark for each mesh."""
     meshes = list(dict.fromkeys(each["mesh"] for each in rows))
     k = meshes.index(row["mesh"])

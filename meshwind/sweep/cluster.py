@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from meshwind.core.errors import BadInputError
+from meshwind.sweep.study import CaseStatus
 from meshwind.sweep.work import CaseGroup, Done, fit_job, wind_job
 
 CONNECT_SECONDS = 20
@@ -27,7 +28,7 @@ def run_cluster(groups: list[CaseGroup], address: str) -> Iterator[tuple[int, Do
         for group in groups:
             source = group.read()
             if isinstance(source, str):
-                yield from ((number, Done({}, {}, source)) for number in group.cases)
+                yield from ((number, Done(CaseStatus.REFUSED, source)) for number in group.cases)
                 continue
             part = client.submit(fit_job, source, group.options, pure=False)
             for number, case in group.cases.items():
@@ -40,5 +41,5 @@ def run_cluster(groups: list[CaseGroup], address: str) -> Iterator[tuple[int, Do
             try:
                 done = job.result()
             except KilledWorker:
-                done = Done({}, {}, LOST, lost=True)
+                done = Done(CaseStatus.LOST, LOST)
             yield numbers[job.key], done

@@ -12,7 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from meshwind.sweep.study import Case
+from meshwind.sweep.study import Case, CaseStatus
 from meshwind.sweep.work import CaseGroup, Done, fit_job, wind_job
 from meshwind.workflow.options import Options
 from meshwind.workflow.part import Part, Source
@@ -108,7 +108,7 @@ def _submit(pool: ProcessPoolExecutor, queue: _Queue, job: _Job) -> tuple[Future
         return pool.submit(_wind_stored, str(queue.file(job.group)), group.cases[job.number]), []
     source = group.read()
     if isinstance(source, str):
-        return None, [(number, Done({}, {}, source)) for number in group.cases]
+        return None, [(number, Done(CaseStatus.REFUSED, source)) for number in group.cases]
     return pool.submit(_fit_and_store, str(queue.file(job.group)), source, group.options), []
 
 
@@ -119,7 +119,7 @@ def _finish(queue: _Queue, job: _Job, result: Done | str) -> Iterator[tuple[int,
         if job.number is not None:
             yield job.number, result
     elif result:
-        yield from ((number, Done({}, {}, result)) for number in group.cases)
+        yield from ((number, Done(CaseStatus.REFUSED, result)) for number in group.cases)
     else:
         queue.winds.extend(_Job(job.group, number) for number in group.cases)
 
@@ -133,7 +133,7 @@ def _requeue(queue: _Queue, jobs: list[_Job]) -> Iterator[tuple[int, Done]]:
             queue.retries.append(job)
             continue
         numbers = queue.groups[job.group].cases if job.number is None else [job.number]
-        yield from ((number, Done({}, {}, LOST, lost=True)) for number in numbers)
+        yield from ((number, Done(CaseStatus.LOST, LOST)) for number in numbers)
 
 
 def _fit_and_store(file: str, source: Source, options: Options) -> str:

@@ -6,12 +6,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic
-from typing import Any
 
 from meshwind.core.errors import BadInputError
 from meshwind.sweep.charts import draw_tradeoffs
 from meshwind.sweep.store import CASES, PICTURE, Store
-from meshwind.sweep.study import Study, read_study
+from meshwind.sweep.study import CaseStatus, Row, Study, read_study
 from meshwind.sweep.work import Done, grouped
 
 CaseProgress = Callable[[str, int, int], None]
@@ -25,14 +24,14 @@ class Swept:
     """A study that was run: its rows, and how many of the cases were wound this time."""
 
     study: Study
-    rows: tuple[dict[str, Any], ...]
+    rows: tuple[Row, ...]
     anew: int
     folder: Path
 
     @property
     def settled(self) -> bool:
         """Whether every path of every case converged."""
-        return all(row["status"] == "at rest" for row in self.rows)
+        return all(row["status"] == CaseStatus.AT_REST for row in self.rows)
 
 
 def sweep(
@@ -62,7 +61,7 @@ def sweep(
     for number, done in _run(store, processes, scheduler):
         row = store.keep(number, done)
         if progress is not None:
-            progress(row["folder"], len(store.rows), len(plan))
+            progress(str(row["folder"]), len(store.rows), len(plan))
         if monotonic() - written > TABLE_SECONDS:
             store.write_table()
             written = monotonic()

@@ -10,21 +10,17 @@ not run again.
 
 import csv
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from meshwind.core.errors import BadInputError
 from meshwind.results.report import plain
 from meshwind.results.staging import staged
-from meshwind.sweep.study import Case, Study
+from meshwind.sweep.study import Case, CaseStatus, Row, Study
 from meshwind.sweep.work import Done
 
 CASES, RECORD = "cases", "case.json"
 CSV, PARQUET, PICTURE = "results.csv", "results.parquet", "tradeoffs.png"
-Row = dict[str, Any]
-
-_STATUS = ("at rest", "not all at rest", "refused", "lost")
 
 
 class Store:
@@ -51,7 +47,7 @@ class Store:
         case = self.study.cases[number]
         row = _row(case, done)
         self.rows[number] = row
-        if done.lost:
+        if done.status == CaseStatus.LOST:
             return row
         folder = self.out / CASES / case.folder
         folder.parent.mkdir(parents=True, exist_ok=True)
@@ -93,33 +89,27 @@ def _row(case: Case, done: Done) -> Row:
     """The options of a case, its status and its figures."""
     given = case.options.written()
     pins = None if case.options.pins is None else Path(case.options.pins).name
-    refused = bool(done.reason)
-    settled = not refused and done.figures["at_rest"] == done.figures["paths"]
-    status = _STATUS[3 if done.lost else 2 if refused else 0 if settled else 1]
-    reason = done.reason if refused else done.figures["why_not"]
-    figures = {name: value for name, value in done.figures.items() if name != "why_not"}
     row: Row = plain(
-        {"case": case.key, "folder": case.folder, "mesh": case.mesh.name, "status": status, "reason": reason}
+        {"case": case.key, "folder": case.folder, "mesh": case.mesh.name}
+        | {"status": done.status.value, "reason": done.reason}
         | {name: given[name] for name in given if name != "paths"}
         | {"paths_a_family": case.options.paths, "pins": pins}
-        | figures
+        | done.figures
     )
     return row
 
 
-def _write_csv(path: Path, rows: Iterable[Mapping[str, Any]]) -> None:
-    table = list(rows)
+def _write_csv(path: Path, table: Sequence[Row]) -> None:
     with path.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.DictWriter(stream, list(table[0]) if table else [])
         writer.writeheader()
         writer.writerows(table)
 
 
-def _write_parquet(path: Path, rows: Iterable[Mapping[str, Any]]) -> None:
+def _write_parquet(path: Path, table: Sequence[Row]) -> None:
     import pyarrow as arrow
     from pyarrow import parquet
 
-    table = list(rows)
     columns = {}
     for name in table[0] if table else ():
         values = [row[name] for row in table]

@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
+from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,25 @@ _NAMES = {field.name.replace("_", "-"): field.name for field in fields(Options)}
 _FILES = ("mesh", "pins")
 _MAX_NAME = 40
 """Most characters of a mesh's name in the name of a folder."""
+
+
+Cell = str | int | float | None
+Row = dict[str, Cell]
+"""A row of a study's table, by its columns."""
+
+
+class CaseStatus(StrEnum):
+    """How a case ended; one that was refused or lost has no figures."""
+
+    AT_REST = "at rest"
+    NOT_ALL_AT_REST = "not all at rest"
+    REFUSED = "refused"
+    LOST = "lost"
+
+    @property
+    def has_figures(self) -> bool:
+        """Whether the case was wound."""
+        return self in (CaseStatus.AT_REST, CaseStatus.NOT_ALL_AT_REST)
 
 
 @dataclass(frozen=True)

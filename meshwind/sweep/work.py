@@ -1,16 +1,15 @@
 """The jobs of a study: read a mesh, fit it, wind a case on the part.  Nothing here depends on where they run."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import numba
 from threadpoolctl import threadpool_limits
 
 from meshwind.core.errors import BadInputError
 from meshwind.run.wind import Result
-from meshwind.sweep.study import Case
+from meshwind.sweep.study import Case, CaseStatus, Row
 from meshwind.workflow.clock import Clock
 from meshwind.workflow.options import Options
 from meshwind.workflow.part import Part, Source, fit_part, read_source
@@ -48,15 +47,15 @@ def grouped(cases: dict[int, Case]) -> list[CaseGroup]:
 
 @dataclass(frozen=True)
 class Done:
-    """A finished case: the figures for its row and the files of its folder by name, or the reason why there are none.
+    """A finished case: how it ended, the figures for its row, and the files of its folder by name.
 
-    reason: "" for a case that was wound; otherwise why it was refused or, where `lost`, that its workers were killed.
+    reason: why it was refused or lost, or why its first path that did not converge did not; "" otherwise.
     """
 
-    figures: dict[str, Any]
-    files: dict[str, bytes]
+    status: CaseStatus
     reason: str = ""
-    lost: bool = False
+    figures: Row = field(default_factory=dict)
+    files: dict[str, bytes] = field(default_factory=dict)
 
 
 def fit_job(source: Source, options: Options) -> Part | str:
@@ -71,7 +70,7 @@ def fit_job(source: Source, options: Options) -> Part | str:
 def wind_job(part: Part | str, case: Case) -> Done:
     """In a worker: wind one case on its part."""
     if isinstance(part, str):
-        return Done({}, {}, part)
+        return Done(CaseStatus.REFUSED, part)
     _use_one_thread()
     try:
         result = Result.of(wind_part(part, case.options, "", Clock()))
@@ -80,8 +79,11 @@ def wind_job(part: Part | str, case: Case) -> Done:
             result.write(out, render=case.render)
             files = {path.relative_to(out).as_posix(): path.read_bytes() for path in out.rglob("*") if path.is_file()}
     except BadInputError as error:
-        return Done({}, {}, str(error))
-    return Done(_figures(result), files)
+        return Done(CaseStatus.REFUSED, str(error))
+    failed = result.report()["paths"]["not_converged"]
+    if failed:
+        return Done(CaseStatus.NOT_ALL_AT_REST, failed[0]["why"], _figures(result), files)
+    return Done(CaseStatus.AT_REST, "", _figures(result), files)
 
 
 def _use_one_thread() -> None:
@@ -90,16 +92,14 @@ def _use_one_thread() -> None:
     threadpool_limits(1)
 
 
-def _figures(result: Result) -> dict[str, Any]:
+def _figures(result: Result) -> Row:
     """The figures of a row: the same on every machine, so none of time."""
     report = result.report()
     paths, crossings, cover = report["paths"], report["crossings"], report["coverage"]
-    failed = paths["not_converged"]
     return {
         "revolutions_wound": report["winding"]["revolutions"],
-        "paths": paths["converged"] + len(failed),
+        "paths": paths["converged"] + len(paths["not_converged"]),
         "at_rest": paths["converged"],
-        "why_not": failed[0]["why"] if failed else "",
         "length": paths["length_total"],
         "bridged_share": paths["bridged_fraction"],
         "bridges": paths["bridges"],
