@@ -15,6 +15,7 @@ import numpy as np
 from scipy import sparse
 
 from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.core.vectors import unit
 from meshwind.editing.stencil import along, pitches, weights
 from meshwind.path.paths import Paths, Status
 
@@ -153,8 +154,7 @@ def _chords(paths: Paths) -> Floats:
     after = np.minimum.accumulate(np.where(touching, index, last)[:, ::-1], axis=1)[:, ::-1]
     rows = np.arange(len(paths))[:, None]
     chord = paths.points[rows, after] - paths.points[rows, before]
-    size = np.linalg.norm(chord, axis=2, keepdims=True)
-    return np.asarray(np.divide(chord, size, out=np.zeros_like(chord), where=size > 0))
+    return unit(chord)
 
 
 def _across(normal: Floats, chord: Floats) -> Floats:

@@ -6,10 +6,11 @@ Between the fibres it is linear on rows of constant v, and a row that no fibre p
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.vectors import unit
 from meshwind.path.paths import Paths, converged_or_all
+from meshwind.surface.evaluate import SU, SV
 from meshwind.surface.grid import MOST, PER_SPAN
 from meshwind.surface.surface import Surface
 
@@ -22,7 +23,7 @@ def fibres_of(paths: Paths, family: int) -> Paths:
 def axes(surface: Surface, uv: Floats) -> tuple[Floats, Floats, Floats]:
     """Unit vectors (k, 3) at uv (k, 2): along the meridian s_v, across it towards s_u, and the outward normal."""
     frames = surface.frames(uv)
-    along, normal = _unit(frames[:, 2]), _unit(np.cross(frames[:, 1], frames[:, 2]))
+    along, normal = unit(frames[:, SV]), unit(np.cross(frames[:, SU], frames[:, SV]))
     return along, np.cross(along, normal), normal
 
 
@@ -57,7 +58,7 @@ def directions(paths: Paths, uv: Floats) -> tuple[Floats, Floats]:
     f, g = (x - i)[:, None], (y - j)[:, None]
     below = (1.0 - f) * field[i, j] + f * field[i + 1, j]
     above = (1.0 - f) * field[i, j + 1] + f * field[i + 1, j + 1]
-    mixed = _unit((1.0 - g) * below + g * above)
+    mixed = unit((1.0 - g) * below + g * above)
     mixed = np.where((mixed == 0.0).all(axis=1)[:, None], [1.0, 0.0], mixed)
     along, across, _ = axes(surface, uv)
     return mixed[:, :1] * along + mixed[:, 1:] * across, np.arctan2(mixed[:, 1], mixed[:, 0])
@@ -118,7 +119,7 @@ def _spread(at: _Passages, values: Floats, u: Floats, nv: int, closed: bool) -> 
 def _angles(paths: Paths) -> Floats:
     """Angle (p, n) between each fibre's direction and the meridian, 0 to pi/2, at the particle or its foot."""
     tangent, frames = _tangents(paths)
-    meridian = frames[:, 2]
+    meridian = frames[:, SV]
     across = np.linalg.norm(np.cross(tangent, meridian), axis=1)
     return np.asarray(np.arctan2(across, np.abs((tangent * meridian).sum(axis=1))).reshape(paths.gap.shape))
 
@@ -128,16 +129,11 @@ def _headings(paths: Paths) -> Floats:
     tangent, _ = _tangents(paths)
     along, across, _ = axes(paths.surface, np.ascontiguousarray(paths.uv.reshape(-1, 2)))
     both = np.stack([(tangent * along).sum(axis=1), (tangent * across).sum(axis=1)], axis=1)
-    return _unit(both).reshape(paths.uv.shape)
+    return unit(both).reshape(paths.uv.shape)
 
 
 def _tangents(paths: Paths) -> tuple[Floats, Floats]:
     """Tangents (p n, 3) of the fibres, of any length, and the surface's frames (p n, 6, 3), at particles or feet."""
     frames = paths.surface.frames(np.ascontiguousarray(paths.uv.reshape(-1, 2)))
     step = np.gradient(paths.uv, axis=1).reshape(-1, 2)
-    return frames[:, 1] * step[:, :1] + frames[:, 2] * step[:, 1:], frames
-
-
-def _unit(vectors: NDArray[np.float64]) -> Floats:
-    size = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0.0)
+    return frames[:, SU] * step[:, :1] + frames[:, SV] * step[:, 1:], frames

@@ -1,4 +1,4 @@
-"""Figures of each path: its polyline's length, what of that bridges, how far it lifts and what friction it needs.
+"""Figures of each path: the length of its polyline, how much of it bridges, its largest gap and required friction.
 
 The polyline through the particles is shorter than the fibre itself, whose length `Paths.length` gives.
 """
@@ -31,8 +31,8 @@ class Lengths:
 class Bridges:
     """The b spans off the surface: of `path` (b,), from particle `first` to `last` (b,), both included.
 
-    Both lie on the surface, unless the span reaches an end of its path.  ends (b, 2, 3) are the places, between
-    particles, where the fibre truly leaves the surface and comes back: tangent to it, to second order.
+    Both lie on the surface, unless the span reaches an end of its path.  ends (b, 2, 3) are the points, between
+    particles, where the fibre leaves the surface and comes back: tangent to it, to second order.
     """
 
     path: Ints
@@ -59,11 +59,11 @@ def lengths(paths: Paths) -> Lengths:
     clear = ~(paths.on_surface[:, :-1] & paths.on_surface[:, 1:])
     slip = np.fmax.reduce(paths.slip, axis=1, initial=0.0)  # fmax passes over NaN
     return Lengths(
-        frozen(arc),
-        frozen(arc[:, -1]),
-        frozen((steps * clear).sum(axis=1)),
-        frozen(paths.gap.max(axis=1, initial=0.0)),
-        frozen(slip),
+        arc_length=frozen(arc),
+        polyline_length=frozen(arc[:, -1]),
+        bridged_length=frozen((steps * clear).sum(axis=1)),
+        max_gap=frozen(paths.gap.max(axis=1, initial=0.0)),
+        max_slip=frozen(slip),
     )
 
 
@@ -79,7 +79,7 @@ def bridged_share(*counted: tuple[Lengths, Bools]) -> float:
 def lifted_share(gap: Floats, threshold: float) -> float:
     """Share of the particles (p, n) that lie further off the surface than a threshold.
 
-    Unlike `bridged_share` it counts particles, not length, and takes small gaps for none.
+    Unlike `bridged_share` it counts particles rather than length, and ignores gaps up to the threshold.
     """
     return float((gap > threshold).mean())
 
@@ -92,7 +92,7 @@ def bridges(paths: Paths) -> Bridges:
     _, stop = np.nonzero(change == 1)
     first, last = np.maximum(start - 1, 0), np.minimum(stop, paths.gap.shape[1] - 1)
     arc = lengths(paths).arc_length
-    # Gaps from each start to each stop; the odd stretches are those between bridges.
+    # gaps from each start to each stop; every other range is one between bridges
     count = paths.gap.shape[1] + 1
     bounds = np.stack([path * count + start, path * count + stop], axis=1).ravel()
     padded = np.pad(paths.gap, ((0, 0), (0, 1)), constant_values=0.0).ravel()

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.core.vectors import unit
 from meshwind.mesh.geometry.measure import area_vectors, edge_lengths
 from meshwind.mesh.geometry.subdivide import subdivide
 
@@ -45,13 +46,7 @@ def _normals(vertices: Floats, faces: Ints) -> Floats:
     weights = np.divide(1.0, squares, out=np.zeros_like(squares), where=squares > 0)
     share = weights[:, :, None] * area_vectors(vertices, faces)[:, None]
     total = np.column_stack([np.bincount(faces.ravel(), share[:, :, k].ravel(), len(vertices)) for k in range(3)])
-    return _unit(total.astype(np.float64))
-
-
-def _unit(vectors: Floats) -> Floats:
-    """Vectors of length 1, or 0 where there is no direction."""
-    size = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.asarray(np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0))
+    return unit(total.astype(np.float64))
 
 
 def bends(surface: Skin, ends: Ints) -> Bools:
@@ -84,7 +79,7 @@ def edge_points(surface: Skin, ends: Ints, t: Floats) -> Floats:
 def with_vertices(surface: Skin, cut: Ints, points: Floats) -> Skin:
     """Surface with a new, untrusted vertex on each of the edges cut (k, 2)."""
     low, high = cut.T
-    normals = _unit(surface.normals[low] + surface.normals[high])
+    normals = unit(surface.normals[low] + surface.normals[high])
     vertices = np.concatenate([surface.vertices, points])
     return Skin(
         vertices,

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.vectors import unit
 from meshwind.mesh.geometry.measure import edge_lengths
 from meshwind.mesh.geometry.subdivide import subdivide
 from meshwind.mesh.geometry.topology import components, edges
@@ -54,19 +55,14 @@ def _outward(vertices: Floats, low: Ints, high: Ints, apex: Ints) -> Floats:
     along = vertices[high] - vertices[low]
     out = vertices[low] - vertices[apex]
     out = out - along * (np.einsum("ij,ij->i", out, along) / np.einsum("ij,ij->i", along, along))[:, None]
-    return _unit(out)
-
-
-def _unit(vectors: Floats) -> Floats:
-    size = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.asarray(np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0))
+    return unit(out)
 
 
 def _at_vertices(count: int, low: Ints, high: Ints, out: Floats) -> Floats:
     """Unit vectors (n, 3) away from the surface at boundary vertices, 0 elsewhere."""
     both = np.concatenate([low, high])
     twice = np.concatenate([out, out])
-    return _unit(np.column_stack([np.bincount(both, twice[:, k], count) for k in range(3)]))
+    return unit(np.column_stack([np.bincount(both, twice[:, k], count) for k in range(3)]))
 
 
 def _joined(vertices: Floats, faces: Ints, reach: float) -> tuple[Floats, Ints, int, float]:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.core.vectors import unit
 from meshwind.mesh.geometry.facet_tree import FacetTree
 from meshwind.mesh.geometry.measure import area_vectors
 from meshwind.mesh.geometry.topology import edges
@@ -44,9 +45,7 @@ def _pierced(tree: FacetTree, vertices: Floats, faces: Ints, ends: Ints) -> Bool
 
 def _double(tree: FacetTree, vertices: Floats, faces: Ints, tested: Ints, diagonal: float) -> Bools:
     """Faces (k,) above or below which another layer lies."""
-    normals = area_vectors(vertices, tested)
-    size = np.linalg.norm(normals, axis=1, keepdims=True)
-    normals = np.divide(normals, size, out=np.zeros_like(normals), where=size > 0)
+    normals = unit(area_vectors(vertices, tested))
     middle, reach = vertices[tested].mean(axis=1), _DOUBLE * diagonal
     above, below = (
         _hits(tree, faces, tested, middle + sign * _OFF * diagonal * normals, sign * reach * normals)
