@@ -11,7 +11,7 @@ import pytest
 
 import meshwind as mw
 from meshwind.export.formats import FORMATS
-from meshwind.export.targets import TARGETS, Wishes, export
+from meshwind.export.targets import TARGETS, ExportOptions, export
 
 DATA = Path(__file__).parents[1] / "data"
 RUNS: dict[str, dict[str, float | str | None]] = {
@@ -30,7 +30,7 @@ def leave(folder: Path) -> None:
         for name, options in RUNS.items():
             out = folder / f"{name}-{threads}"
             mw.wind(DATA / name, out=out, render=False, paths=3, **{"particles": 101, **options})  # type: ignore[arg-type]
-    export(folder / "vase.stl-1", tuple(TARGETS), folder / "exports", Wishes(formats=tuple(FORMATS)))
+    export(folder / "vase.stl-1", tuple(TARGETS), folder / "exports", ExportOptions(formats=tuple(FORMATS)))
 
 
 def hashes(folder: Path) -> dict[str, str]:

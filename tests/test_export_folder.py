@@ -12,7 +12,7 @@ from export_results import leave, waisted_results
 from layup_shapes import bridged
 
 from meshwind.core.errors import BadInputError
-from meshwind.export.targets import TARGETS, Wishes, export
+from meshwind.export.targets import TARGETS, ExportOptions, export
 from meshwind.path.paths import Status
 from meshwind.results.folder import beside
 from meshwind.results.reading import read_results
@@ -80,9 +80,9 @@ def test_exports_come_together_or_not_at_all(tmp_path: Path) -> None:
     waisted_results(tmp_path)
     before = everything(tmp_path)
     with pytest.raises(BadInputError, match="angle is -1"):
-        export(tmp_path, ["fibers", "frames"], wishes=Wishes(angle=-1.0))
+        export(tmp_path, ["fibers", "frames"], options=ExportOptions(angle=-1.0))
     with pytest.raises(BadInputError, match="angle is -1"):
-        export(tmp_path, ["fibers", "frames"], tmp_path / "a" / "b", Wishes(angle=-1.0))
+        export(tmp_path, ["fibers", "frames"], tmp_path / "a" / "b", ExportOptions(angle=-1.0))
     assert everything(tmp_path) == before
 
 
@@ -116,11 +116,9 @@ def test_a_folder_where_a_file_belongs_stops_all(tmp_path: Path) -> None:
     ([], {}, "nothing to export; give --to inp,"), (["inp"], {"shell": "hex"}, "shell is 'hex'; give grid or quads"),
     (["inp"], {"count": 3}, "elements is 3; give"), ([], {"formats": ["stl"]}, "format 'stl' is not known; give vtu"),
 ])  # fmt: skip
-def test_wishes_that_cannot_be_met_are_refused(
-    tmp_path: Path, to: list[str], given: dict[str, object], says: str
-) -> None:
+def test_what_cannot_be_exported_is_refused(tmp_path: Path, to: list[str], given: dict[str, object], says: str) -> None:
     with pytest.raises(BadInputError, match=says):
-        export(tmp_path, to, wishes=Wishes(**given))  # type: ignore[arg-type]
+        export(tmp_path, to, options=ExportOptions(**given))  # type: ignore[arg-type]
 
 
 def run(*arguments: object) -> subprocess.CompletedProcess[str]:

@@ -6,8 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.colors import to_rgb
 
-from meshwind.appearance.colours import colour_map
-from meshwind.appearance.looks import DIVERGING, MAPS, Scale, round_below
+from meshwind.appearance.looks import DIVERGING, MAPS, Scale, colour_map, round_below
 from meshwind.core.cast import Floats
 from meshwind.pictures.bodies import FAMILY
 from meshwind.pictures.layup_scenes import ANGLE

@@ -18,7 +18,7 @@ from selenium.webdriver.support.ui import Select, WebDriverWait
 from meshwind.appearance.looks import MAPS
 from meshwind.core.cast import Floats
 from meshwind.export.targets import export
-from meshwind.export.viewer import scene
+from meshwind.export.viewer import page_data
 from meshwind.path.paths import Status
 
 FLAGS = (
@@ -160,9 +160,9 @@ def test_it_turns_to_the_end_and_back(browser: webdriver.Chrome) -> None:
 
 def test_the_page_holds_the_numbers_of_the_run(tmp_path: Path) -> None:
     results = plain_results(tmp_path)
-    told = scene(results)
-    assert [line["words"] for line in told["fibres"]] == ["family +1", "family −1"]  # no bridges, all at rest
-    assert sum(line["count"] for line in told["fibres"]) == results.paths.gap.size
-    assert np.linalg.norm(told["camera"]["eye"]) == pytest.approx(1.0)
-    assert told["units"] == "mm"
-    assert json.loads(json.dumps(told, allow_nan=False)) == told
+    data = page_data(results)
+    assert [line["words"] for line in data["fibres"]] == ["family +1", "family −1"]  # no bridges, all at rest
+    assert sum(line["count"] for line in data["fibres"]) == results.paths.gap.size
+    assert np.linalg.norm(data["camera"]["eye"]) == pytest.approx(1.0)
+    assert data["units"] == "mm"
+    assert json.loads(json.dumps(data, allow_nan=False)) == data

@@ -1,4 +1,4 @@
-"""How each map is shown: its name, its colours and its scale, the same in every picture and in the viewer."""
+"""How each map is shown: its title, its colours and its scale, the same in every picture and in the viewer."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from meshwind.core.cast import Floats
+from meshwind.results import schema
 
 _ROBUST = 0.99
 """A scale that has no natural end ends here among its values, and says that there are more beyond, ..."""
@@ -18,6 +19,24 @@ _CLEAR = 0.08
 """... and marks at its ends keep others this far off."""
 _NOTHING = 1e-200
 """Where all values are less than this a scale goes to 1."""
+SEQUENTIAL, DIVERGING = "viridis", "RdBu_r"
+_CUT = {"gap": ("RdPu", 0.3, 1.0), "distance": ("magma_r", 0.04, 0.86)}
+"""Parts of colour maps: pale where all is well, dark where it is not, so that what matters stands out, in greys too."""
+
+
+def colour_map(name: str) -> Any:
+    """A function from shares (n,) to RGBA (n, 4): "gap", "distance", or one of Matplotlib's.
+
+    All are even to the eye, safe for the colour-blind, and dark enough for white paper.
+    """
+    # imported late, as all that draws
+    from matplotlib import colormaps
+    from matplotlib.colors import ListedColormap
+
+    if name not in _CUT:
+        return colormaps[name]
+    whole, first, last = _CUT[name]
+    return ListedColormap(colormaps[whole](np.linspace(first, last, 256)), name)
 
 
 @dataclass(frozen=True)
@@ -56,17 +75,6 @@ class Scale:
             marks = [mark for mark in marks if mark[0] < 1.0 - _CLEAR]
             marks.append((1.0, f"{'≥ ' if self.beyond else ''}{self.high:.2g}"))
         return marks
-
-    @property
-    def told(self) -> dict[str, Any]:
-        """What the process that draws has to know, as arrays."""
-        marks = self.marks
-        return {
-            "colours": self.colours,
-            "words": np.array(self.words),
-            "marks": np.array([share for share, _ in marks]),
-            "mark_words": np.array([told for _, told in marks]),
-        }
 
     def _steps(self) -> Floats:
         step = self.step or round_below((self.high - self.low) / 3.0)
@@ -141,21 +149,23 @@ def round_below(value: float) -> float:
     return float(power * max(digit for digit in (1.0, 2.0, 5.0) if digit * power <= value * (1.0 + 1e-12)))
 
 
-SEQUENTIAL, DIVERGING = "viridis", "RdBu_r"
 MAPS: dict[str, Look] = {
-    "coverage": Look("coverage", "layers of fibre", "", SEQUENTIAL, from_zero),
-    "layers": Look("layers of band", "bands over\nthe point", "", SEQUENTIAL, from_zero),
-    "angle": Look("winding angle", "winding angle\nof family +1", "degrees", "cividis", fixed(0.0, 90.0), step=15.0),
-    "windability": Look(
+    schema.COVERAGE: Look("coverage", "layers of fibre", "", SEQUENTIAL, from_zero),
+    schema.LAYERS: Look("layers of band", "bands over\nthe point", "", SEQUENTIAL, from_zero),
+    schema.ANGLE: Look(
+        "winding angle", "winding angle\nof family +1", schema.DEGREES, "cividis", fixed(0.0, 90.0), step=15.0
+    ),
+    schema.WINDABILITY: Look(
         "windability", "share of the\ndirections\nthat press", "", "cividis", fixed(0.0, 1.0), step=0.25
     ),
-    "press_reach": Look(
-        "press reach", "a fibre presses\nup to so far\nto both sides", "degrees", "cividis", fixed(0.0, 90.0), step=15.0
+    schema.PRESS_REACH: Look(
+        "press reach", "a fibre presses\nup to so far\nto both sides", schema.DEGREES, "cividis", fixed(0.0, 90.0),
+        step=15.0,
     ),
-    "class": Look("class", "1 convex\n0 saddle\n−1 concave", "", "cividis", fixed(-1.0, 1.0), step=1.0),
-    "gaussian_curvature": Look("Gaussian curvature", "Gaussian\ncurvature", "1/{u}²", DIVERGING, both_ways),
-    "mean_curvature": Look("mean curvature", "mean curvature", "1/{u}", DIVERGING, both_ways),
-    "stretch": Look("stretch of the chart", "area scale\nover its mean", "", SEQUENTIAL, from_zero),
-    "fit_error": Look("fit error", "distance\nto the mesh", "{u}", "distance", decades, log=True),
+    schema.CLASS: Look("class", "1 convex\n0 saddle\n−1 concave", "", "cividis", fixed(-1.0, 1.0), step=1.0),
+    schema.GAUSSIAN_CURVATURE: Look("Gaussian curvature", "Gaussian\ncurvature", "1/{u}²", DIVERGING, both_ways),
+    schema.MEAN_CURVATURE: Look("mean curvature", "mean curvature", schema.MEAN_CURVATURE.unit, DIVERGING, both_ways),
+    schema.STRETCH: Look("stretch of the chart", "area scale\nover its mean", "", SEQUENTIAL, from_zero),
+    schema.FIT_ERROR: Look("fit error", "distance\nto the mesh", schema.LENGTHS, "distance", decades, log=True),
 }  # fmt: skip
 """The maps of surface.vtu that are numbers."""

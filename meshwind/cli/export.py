@@ -9,6 +9,7 @@ from meshwind.cli.arguments import OtherFolder, Printed, ResultsFolder
 from meshwind.cli.help import one_of, some_of, split_names
 from meshwind.cli.output import print_files
 from meshwind.cli.signature import with_records
+from meshwind.results.schema import SUFFIXES
 
 EXAMPLES = """
     # a shell deck for CalculiX and Abaqus, fibre directions for ParaView
@@ -24,7 +25,7 @@ EXAMPLES = """
     meshwind export part-wound --formats gmsh,ply
 """
 TARGETS = "inp", "fibers", "frames", "step", "viewer"
-FORMATS = "vtu", "vtk", "xdmf", "ply", "obj", "gmsh"
+FORMATS = tuple(SUFFIXES)
 SHELLS = "grid", "quads"
 """Names for help and completion: the modules that define them take long to import."""
 _WHAT, _SHELL, _FRAMES = "What is written", "Elements of inp and fibers", "Frames"
@@ -117,13 +118,13 @@ def export(
     frames: frames/*.csv for robots, in mm.  step: surface.step for CAD (needs meshwind[cad]).
     viewer: viewer.html, a page for any browser, without a network (needs meshwind[viewer]).
     """
-    from meshwind.export.targets import Wishes
+    from meshwind.export.targets import ExportOptions
     from meshwind.export.targets import export as write
 
     formats = split_names(what.formats)
-    wishes = Wishes(
+    options = ExportOptions(
         shell.thickness, what.band_width, frames.step, frames.angle, shell.shell, shell.elements, formats
     )  # fmt: skip
-    done = write(folder, split_names(what.to), out, wishes)
+    done = write(folder, split_names(what.to), out, options)
     print_files(done.files, done.notes, printed)
     return 0

@@ -114,9 +114,9 @@ def read_cad(path: str | PathLike[str], tolerance: float = 1e-7) -> tuple[Surfac
             kept += [] if patch is None else [patch]
         reasons += [f"face {number}: {why}"] if why else []
     if not kept:
-        told = "; ".join(reasons[:4]) or "it holds no face"
+        found = "; ".join(reasons[:4]) or "it holds no face"
         raise BadInputError(
-            f"{name.name} has no surface that closes in one direction ({told}); give a mesh of the part"
+            f"{name.name} has no surface that closes in one direction ({found}); give a mesh of the part"
         )
     return tuple(_approximate(patch, tolerance) for patch in sorted(kept, key=lambda p: -p.size))
 

@@ -1,4 +1,4 @@
-"""The door to OpenCASCADE, which is an extra: what is missing is told with what to install."""
+"""Access to OpenCASCADE, an optional part: where it is missing, the error says what to install."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -53,7 +53,7 @@ def points_array(values: Any) -> Any:
 
 
 def knots_array(knots: Any) -> tuple[Any, Any]:
-    """Knots and how often each is there, as OpenCASCADE's arrays, of a knot vector with repetitions."""
+    """Knots and their multiplicities, as OpenCASCADE's arrays, of a knot vector with repetitions."""
     collections = occ("collections")
     first = [0, *(k for k in range(1, len(knots)) if knots[k] != knots[k - 1])]
     many = [b - a for a, b in zip(first, [*first[1:], len(knots)], strict=True)]

@@ -12,8 +12,8 @@ from typing import TextIO
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.units import millimetres
 from meshwind.export.elements import Elements
-from meshwind.export.material import Material
 from meshwind.export.plies import Plies
 from meshwind.results.schema import SHELL, SHELL_S4R
 
@@ -24,6 +24,38 @@ FORCE = 1000.0
 _STEPS = 1.15
 """Thicknesses are rounded to powers of this: where neighbours differ CalculiX joins them by a rigid knot."""
 _SHAPES = {3: "S3", 4: "S4R", 6: "S6", 8: "S8R"}
+
+
+@dataclass(frozen=True)
+class Material:
+    """A transversely isotropic layer, fibres along 1: moduli in MPa (N/mm2), density in t/mm3.
+
+    By default carbon fibre of standard modulus in epoxy, 60 % of fibre by volume, from data sheets' common range.
+    """
+
+    name: str = "CARBON_EPOXY"
+    e1: float = 135000.0
+    e2: float = 9000.0
+    nu12: float = 0.3
+    nu23: float = 0.4
+    g12: float = 4800.0
+    density: float = 1.6e-9
+
+    @property
+    def g23(self) -> float:
+        """Shear modulus across the fibres: that of the isotropic plane, e2 / (2 (1 + nu23))."""
+        return self.e2 / (2.0 * (1.0 + self.nu23))
+
+    def moduli(self, units: str) -> tuple[float, ...]:
+        """E1, E2, E3, nu12, nu13, nu23, G12, G13, G23; moduli in N over the unit of length squared."""
+        scale = millimetres(units) ** 2
+        stiff = self.e1, self.e2, self.e2
+        shear = self.g12, self.g12, self.g23
+        return (*(scale * e for e in stiff), self.nu12, self.nu12, self.nu23, *(scale * g for g in shear))
+
+    def mass(self, units: str) -> float:
+        """Density in N s2 over the unit of length to the fourth: consistent with newtons and that unit."""
+        return self.density * millimetres(units) ** 4
 
 
 @dataclass(frozen=True)
@@ -51,7 +83,7 @@ class _Nodes:
 
 
 def write_decks(folder: Path, deck: Deck) -> list[str]:
-    """Write both decks into a folder that is there; return what the user should know."""
+    """Write both decks into an existing folder; return what the user should know."""
     for name, quadratic in ((SHELL, True), (SHELL_S4R, False)):
         with (folder / name).open("w", encoding="ascii", errors="replace") as file:
             _write(file, deck, _nodes(deck.elements, quadratic))

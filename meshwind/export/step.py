@@ -19,7 +19,7 @@ TIME = "1970-01-01T00:00:00"
 
 
 def write_step(folder: Path, results: Results) -> list[str]:
-    """Write surface.step into a folder that is there, in mm; return what the user should know.
+    """Write surface.step into an existing folder, in mm; return what the user should know.
 
     The surface is the fitted one, not facets of it; a fibre is the cubic spline through its particles, and named by
     its path and family.  Paths that are not at rest are left out.  Raises BadInputError without OpenCASCADE.

@@ -11,9 +11,8 @@ from meshwind.export.elements import Elements, on_crossings, regular
 from meshwind.export.fibers import write_fibers
 from meshwind.export.formats import FORMATS, write_formats
 from meshwind.export.frames import write_frames
-from meshwind.export.material import Material
 from meshwind.export.plies import plies
-from meshwind.export.shell_deck import Deck, write_decks
+from meshwind.export.shell_deck import Deck, Material, write_decks
 from meshwind.export.step import write_step
 from meshwind.export.viewer import write_viewer
 from meshwind.results.folder import beside
@@ -23,12 +22,12 @@ GRID, QUADS = "grid", "quads"
 
 
 @dataclass(frozen=True)
-class Wishes:
-    """Settings of the exports; None stands for what each says is its default.  Lengths in the mesh's units.
+class ExportOptions:
+    """Options of the exports; None is the default that each export states.  Lengths are in the mesh's units.
 
     thickness: of one layer of band; width: of the band; step, angle: longest step of robot frames and their largest
     turn in degrees; shell: elements of shell deck and fibre field, "grid" or "quads" for the run's quad mesh; count:
-    elements of the grid, about; formats: mesh formats of `FORMATS`.
+    approximate number of elements of the grid; formats: mesh formats of `FORMATS`.
     """
 
     thickness: float | None = None
@@ -55,72 +54,72 @@ class Exported:
     notes: tuple[str, ...]
 
 
-Writer: TypeAlias = Callable[[Path, Results, Wishes], list[str]]
-"""Writes into a folder that is there; returns what the user should know."""
+Writer: TypeAlias = Callable[[Path, Results, ExportOptions], list[str]]
+"""Writes into an existing folder; returns what the user should know."""
 
 
 def export(
     folder: str | PathLike[str],
     to: Sequence[str],
     out: str | PathLike[str] | None = None,
-    wishes: Wishes | None = None,
+    options: ExportOptions | None = None,
 ) -> Exported:
-    """Write what `to` names of `TARGETS`, and the wished formats, into `out`, by default the results folder itself.
+    """Write the named `TARGETS` and the formats of the options into `out`, by default the results folder itself.
 
     All files appear, or none.  Raises BadInputError for a name that is not known, for a folder that holds no results
     and where a target cannot be made of them.
     """
-    asked = wishes or Wishes()
+    given = options or ExportOptions()
     _known("target", to, TARGETS)
-    if not (to or asked.formats):
+    if not (to or given.formats):
         raise BadInputError(f"nothing to export; give --to {','.join(TARGETS)} or --formats {','.join(FORMATS)}")
     results = read_results(folder)
     target = Path(folder if out is None else out)
     notes: list[str] = []
     with beside(target) as staging:
         for name in dict.fromkeys(to):
-            notes += TARGETS[name](staging, results, asked)
-        if asked.formats:
-            notes += write_formats(staging, results, tuple(dict.fromkeys(asked.formats)))
+            notes += TARGETS[name](staging, results, given)
+        if given.formats:
+            notes += write_formats(staging, results, tuple(dict.fromkeys(given.formats)))
         names = sorted(path.relative_to(staging) for path in staging.rglob("*") if path.is_file())
     return Exported(tuple(target / name for name in names), tuple(notes))
 
 
 def _known(what: str, names: Sequence[str], known: Mapping[str, object]) -> None:
-    strange = [name for name in names if name not in known]
-    if strange:
-        raise BadInputError(f"{what} {strange[0]!r} is not known; give {', '.join(known)}")
+    unknown = [name for name in names if name not in known]
+    if unknown:
+        raise BadInputError(f"{what} {unknown[0]!r} is not known; give {', '.join(known)}")
 
 
-def _elements(results: Results, wishes: Wishes, count: int) -> Elements:
-    if wishes.shell == QUADS:
+def _elements(results: Results, options: ExportOptions, count: int) -> Elements:
+    if options.shell == QUADS:
         return on_crossings(results)
-    return regular(results.surface, wishes.count or count)
+    return regular(results.surface, options.count or count)
 
 
-def _deck(folder: Path, results: Results, wishes: Wishes) -> list[str]:
-    elements = _elements(results, wishes, 1000)
-    laid = plies(results, elements, wishes.thickness, wishes.width)
+def _deck(folder: Path, results: Results, options: ExportOptions) -> list[str]:
+    elements = _elements(results, options, 1000)
+    laid = plies(results, elements, options.thickness, options.width)
     return write_decks(folder, Deck(elements, laid, Material(), results.units, results.name))
 
 
-def _fibers(folder: Path, results: Results, wishes: Wishes) -> list[str]:
-    elements = _elements(results, wishes, 10_000)
-    write_fibers(folder, elements, plies(results, elements, wishes.thickness, wishes.width), results.units)
+def _fibers(folder: Path, results: Results, options: ExportOptions) -> list[str]:
+    elements = _elements(results, options, 10_000)
+    write_fibers(folder, elements, plies(results, elements, options.thickness, options.width), results.units)
     return []
 
 
-def _frames(folder: Path, results: Results, wishes: Wishes) -> list[str]:
-    return write_frames(folder, results, wishes.step, wishes.angle, wishes.width)
+def _frames(folder: Path, results: Results, options: ExportOptions) -> list[str]:
+    return write_frames(folder, results, options.step, options.angle, options.width)
 
 
-def _step(folder: Path, results: Results, wishes: Wishes) -> list[str]:
-    del wishes  # a surface and its curves have no settings
+def _step(folder: Path, results: Results, options: ExportOptions) -> list[str]:
+    del options  # a surface and its curves have none
     return write_step(folder, results)
 
 
-def _viewer(folder: Path, results: Results, wishes: Wishes) -> list[str]:
-    del wishes  # what the page shows is set in the page
+def _viewer(folder: Path, results: Results, options: ExportOptions) -> list[str]:
+    del options  # what the page shows is chosen in the page
     return write_viewer(folder, results)
 
 

@@ -7,16 +7,15 @@ import base64
 import json
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
-from meshwind.appearance.colours import colour_map
-from meshwind.appearance.looks import MAPS
+from meshwind.appearance.looks import MAPS, colour_map
 from meshwind.appearance.view import best_view
 from meshwind.appearance.words import quantity
-from meshwind.core.cast import Bools, Ints
+from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.path.lengths import bridged_share, lengths
 from meshwind.results.reading import Results, read_surface_grid
@@ -27,42 +26,118 @@ _MOST = 12_000
 """Points of the surface that a browser turns smoothly without a graphics card."""
 _SUNK = 2e-3
 """The surface is drawn so far below itself, over its size, that fibres on it are in sight."""
+_STOPS = 33
+"""Colours of a colour map that the page has; it mixes those between."""
 _NO_PLOTLY = 'the viewer needs the Python package plotly, for plotly.js; pip install "meshwind[viewer]"'
 
 
+Stops = list[list[float | str]]
+"""A colour map as shares of a scale from 0 to 1, each with the colour there."""
+
+
+class Packed(TypedDict):
+    """An array as base64 of float32 ("f4") or int32 ("i4"), rows one after the other."""
+
+    type: str
+    data: str
+
+
+class MapData(TypedDict):
+    """A map of the surface and how it is shown; marks are shares of its scale."""
+
+    name: str
+    title: str
+    words: str
+    unit: str
+    colours: Stops
+    low: float
+    high: float
+    log: bool
+    values: Packed
+    marks: list[float]
+    mark_words: list[str]
+
+
+class SurfaceData(TypedDict):
+    """The surface: points as they are and as they are drawn, triangles between them, uv, and the maps."""
+
+    points: Packed
+    drawn: Packed
+    triangles: Packed
+    uv: Packed
+    maps: list[MapData]
+
+
+class LineData(TypedDict):
+    """Segments of fibres of one kind, with data at their points; NaN points part them."""
+
+    kind: str
+    family: int
+    words: str
+    count: int
+    path: Packed
+    points: Packed
+    uv: Packed
+    gap: Packed
+    slip: Packed
+    arc: Packed
+
+
+class CameraData(TypedDict):
+    """Directions to the eye and up, and the extents seen over the largest of the part's box."""
+
+    eye: list[float]
+    up: list[float]
+    width: float
+    height: float
+
+
+class PageData(TypedDict):
+    """All that the page shows."""
+
+    name: str
+    units: str
+    facts: list[str]
+    surface: SurfaceData
+    fibres: list[LineData]
+    colours: dict[str, Stops]
+    max_gap: float
+    camera: CameraData
+
+
 def write_viewer(folder: Path, results: Results) -> list[str]:
-    """Write viewer.html into a folder that is there; raises BadInputError where plotly is not installed."""
+    """Write viewer.html into an existing folder; raises BadInputError where plotly is not installed."""
     if find_spec("plotly") is None:
         raise BadInputError(_NO_PLOTLY)
     from plotly.offline import get_plotlyjs
 
     page = Path(__file__).with_suffix(".html").read_text(encoding="utf-8")
-    told = json.dumps(scene(results), allow_nan=False).replace("</", "<\\/")
-    for mark, content in (("/*PLOTLY*/", get_plotlyjs()), ("/*SCENE*/", told), ("<!--NAME-->", _escaped(results.name))):
+    data = json.dumps(page_data(results), allow_nan=False).replace("</", "<\\/")
+    for mark, content in (("/*PLOTLY*/", get_plotlyjs()), ("/*SCENE*/", data), ("<!--NAME-->", _escaped(results.name))):
         before, after = page.split(mark)
         page = before + content + after
     (folder / VIEWER).write_text(page, encoding="utf-8")
     return []
 
 
-def scene(results: Results) -> dict[str, Any]:
-    """All that the page shows, arrays as base64 of float32 or int32."""
-    skin = read_surface_grid(results.folder, results.surface)
+def page_data(results: Results) -> PageData:
+    """All that the page shows."""
+    grid = read_surface_grid(results.folder, results.surface)
     return {
         "name": results.name,
         "units": results.units,
         "facts": _facts(results),
-        "surface": _surface(skin, results),
+        "surface": _surface(grid, results),
         "fibres": _fibres(results),
         "colours": {"gap": _stops("gap")},
         "max_gap": float(results.paths.gap[results.at_rest].max(initial=0.0)),
-        "camera": _camera(skin, results),
+        "camera": _camera(grid, results),
     }
 
 
-def _surface(skin: Faces, results: Results) -> dict[str, Any]:
+def _surface(grid: Faces, results: Results) -> SurfaceData:
     """The surface thinned to what a browser can turn, with its maps."""
-    uv = skin.point_data[UV]
+    uv = grid.point_data[UV]
     nv = int((uv[:, 0] == uv[0, 0]).sum())
     nu = len(uv) // nv
     share = min(np.sqrt(_MOST / len(uv)), 1.0)
@@ -72,19 +147,19 @@ def _surface(skin: Faces, results: Results) -> dict[str, Any]:
     number = np.arange(len(kept)).reshape(len(rows), len(columns))
     number = np.concatenate([number, number[:1]]) if results.surface.periodic else number
     a, b, c, d = (part.ravel() for part in (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]))
-    points = skin.points[kept]
+    points = grid.points[kept]
     size = np.linalg.norm(np.ptp(points, axis=0))
     return {
         "points": _packed(points.T),
-        "drawn": _packed((points - _SUNK * size * skin.point_data[NORMAL][kept]).T),
+        "drawn": _packed((points - _SUNK * size * grid.point_data[NORMAL][kept]).T),
         "triangles": _packed(np.concatenate([np.stack([a, b, c]), np.stack([a, c, d])], axis=1)),
         "uv": _packed(uv[kept].T),
-        "maps": [_map(name, skin, kept, results.units) for name in MAPS if name in skin.point_data],
+        "maps": [_map(name, grid, kept, results.units) for name in MAPS if name in grid.point_data],
     }
 
 
-def _map(name: str, skin: Faces, kept: Ints, units: str) -> dict[str, Any]:
-    look, values = MAPS[name], skin.point_data[name].astype(np.float64)
+def _map(name: str, grid: Faces, kept: Ints, units: str) -> MapData:
+    look, values = MAPS[name], grid.point_data[name].astype(np.float64)
     scale = look.scale(values, units)
     marks = scale.marks
     return {
@@ -98,12 +173,12 @@ def _map(name: str, skin: Faces, kept: Ints, units: str) -> dict[str, Any]:
         "log": scale.log,
         "values": _packed(values[kept]),
         "marks": [share for share, _ in marks],
-        "mark_words": [told for _, told in marks],
+        "mark_words": [words for _, words in marks],
     }
 
 
-def _fibres(results: Results) -> list[dict[str, Any]]:
-    """The fibres of each family on the surface, their bridges, and all that is not at rest, as far as there is any."""
+def _fibres(results: Results) -> list[LineData]:
+    """The fibres of each family on the surface, their bridges, and all paths not at rest; none without points."""
     paths, taut = results.paths, results.at_rest
     touching = paths.on_surface[:, :-1] & paths.on_surface[:, 1:]
     kinds = [("loose", 0, "not at rest", ~taut, np.ones_like(touching))]
@@ -117,7 +192,7 @@ def _fibres(results: Results) -> list[dict[str, Any]]:
     return [lines for lines in made if lines["count"]]
 
 
-def _lines(results: Results, kind: str, family: int, words: str, mine: Bools, wanted: Bools) -> dict[str, Any]:
+def _lines(results: Results, kind: str, family: int, words: str, mine: Bools, wanted: Bools) -> LineData:
     """The wanted segments (p, n - 1) of some paths (p,), one after the other, with a NaN point after each run."""
     paths = results.paths
     segments = wanted & mine[:, None]
@@ -128,26 +203,32 @@ def _lines(results: Results, kind: str, family: int, words: str, mine: Bools, wa
     goes_on = np.zeros(paths.gap.shape, dtype=bool)
     goes_on[:, :-1] = segments
     breaks = np.flatnonzero(~goes_on[path, particle]) + 1
-    data = {
-        "points": paths.points[path, particle],
-        "uv": paths.uv[path, particle],
-        "gap": paths.gap[path, particle],
-        "slip": paths.slip[path, particle],
-        "arc": lengths(paths).arc_length[path, particle],
+
+    def at_points(values: Floats) -> Packed:
+        return _packed(np.insert(values[path, particle], breaks, np.nan, axis=0).T)
+
+    return {
+        "kind": kind,
+        "family": family,
+        "words": words,
+        "count": len(path),
+        "path": _packed(np.insert(path, breaks, -1)),
+        "points": at_points(paths.points),
+        "uv": at_points(paths.uv),
+        "gap": at_points(paths.gap),
+        "slip": at_points(paths.slip),
+        "arc": at_points(lengths(paths).arc_length),
     }
-    packed = {name: _packed(np.insert(values, breaks, np.nan, axis=0).T) for name, values in data.items()}
-    whose = _packed(np.insert(path, breaks, -1))
-    return {"kind": kind, "family": family, "words": words, "count": len(path), "path": whose} | packed
 
 
-def _camera(skin: Faces, results: Results) -> dict[str, Any]:
+def _camera(grid: Faces, results: Results) -> CameraData:
     """Where the eye is and what is up, as on the pictures; the extents seen over the largest of the part's box."""
-    nv = int((skin.point_data[UV][:, 0] == skin.point_data[UV][0, 0]).sum())
-    axis = skin.points.reshape(-1, nv, 3).mean(axis=0)
+    nv = int((grid.point_data[UV][:, 0] == grid.point_data[UV][0, 0]).sum())
+    axis = grid.points.reshape(-1, nv, 3).mean(axis=0)
     paths = results.paths
     marks = paths.points.reshape(-1, 3), paths.normal.reshape(-1, 3), paths.gap.ravel()
-    view = best_view(skin.points, skin.quads, axis, *marks)
-    largest = float(np.ptp(skin.points, axis=0).max())
+    view = best_view(grid.points, grid.quads, axis, *marks)
+    largest = float(np.ptp(grid.points, axis=0).max())
     return {
         "eye": view.eye.tolist(),
         "up": view.up.tolist(),
@@ -177,9 +258,8 @@ def _thinned(count: int, share: float, closed: bool) -> Ints:
     return np.unique(np.rint(np.linspace(0, count - (count / many if closed else 1), many)).astype(np.int64))
 
 
-def _stops(name: str) -> list[list[Any]]:
-    """A colour map as stops of a scale from 0 to 1."""
-    at = np.linspace(0.0, 1.0, 33)
+def _stops(name: str) -> Stops:
+    at = np.linspace(0.0, 1.0, _STOPS)
     shades = colour_map(name)(at)[:, :3]
     return [
         [float(t), f"rgb({','.join(str(round(255 * part)) for part in shade)})"]
@@ -187,8 +267,7 @@ def _stops(name: str) -> list[list[Any]]:
     ]
 
 
-def _packed(values: NDArray[Any]) -> dict[str, str]:
-    """An array as text; rows one after the other."""
+def _packed(values: NDArray[Any]) -> Packed:
     kind = "<i4" if np.issubdtype(values.dtype, np.integer) else "<f4"
     return {
         "type": kind[1:],

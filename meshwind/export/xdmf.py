@@ -52,13 +52,13 @@ def _topology(numbers: BinaryIO, cells: Sequence[tuple[str, Ints]]) -> str:
 
 
 def _item(numbers: BinaryIO, values: NDArray[Any]) -> str:
-    """Append an array to the file of numbers and tell where it is."""
+    """Append an array to the file of numbers; return the XML that says where it is."""
     whole = values.dtype.kind in "iub"
     kind, size = "Int" if whole else "Float", " ".join(map(str, values.shape))
     start = numbers.tell()
     numbers.write(np.ascontiguousarray(values, dtype="<i8" if whole else "<f8").tobytes())
-    place = Path(numbers.name).name
+    file = Path(numbers.name).name
     return (
         f'<DataItem DataType="{kind}" Dimensions="{size}" Format="Binary" Endian="Little" Precision="8" '
-        f'Seek="{start}">{place}</DataItem>'
+        f'Seek="{start}">{file}</DataItem>'
     )

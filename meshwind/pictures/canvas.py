@@ -8,8 +8,7 @@ import pyvista as pv
 from matplotlib import get_data_path
 from PIL import Image, ImageDraw, ImageFont
 
-from meshwind.appearance.colours import colour_map
-from meshwind.appearance.looks import Scale, round_below
+from meshwind.appearance.looks import Scale, colour_map, round_below
 from meshwind.appearance.view import View
 from meshwind.core.cast import Floats
 from meshwind.pictures.page import DESIGNED, Page

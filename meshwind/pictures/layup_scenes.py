@@ -7,9 +7,10 @@ from meshwind.core.cast import Floats
 from meshwind.pictures.scenes import CrossingsScene, QuadsScene, SlipScene, UnrolledScene
 from meshwind.pictures.subject import Subject
 from meshwind.pictures.winding_scene import fibres
+from meshwind.results.schema import DEGREES
 from meshwind.surface.image import surface_image
 
-ANGLE = Look("crossing angle", "angle between\nthe families", "degrees", "viridis", fixed(0.0, 90.0), step=15.0)
+ANGLE = Look("crossing angle", "angle between\nthe families", DEGREES, "viridis", fixed(0.0, 90.0), step=15.0)
 NO_SLIP = 1e-6
 """Slip below this is round-off: the fibre is a geodesic."""
 _PIXELS = 384

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 
-from meshwind.appearance.colours import colour_map
+from meshwind.appearance.looks import colour_map
 from meshwind.pictures import canvas
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import RedesignScene

@@ -14,8 +14,9 @@ from meshwind.pictures import driver
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import Drawing, Frame, RedesignScene
 from meshwind.results.reading import read_edited
+from meshwind.results.schema import LENGTHS
 
-_MOVES = Look("displacement", "moved outward\n(red) or\ninward (blue)", "{u}", DIVERGING, both_ways)
+_MOVES = Look("displacement", "moved outward\n(red) or\ninward (blue)", LENGTHS, DIVERGING, both_ways)
 _EYES = 240
 _MOVED = 0.01
 """Of the largest displacement: vertices that move by more count as moved."""

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from meshwind.appearance.colours import colour_map
+from meshwind.appearance.looks import colour_map
 from meshwind.core.cast import Bools, Floats
 from meshwind.pictures import bodies, canvas
 from meshwind.pictures.page import Page

@@ -4,8 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from meshwind.appearance.colours import colour_map
-from meshwind.appearance.looks import round_below
+from meshwind.appearance.looks import colour_map, round_below
 from meshwind.pictures import bodies, canvas
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import Fibres, WindingScene
