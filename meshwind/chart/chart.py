@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 
-from meshwind.core.cast import Floats, Kept
+from meshwind.core.cast import Floats, PicklableRecord
 from meshwind.mesh.geometry.annulus import Annulus
 
 
 @dataclass(frozen=True)
-class Chart(Kept):
+class Chart(PicklableRecord):
     """One-to-one map of an annulus to the periodic rectangle.
 
     Attributes

@@ -1,4 +1,4 @@
-"""The one place that casts and checks arrays; what lies behind it trusts what it gets."""
+"""Casts and checks of arrays that callers give; functions behind the public ones rely on them."""
 
 from typing import Any, TypeAlias
 
@@ -13,7 +13,7 @@ Bools: TypeAlias = NDArray[np.bool_]
 
 
 def frozen(array: NDArray[Any]) -> NDArray[Any]:
-    """Return a C-contiguous, read-only view or copy of `array`: results are immutable."""
+    """Return a C-contiguous, read-only view or copy of `array`, as results are immutable."""
     array = np.ascontiguousarray(array)
     view = array.view()
     view.flags.writeable = False
@@ -36,10 +36,10 @@ def ints(values: ArrayLike, name: str, *shape: int) -> Ints:
     return floats(values, name, *shape).astype(np.int64)
 
 
-class Kept:
-    """A frozen dataclass that comes back from a pickle as it went in: arrays read-only, cached properties left out.
+class PicklableRecord:
+    """Base of frozen dataclasses that are pickled: arrays stay read-only, cached properties are left out.
 
-    Kernels are compiled for read-only arrays; others would have them compiled again.
+    Kernels are compiled for read-only arrays, and would be compiled again for others.
     """
 
     def __getstate__(self) -> dict[str, Any]:

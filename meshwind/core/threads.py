@@ -1,7 +1,8 @@
-"""Compiled loops over all cores, by threads that run without the interpreter's lock.
+"""Parallel loops over compiled kernels, which run without the interpreter's lock.
 
-Threads of Python rather than of the compiler: nothing to initialise, safe to call from any thread, and kernels
-compile in a third of the time.  Every index is worked on alone, so the answer does not depend on the threads.
+The threads are Python's rather than the compiler's: nothing is to be initialised, loops may be started from any thread,
+and kernels compile in a third of the time.  Every index is independent of the others, so the result does not depend on
+the number of threads.
 """
 
 from collections.abc import Callable
@@ -11,13 +12,13 @@ from typing import Any
 import numba
 
 BLOCKS = 8
-"""Blocks a thread: enough that one slow block does not leave the others idle."""
+"""Blocks per thread: enough that one slow block does not leave the other threads idle."""
 
 
-def spread(kernel: Callable[..., Any], count: int, least: int, *arguments: Any) -> None:
+def parallel_for(kernel: Callable[..., Any], count: int, least: int, *arguments: Any) -> None:
     """Call kernel(first, last, *arguments) over blocks of range(count), each of at least `least` indices.
 
-    kernel must be compiled with nogil=True.  The number of threads is numba's (NUMBA_NUM_THREADS).
+    kernel must be compiled with nogil=True.  The number of threads is that of Numba (NUMBA_NUM_THREADS).
     """
     threads = numba.get_num_threads()
     size = max(least, -(-count // (threads * BLOCKS)))

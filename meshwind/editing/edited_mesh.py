@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 
 from meshwind.chart.chart import Chart
 from meshwind.core.cast import Bools, Floats, Ints, frozen
-from meshwind.core.threads import spread
+from meshwind.core.threads import parallel_for
 from meshwind.mesh.geometry.measure import area_vectors, perimeter, volume
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.surface.evaluate import Spline
@@ -84,7 +84,7 @@ def _feet(surface: Surface, points: Floats, guess: Floats) -> tuple[Floats, Floa
     middle = points.mean(axis=0)  # far from the origin the feet would lose digits
     uv, frames = np.array(guess), np.empty((len(points), 6, 3))
     spline = Spline(frozen(surface.net - middle), surface.periodic)
-    spread(feet, len(points), 500, spline, points - middle, uv, frames)
+    parallel_for(feet, len(points), 500, spline, points - middle, uv, frames)
     return uv, np.asarray(np.linalg.norm(surface.points(uv) - points, axis=1))
 
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats, Ints, floats, frozen
 from meshwind.core.errors import BadInputError
-from meshwind.core.threads import spread
+from meshwind.core.threads import parallel_for
 from meshwind.march.march import EVALUATIONS, ROWS, RUNNING, STOP, march_all
 from meshwind.march.traced import Stop, Trace
 from meshwind.surface.evaluate import Spline
@@ -198,7 +198,7 @@ def _march(
     while len(going):
         some, tally, rows = state[going], counts[going], np.empty((len(going), CHUNK, 5))
         tally[:, ROWS] = 0
-        spread(march_all, len(going), 1, spline, setting, slips[going], lengths[going], some, tally, rows)
+        parallel_for(march_all, len(going), 1, spline, setting, slips[going], lengths[going], some, tally, rows)
         state[going], counts[going] = some, tally
         for path, written, filled in zip(going, rows, tally[:, ROWS], strict=True):
             chunks[path].append(written[:filled].copy())

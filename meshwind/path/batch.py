@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
-from meshwind.core.threads import spread
+from meshwind.core.threads import parallel_for
 from meshwind.path.friction import Friction
 from meshwind.path.kernels.certificate import PULL
 from meshwind.path.kernels.hold import hold_all
@@ -65,7 +65,7 @@ class Batch:
         """The same paths with more particles, those between on the old ones' curve; counters go on."""
         fine = fresh(self.starts, particles)
         fine.tallies[:] = self.tallies
-        spread(refine_all, len(self), 64, self.X, self.uv, self.touching, self.gap, self.place, self.mode,
+        parallel_for(refine_all, len(self), 64, self.X, self.uv, self.touching, self.gap, self.place, self.mode,
                fine.X, fine.uv, fine.touching, fine.gap, fine.place, fine.mode)  # fmt: skip
         return fine
 
@@ -127,7 +127,7 @@ class Setting:
             batch.put(lifted, part)
 
     def _lay(self, batch: Batch, body: Body) -> None:
-        spread(lay_all, len(batch), 1, body, self._pull_off,
+        parallel_for(lay_all, len(batch), 1, body, self._pull_off,
                max(self.tolerance, COARSE), self.tolerance, self.iterations, batch.starts, batch.X, batch.uv,
                batch.normal, batch.touching, batch.gap, batch.slip, batch.residual, batch.status,
                batch.tallies)  # fmt: skip
@@ -167,10 +167,10 @@ class Setting:
         places = part.X, part.uv, part.normal, part.touching, part.gap, part.slip
         results = part.residual, part.status, part.tallies
         if self.friction.none and not self.even:
-            spread(relax_all, len(part), 1, *general, part.starts, *places, *results)
+            parallel_for(relax_all, len(part), 1, *general, part.starts, *places, *results)
         else:
-            spread(hold_all, len(part), 1, *general, self.friction.table, part.starts, part.place, part.mode, *places,
-                   *results)  # fmt: skip
+            parallel_for(hold_all, len(part), 1, *general, self.friction.table, part.starts, part.place, part.mode,
+                         *places, *results)  # fmt: skip
         if before is not None and (rerun := part.status == LIFTED).any():
             for array, old in zip((part.X, part.uv, part.touching, part.place, part.mode), before, strict=True):
                 array[rerun] = old[rerun]

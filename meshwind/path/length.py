@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from meshwind.core.cast import Bools, Floats
-from meshwind.core.threads import spread
+from meshwind.core.threads import parallel_for
 from meshwind.path.kernels.state import distance
 from meshwind.path.kernels.touchdown import touchdown
 from meshwind.surface.surface import Surface
@@ -41,7 +41,7 @@ def run_length(X, first, last):
 def fibre_lengths(surface: Surface, points: Floats, uv: Floats, touching: Bools) -> Floats:
     """Lengths (p,) of fibres with particles points (p, n, 3), at or above uv (p, n, 2), in the surface's units."""
     length = np.empty(len(points))
-    spread(lengths_all, len(points), 8, surface.spline, points, uv, touching, length)
+    parallel_for(lengths_all, len(points), 8, surface.spline, points, uv, touching, length)
     return length
 
 

@@ -6,9 +6,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshwind.core.cast import Floats, Kept, floats, frozen
+from meshwind.core.cast import Floats, PicklableRecord, floats, frozen
 from meshwind.core.errors import BadInputError
-from meshwind.core.threads import spread
+from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import unit
 from meshwind.surface import evaluate, tree
 from meshwind.surface.evaluate import SU, SV, Spline
@@ -62,7 +62,7 @@ class FitError:
 
 
 @dataclass(frozen=True)
-class Surface(Kept):
+class Surface(PicklableRecord):
     """Uniform bicubic B-spline surface s(u, v), with u in turns and v in [0, 1] from end to end.
 
     All surfaces are of this type: those that `fit` makes from a mesh, the analytic ones of `shapes`, and those read
@@ -184,7 +184,7 @@ class Surface(Kept):
         """
         where = floats(uv, "uv", -1, 2)
         out = np.empty((len(where), 6, 3))
-        spread(evaluate.frames, len(where), 2000, self.spline, where, out)
+        parallel_for(evaluate.frames, len(where), 2000, self.spline, where, out)
         return out
 
     def points(self, uv: ArrayLike) -> Floats:

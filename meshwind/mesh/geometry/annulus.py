@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 
-from meshwind.core.cast import Bools, Floats, Ints, Kept
+from meshwind.core.cast import Bools, Floats, Ints, PicklableRecord
 from meshwind.mesh.geometry.mesh import Mesh
 
 
 @dataclass(frozen=True)
-class Annulus(Kept):
+class Annulus(PicklableRecord):
     """Mesh of genus 0 with exactly two boundary loops, its rims, oriented outwards.
 
     Attributes

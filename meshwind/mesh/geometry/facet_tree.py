@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 from meshwind.core.cast import Floats, Ints, frozen
-from meshwind.core.threads import spread
+from meshwind.core.threads import parallel_for
 
 LEAF = 2
 """Triangles a leaf."""
@@ -43,13 +43,15 @@ class FacetTree:
         """Distances (k,) of points (k, 3) to the nearest triangle."""
         out = np.empty(len(points))
         runs = -(-len(points) // RUN)
-        spread(_distances, runs, 16, self.corners, self.boxes, frozen(points), out)
+        parallel_for(_distances, runs, 16, self.corners, self.boxes, frozen(points), out)
         return out
 
     def first_hits(self, start: Floats, ray: Floats) -> Ints:
         """The face that each of the segments from `start` along `ray` (k, 3) meets first, -1 where there is none."""
         out = np.empty(len(start), dtype=np.int64)
-        spread(_first_hits, len(start), 1000, self.corners, self.numbers, self.boxes, frozen(start), frozen(ray), out)
+        parallel_for(
+            _first_hits, len(start), 1000, self.corners, self.numbers, self.boxes, frozen(start), frozen(ray), out
+        )
         return out
 
 

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshwind.core.cast import Floats, Ints, Kept
+from meshwind.core.cast import Floats, Ints, PicklableRecord
 
 
 @dataclass(frozen=True)
-class Mesh(Kept):
+class Mesh(PicklableRecord):
     """Triangle mesh of a part: manifold, in one piece, oriented outwards.
 
     `read` makes one and repairs it.  A mesh that is built from arrays must be sound already.

@@ -11,7 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from meshwind.core.cast import Bools, Floats, Ints, frozen
-from meshwind.core.threads import spread
+from meshwind.core.threads import parallel_for
 from meshwind.mesh.geometry.annulus import Annulus
 from meshwind.surface.grid import Grid, grid
 from meshwind.surface.surface import Surface
@@ -114,7 +114,7 @@ def _feet(on: Grid, facets: Triangles, points: Floats) -> tuple[Floats, Floats]:
     surface, points = on.surface, np.ascontiguousarray(points)
     guess = on.uv[on.quads[facets.nearest(points)[1] % len(on.quads), 0]]
     feet = np.empty_like(points)
-    spread(_nearest_feet, len(points), 500, surface.body, points, guess, feet)
+    parallel_for(_nearest_feet, len(points), 500, surface.body, points, guess, feet)
     return np.asarray(np.linalg.norm(points - feet, axis=1)), feet
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from meshwind.chart.chart import Chart
 from meshwind.core.cast import Bools, Floats, Ints
-from meshwind.core.threads import spread
+from meshwind.core.threads import parallel_for
 from meshwind.mesh.geometry.facet_tree import FacetTree
 from meshwind.surface.fitting.infill import ANGLE, Int8s, infill, spans_across
 from meshwind.surface.foot import near_feet
@@ -89,7 +89,7 @@ class Samples:
         """Points between vertices for a net with so many spans: uv (k, 2), positions (k, 3) and weights (k,)."""
         annulus = self.chart.annulus
         across = np.empty(len(annulus.faces), dtype=np.int8)
-        spread(spans_across, len(across), 20_000, annulus.faces, self.uv, self.turns, spans, across)
+        parallel_for(spans_across, len(across), 20_000, annulus.faces, self.uv, self.turns, spans, across)
         coarse = np.flatnonzero(across > 1)
         if not len(coarse):
             return np.zeros((0, 2)), np.zeros((0, 3)), np.zeros(0)
@@ -115,7 +115,7 @@ class Samples:
     def corrected(self, surface: Surface) -> tuple["Samples", Floats]:
         """The samples with every vertex at its foot, on a rim the foot on that rim; and the distances (n,)."""
         moved, distance = self.uv.copy(), np.empty(len(self.uv))
-        spread(near_feet, len(moved), 6000, surface.net, self.points, CLOSE, moved, distance)
+        parallel_for(near_feet, len(moved), 6000, surface.net, self.points, CLOSE, moved, distance)
         rim = np.flatnonzero(self.rim)
         moved[rim, 1] = self.uv[rim, 1]
         at = surface.frames(self.uv[rim])
