@@ -10,7 +10,7 @@ from scipy.interpolate import BSpline
 
 from meshwind.path import solve
 from meshwind.surface import Surface, shapes
-from meshwind.surface.surface import DEGREE
+from meshwind.surface.evaluate import DEGREE
 
 
 @pytest.mark.parametrize("periodic", [True, False])

@@ -6,8 +6,8 @@ import numpy as np
 from scipy import sparse
 
 from meshwind.core.cast import Floats, Ints
-from meshwind.surface.evaluate import basis, bend, slope
-from meshwind.surface.surface import DEGREE, Surface
+from meshwind.surface.evaluate import DEGREE, basis, bend, slope
+from meshwind.surface.surface import Surface
 
 Order: TypeAlias = tuple[int, int]
 """Orders of the derivatives by u and by v."""

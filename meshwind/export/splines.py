@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.core.cast import Floats, frozen
-from meshwind.surface.surface import DEGREE, Surface
+from meshwind.surface.evaluate import DEGREE
+from meshwind.surface.surface import Surface
 
 
 @dataclass(frozen=True)

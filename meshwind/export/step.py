@@ -12,7 +12,8 @@ from meshwind.export.opencascade import knots_array, need, occ, points_array, qu
 from meshwind.export.splines import clamped_surface, curve_through
 from meshwind.results import schema
 from meshwind.results.reading import Results
-from meshwind.surface.surface import DEGREE, Surface
+from meshwind.surface.evaluate import DEGREE
+from meshwind.surface.surface import Surface
 
 TIME = "1970-01-01T00:00:00"
 """In place of the time of writing, which STEP asks for: the same run gives the same bytes."""

@@ -10,6 +10,13 @@ from meshwind.methods.motion import Method
 from meshwind.surface.evaluate import SU, SUU, SUV, SVV, S
 from meshwind.surface.surface import Surface
 
+MODES = 201
+"""Number of frequencies up to the largest at which the stability of Runge-Kutta's method is tested."""
+BISECTIONS = 60
+"""More than the bits of a number: the bisection ends with the two sides next to each other."""
+ROUND_OFF = 1e-12
+"""A growth of less than this per step is round-off."""
+
 
 def largest_frequency(surface: Surface, uv: ArrayLike, *, stiffness: float = 1.0, mass: float = 1.0) -> float:
     """Largest angular frequency omega_max of (4.8) linearised about the path uv (n, 2), all of it touching.
@@ -62,12 +69,12 @@ def stable_step(method: str, frequency: float, *, damping: float = 0.0, mass: fl
 
 def _runge_kutta(frequency: float, c: float) -> float:
     """Bisect for the largest step at which the stability polynomial stays within the unit disc, for all modes."""
-    modes = frequency * np.linspace(0.0, 1.0, 201)
+    modes = frequency * np.linspace(0.0, 1.0, MODES)
     root = np.sqrt((0.25 * c * c - modes**2).astype(complex))
-    low, high = 0.0, 4.0 / frequency
-    for _ in range(60):
+    low, high = 0.0, 4.0 / frequency  # beyond the undamped limit of 2.83
+    for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
         z = middle * np.concatenate([-0.5 * c + root, -0.5 * c - root])
         growth = np.abs(1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0))))
-        low, high = (middle, high) if growth.max() <= 1.0 + 1e-12 else (low, middle)
+        low, high = (middle, high) if growth.max() <= 1.0 + ROUND_OFF else (low, middle)
     return low

@@ -18,9 +18,10 @@ from meshwind.results.image_files import write_chart_image
 from meshwind.results.maps import maps
 from meshwind.results.meshio_files import write_meshio
 from meshwind.results.vtk_files import write_faces, write_lines, write_vertices
+from meshwind.surface.evaluate import DEGREE
 from meshwind.surface.fitting.deviation import Triangles
 from meshwind.surface.grid import Grid, grid
-from meshwind.surface.surface import DEGREE, Surface
+from meshwind.surface.surface import Surface
 
 
 def write_files(out: Path, layup: Layup, mesh: Mesh | None = None, units: str = "") -> None:

@@ -12,6 +12,8 @@ from numba import njit
 
 from meshwind.core.cast import Floats
 
+DEGREE = 3
+"""Degree of the polynomials in both directions."""
 S, SU, SV, SUU, SUV, SVV = range(6)
 """Rows of a frame: position, first and second derivatives."""
 
@@ -19,12 +21,18 @@ S, SU, SV, SUU, SUV, SVV = range(6)
 class Spline(NamedTuple):
     """A surface as the kernels take it.
 
-    net (spans_u + 3, spans_v + 3, 3) holds the control points, padded in u where the spline is periodic so that no
-    index wraps.
+    net (spans_u + 3, spans_v + 3, 3): the control points, where the spline is periodic in u with the first three rows
+    repeated at the end, so that no index wraps.
     """
 
     net: Floats
     periodic: bool
+
+
+@njit(inline="always", cache=True)
+def spans_of(net):
+    """Number of spans in u and in v of a net."""
+    return net.shape[0] - DEGREE, net.shape[1] - DEGREE
 
 
 @njit(inline="always", cache=True)
@@ -73,7 +81,7 @@ def bend(x, spans):
 def frame(spline, u, v, out):
     """Write position and derivatives s, s_u, s_v, s_uu, s_uv, s_vv at (u, v) into out (6, 3)."""
     net = spline.net
-    nu, nv = net.shape[0] - 3, net.shape[1] - 3
+    nu, nv = spans_of(net)
     i, x = locate(u, nu, spline.periodic)
     j, y = locate(v, nv, False)
     b, d, e = basis(x), slope(x, nu), bend(x, nu)
@@ -97,9 +105,9 @@ def frame(spline, u, v, out):
 
 @njit(cache=True)
 def tangents(spline, u, v, out):
-    """Write s, s_u, s_v at (u, v) into the first rows of out: bit for bit those of `frame`, a third cheaper."""
+    """Write s, s_u, s_v at (u, v) into the first rows of out: bit for bit those of `frame`, in 2/3 of the time."""
     net = spline.net
-    nu, nv = net.shape[0] - 3, net.shape[1] - 3
+    nu, nv = spans_of(net)
     i, x = locate(u, nu, spline.periodic)
     j, y = locate(v, nv, False)
     b, d = basis(x), slope(x, nu)
@@ -117,9 +125,9 @@ def tangents(spline, u, v, out):
 
 @njit(cache=True)
 def position(spline, u, v, out):
-    """Write the position alone into out (3,): a third of a frame's cost."""
+    """Write the position alone into out (3,), in a third of the time of a frame."""
     net = spline.net
-    nu, nv = net.shape[0] - 3, net.shape[1] - 3
+    nu, nv = spans_of(net)
     i, x = locate(u, nu, spline.periodic)
     j, y = locate(v, nv, False)
     b, c = basis(x), basis(y)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, S, basis, bend, frame, locate, position, slope
+from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, S, basis, bend, frame, locate, position, slope, spans_of
 
 MAX_STEPS = 40
 """Maximum number of Newton steps; 3 to 6 suffice from a near guess, more only where the distance is nearly flat."""
@@ -163,7 +163,7 @@ def squared_distance(at, point):
 @njit(inline="always", cache=True)
 def _expand_at(net, i, x, j, y, point):
     """The expansion of the distance to a point at local coordinates (x, y) of span (i, j), with no frame on the way."""
-    nu, nv = net.shape[0] - 3, net.shape[1] - 3
+    nu, nv = spans_of(net)
     b, d, e = basis(x), slope(x, nu), bend(x, nu)
     c, f, g = basis(y), slope(y, nv), bend(y, nv)
     square = gu = gv = huu = huv = hvv = auu = auv = avv = 0.0
@@ -207,7 +207,7 @@ def near_feet(first, last, net, points, close, guesses, distances):
     As `foot`, but done with the first whole step below `close` of the plane, and in half the time: what such a
     step leaves is of the order of close^2.  Writes the distances (n,).
     """
-    spans_u, spans_v = net.shape[0] - 3, net.shape[1] - 3
+    spans_u, spans_v = spans_of(net)
     for n in range(first, last):
         u, v, square = guesses[n, 0], guesses[n, 1], 0.0
         for _ in range(MAX_STEPS):

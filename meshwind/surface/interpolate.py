@@ -7,7 +7,8 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 
 from meshwind.core.cast import Floats
-from meshwind.surface.surface import DEGREE, Surface
+from meshwind.surface.evaluate import DEGREE
+from meshwind.surface.surface import Surface
 
 Formula: TypeAlias = Callable[[Floats, Floats], Floats]
 """s(u, v) for arrays of equal shape; the result has one more axis of length 3."""

@@ -11,10 +11,8 @@ from meshwind.core.errors import BadInputError
 from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import unit
 from meshwind.surface import evaluate, tree
-from meshwind.surface.evaluate import SU, SV, Spline
+from meshwind.surface.evaluate import DEGREE, SU, SV, Spline
 from meshwind.surface.tree import NO_TREE, Body, SearchTree
-
-DEGREE = 3
 
 
 @dataclass(frozen=True)

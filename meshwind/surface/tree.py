@@ -14,7 +14,7 @@ from numba import njit
 
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.surface.boxes import ALONG, CENTRE, EXTENT, FAR, NORMAL, WIDE, bezier, enclose, enclose_children, to_boxes
-from meshwind.surface.evaluate import Spline, position
+from meshwind.surface.evaluate import Spline, position, spans_of
 from meshwind.surface.foot import foot, squared_distance
 
 DENSITY = 3
@@ -65,7 +65,7 @@ class Body(NamedTuple):
 @njit(cache=True)
 def build(spline):
     """The arrays of a surface's search tree: boxes, levels, samples."""
-    spans_u, spans_v = spline.net.shape[0] - 3, spline.net.shape[1] - 3
+    spans_u, spans_v = spans_of(spline.net)
     levels = levels_over(spans_u, spans_v)
     boxes = np.zeros((levels[-1, FIRST] + 1, 12, WIDE * WIDE))
     boxes[:, CENTRE : CENTRE + 3], boxes[:, NORMAL + 2], boxes[:, ALONG] = FAR, 1.0, 1.0
@@ -132,7 +132,7 @@ def closer_candidate(body, point, square, u, v):
     samples, and these count by the least distance that it may have.  Pieces are numbered row by row.
     """
     boxes, levels, samples = body.tree.boxes, body.tree.levels, body.tree.samples
-    rows, columns = body.spline.net.shape[0] - 3, body.spline.net.shape[1] - 3
+    rows, columns = spans_of(body.spline.net)
     periodic = body.spline.periodic
     here_i = int(np.floor((u - np.floor(u)) * rows if periodic else u * rows))
     here_j = int(v * columns)
@@ -176,7 +176,7 @@ def nearest_foot(body, point, guess, at):
     before = guess[0]
     count = foot(body.spline, point, guess, at)
     square = squared_distance(at, point)
-    rows, columns = body.spline.net.shape[0] - 3, body.spline.net.shape[1] - 3
+    rows, columns = spans_of(body.spline.net)
     for _ in range(MAX_FEET - 1):
         piece, sample = closer_candidate(body, point, square * (1.0 - CANDIDATE), guess[0], guess[1])
         if piece < 0:

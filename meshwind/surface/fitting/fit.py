@@ -9,11 +9,12 @@ from meshwind.chart.chart import Chart
 from meshwind.chart.measure import speeds
 from meshwind.core.defaults import FIT_TOLERANCE
 from meshwind.core.errors import BadInputError
+from meshwind.surface.evaluate import DEGREE
 from meshwind.surface.fitting import normal_equations
 from meshwind.surface.fitting.certify import certify, to_mesh
 from meshwind.surface.fitting.noise import roughness
 from meshwind.surface.fitting.samples import Samples
-from meshwind.surface.surface import DEGREE, Surface
+from meshwind.surface.surface import Surface
 
 ROUNDS = 4
 """Number of fits of one net, the vertices' parameters moved to their feet in between; the error settles in 3 or 4."""
