@@ -1,10 +1,12 @@
 """`meshwind info`: what a mesh holds, what a run found, or what this installation can do; nothing is written."""
 
 import platform
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
 from importlib import metadata
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -41,9 +43,11 @@ def info(
     printed: Printed,
 ) -> int:
     """Describe a mesh file, the run in a results folder, or this installation."""
+    lines: list[str]
+    figures: Mapping[str, object]
     if what is None:
-        figures = _installation()
-        lines = _installation_lines(figures)
+        found = _installation()
+        lines, figures = found.lines, asdict(found)
     elif what.is_dir():
         lines, figures = _run(what)
     else:
@@ -52,7 +56,7 @@ def info(
     return 0
 
 
-def _run(folder: Path) -> tuple[list[str], dict[str, Any]]:
+def _run(folder: Path) -> tuple[list[str], Mapping[str, object]]:
     from meshwind.cli.summary import redesign_lines, run_lines
     from meshwind.results.reading import read_report
 
@@ -65,9 +69,7 @@ def _run(folder: Path) -> tuple[list[str], dict[str, Any]]:
         raise BadInputError(f"the report in {folder} lacks figures ({error}); make it again") from error
 
 
-def _mesh(file: Path) -> tuple[list[str], dict[str, Any]]:
-    from dataclasses import asdict
-
+def _mesh(file: Path) -> tuple[list[str], Mapping[str, object]]:
     from meshwind.cli.check import described
     from meshwind.mesh import inspect
     from meshwind.mesh.io.scalars import scalar_names
@@ -78,8 +80,34 @@ def _mesh(file: Path) -> tuple[list[str], dict[str, Any]]:
     return [*described(found), f"fields    {named}"], asdict(found) | {"fields": list(fields)}
 
 
-def _installation() -> dict[str, Any]:
-    """Versions by library, None where there is none; pictures and movies: "" or what is missing; extras: presence."""
+@dataclass(frozen=True)
+class _Installation:
+    """The version of each library, None where there is none, and what can be done.
+
+    pictures, movies: "" or what is missing for them; extras: whether each optional part is installed.
+    """
+
+    meshwind: str
+    python: str
+    libraries: dict[str, str | None]
+    pictures: str
+    movies: str
+    extras: dict[str, bool]
+
+    @property
+    def lines(self) -> list[str]:
+        """The same in a few lines."""
+        libraries = ", ".join(f"{name} {number or 'missing'}" for name, number in self.libraries.items())
+        return [
+            f"meshwind  {self.meshwind}, Python {self.python}",
+            f"library   {libraries}",
+            f"pictures  {self.pictures or 'can be drawn'}",
+            f"movies    {self.movies or 'can be made, GIF and MP4'}",
+            *(_extra(name, installed) for name, installed in self.extras.items()),
+        ]
+
+
+def _installation() -> _Installation:
     from meshwind.pictures.driver import can_draw
     from meshwind.pictures.movie import encoder
 
@@ -87,30 +115,18 @@ def _installation() -> dict[str, Any]:
         movies = "" if encoder() else "none"
     except BadInputError as error:
         movies = str(error)
-    return {
-        "meshwind": version(),
-        "python": platform.python_version(),
-        "libraries": {name: _version(name) for name in _LIBRARIES},
-        "pictures": can_draw(),
-        "movies": movies,
-        "extras": {name: find_spec(module) is not None for name, (module, _) in _EXTRAS.items()},
-    }
+    return _Installation(
+        meshwind=version(),
+        python=platform.python_version(),
+        libraries={name: _version(name) for name in _LIBRARIES},
+        pictures=can_draw(),
+        movies=movies,
+        extras={name: find_spec(module) is not None for name, (module, _) in _EXTRAS.items()},
+    )
 
 
-def _installation_lines(found: dict[str, Any]) -> list[str]:
-    """The installation in a few lines."""
-    libraries = ", ".join(f"{name} {number or 'missing'}" for name, number in found["libraries"].items())
-    return [
-        f"meshwind  {found['meshwind']}, Python {found['python']}",
-        f"library   {libraries}",
-        f"pictures  {found['pictures'] or 'can be drawn'}",
-        f"movies    {found['movies'] or 'can be made, GIF and MP4'}",
-        *(_extra(name, there) for name, there in found["extras"].items()),
-    ]
-
-
-def _extra(name: str, there: bool) -> str:
-    if there:
+def _extra(name: str, installed: bool) -> str:
+    if installed:
         return f"{name:<10}installed, for {_EXTRAS[name][1]}"
     return f'{name:<10}not installed; for {_EXTRAS[name][1]}: pip install "meshwind[{name}]"'
 

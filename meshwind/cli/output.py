@@ -5,14 +5,13 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
 
 import typer
 
 from meshwind.cli.arguments import Printed
 
 
-def print_report(lines: Sequence[str], figures: Mapping[str, Any], printed: Printed) -> None:
+def print_report(lines: Sequence[str], figures: Mapping[str, object], printed: Printed) -> None:
     """Print the figures as JSON, or the lines, or with `quiet` only the warnings, these to standard error."""
     if printed.as_json:
         from meshwind.results.report import plain
