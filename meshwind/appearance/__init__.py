@@ -1,4 +1,4 @@
-"""How figures and maps are shown, the same in every picture and page.
+"""Titles, colours, scales and views, the same in every picture and in the viewer.
 
-Loads nothing heavy: the process that draws must start quickly.
+Importing the package loads nothing heavy: the process that draws must start quickly.
 """

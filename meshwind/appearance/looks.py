@@ -9,16 +9,16 @@ import numpy as np
 from meshwind.core.cast import Floats
 from meshwind.results import schema
 
-_ROBUST = 0.99
-"""A scale that has no natural end ends here among its values, and says that there are more beyond, ..."""
+_QUANTILE = 0.99
+"""Quantile of the values at which a scale without a natural end stops, and shows that larger values exist, ..."""
 _NEAR = 1.25
-"""... unless the largest of them is hardly further."""
+"""... unless the largest value is within this factor of it."""
 _DECADES = 1.0 / 300.0
-"""A logarithmic scale goes down to this part of its end, ..."""
+"""Lower end of a logarithmic scale over its upper end, ..."""
 _CLEAR = 0.08
-"""... and marks at its ends keep others this far off."""
-_NOTHING = 1e-200
-"""Where all values are less than this a scale goes to 1."""
+"""... and distance that other marks keep from those at its ends."""
+_SMALLEST = 1e-200
+"""If all values are less than this, a scale goes to 1."""
 SEQUENTIAL, DIVERGING = "viridis", "RdBu_r"
 _CUT = {"gap": ("RdPu", 0.3, 1.0), "distance": ("magma_r", 0.04, 0.86)}
 """Parts of colour maps: pale where all is well, dark where it is not, so that what matters stands out, in greys too."""
@@ -41,9 +41,9 @@ def colour_map(name: str) -> Any:
 
 @dataclass(frozen=True)
 class Scale:
-    """Values to shares of a scale of colours: low to high, evenly or by their logarithm.
+    """A scale of colours from low to high, linear or logarithmic.
 
-    words: lines that head the scale; colours: name of a colour map; step between its marks, None for a round one;
+    words: lines above the scale; colours: name of a colour map; step: between its marks, None for a round one;
     beyond: whether there are values above `high`, which get its colour.
     """
 
@@ -56,7 +56,7 @@ class Scale:
     beyond: bool = False
 
     def shares(self, values: Floats) -> Floats:
-        """Where values (k,) lie on the scale, 0 to 1; NaN stays NaN."""
+        """Positions of values (k,) on the scale, 0 to 1; NaN stays NaN."""
         if self.log:
             part = np.log(np.maximum(values, self.low) / self.low) / np.log(self.high / self.low)
         else:
@@ -65,7 +65,7 @@ class Scale:
 
     @property
     def marks(self) -> list[tuple[float, str]]:
-        """Round values on the scale: their shares, and their words."""
+        """Round values on the scale: their positions and their text."""
         values = self._powers() if self.log else self._steps()
         marks = [(float(share), f"{value:.4g}") for share, value in zip(self.shares(values), values, strict=True)]
         if self.log:
@@ -91,9 +91,9 @@ Rule = Callable[[Floats], tuple[float, float]]
 
 @dataclass(frozen=True)
 class Look:
-    """How a map is shown: what it is, the words of its scale, its unit, its colours, and how its scale is found.
+    """How a map is shown: title, words of its scale, unit, colours, and the rule for the ends of its scale.
 
-    unit: "{u}" stands for the mesh's unit of length.
+    unit: "{u}" is replaced by the mesh's unit of length.
     """
 
     title: str
@@ -105,7 +105,7 @@ class Look:
     step: float | None = None
 
     def scale(self, values: Floats, units: str) -> Scale:
-        """The scale for values (k,) of a part in the named unit."""
+        """The scale for values (k,) of a part whose lengths are in `units`."""
         known = values[np.isfinite(values)]
         low, high = self.rule(known if len(known) else np.zeros(1))
         unit = self.unit.format(u=units) if units or "{u}" not in self.unit else ""
@@ -120,27 +120,27 @@ def fixed(low: float, high: float) -> Rule:
 
 
 def from_zero(values: Floats) -> tuple[float, float]:
-    """From 0 to about the largest."""
+    """From 0 to about the largest value."""
     return 0.0, _end(values)
 
 
 def both_ways(values: Floats) -> tuple[float, float]:
-    """As far below 0 as above."""
+    """Symmetric about 0."""
     end = _end(np.abs(values))
     return -end, end
 
 
 def decades(values: Floats) -> tuple[float, float]:
-    """From the largest down to what no longer matters beside it."""
+    """From the largest value down by `_DECADES`, for a logarithmic scale."""
     most = float(values.max())
-    high = most if most > _NOTHING else 1.0
+    high = most if most > _SMALLEST else 1.0
     return high * _DECADES, high
 
 
 def _end(values: Floats) -> float:
-    most, robust = float(values.max()), float(np.quantile(values, _ROBUST))
+    most, robust = float(values.max()), float(np.quantile(values, _QUANTILE))
     end = most if most <= _NEAR * robust else robust
-    return end if end > _NOTHING else 1.0
+    return end if end > _SMALLEST else 1.0
 
 
 def round_below(value: float) -> float:
@@ -168,4 +168,4 @@ MAPS: dict[str, Look] = {
     schema.STRETCH: Look("stretch of the chart", "area scale\nover its mean", "", SEQUENTIAL, from_zero),
     schema.FIT_ERROR: Look("fit error", "distance\nto the mesh", schema.LENGTHS, "distance", decades, log=True),
 }  # fmt: skip
-"""The maps of surface.vtu that are numbers."""
+"""The scalar maps of surface.vtu."""

@@ -1,4 +1,4 @@
-"""The side to look at a part from, and how large it comes out."""
+"""Views of a part: the direction to look from, and the extents on the picture."""
 
 from dataclasses import dataclass
 
@@ -7,17 +7,17 @@ import numpy as np
 from meshwind.core.cast import Floats, Ints
 
 _TILT = np.radians(14.0)
-"""How far the eye is turned towards an end of the part, so that its roundness shows."""
+"""Angle by which the view is tilted towards an end of the part, to show its roundness."""
 _TURNS = 24
 _BEND = 8.0
-"""Weight of the bend: one that strays by 5% of the part's size outweighs the bridges."""
+"""Weight of the bend: a bend of 5% of the part's size outweighs the bridges."""
 
 
 NAMED = {
     "x": (1.0, 0.0, 0.0), "-x": (-1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "-y": (0.0, -1.0, 0.0), "z": (0.0, 0.0, 1.0),
     "-z": (0.0, 0.0, -1.0), "iso": (1.0, -1.0, 1.0),
 }  # fmt: skip
-"""Where to look from, by name."""
+"""Directions to look from, by name."""
 
 
 @dataclass(frozen=True)
@@ -36,11 +36,11 @@ class View:
 
 
 def best_view(points: Floats, quads: Ints, axis: Floats, marks: Floats, outward: Floats, weight: Floats) -> View:
-    """Look square onto the long axis, from where most of the part, of its bend and of the marks are in sight.
+    """View perpendicular to the long axis that shows most of the part, of its bend and of the marks.
 
     points (k, 3) and quads (q, 4) are the part; axis (j, 3) its middle from end to end; marks (m, 3) with outward
-    normals (m, 3) and weights (m,) are what the picture is about.  A part that stands up along z is shown
-    upright, others lie along the picture.
+    normals (m, 3) and weights (m,) are what the picture is about.  A part whose long axis is along z is shown
+    upright, others are shown lying.
     """
     area, normal = _facets(points, quads)
     middle = points[quads].mean(axis=1)
@@ -68,7 +68,7 @@ def best_view(points: Floats, quads: Ints, axis: Floats, marks: Floats, outward:
 
 
 def merit_view(points: Floats, faces: Ints, eyes: Floats, merit: Floats) -> View:
-    """Look from the best of the directions `eyes` (k, 3), by their merit (k,) and by how much of a part they show.
+    """View from the best of the directions `eyes` (k, 3), by their merit (k,) and by how much of a part they show.
 
     points (n, 3) and faces (m, 3) are the part.  Upright or lying as in `best_view`.
     """
@@ -89,7 +89,7 @@ def merit_view(points: Floats, faces: Ints, eyes: Floats, merit: Floats) -> View
 
 
 def named_view(points: Floats, name: str) -> View:
-    """Look at points (n, 3) from one of `NAMED`, z upward or, along z, y upward."""
+    """View of points (n, 3) from one of `NAMED`, with z upward or, if seen along z, with y upward."""
     eye = np.array(NAMED[name]) / np.linalg.norm(NAMED[name])
     start = np.array([0.0, 1.0, 0.0]) if abs(eye[2]) > 0.9 else np.array([0.0, 0.0, 1.0])
     up = start - (start @ eye) * eye
@@ -98,7 +98,7 @@ def named_view(points: Floats, name: str) -> View:
 
 
 def around(count: int) -> Floats:
-    """Unit vectors (count, 3) all around, evenly on a spiral."""
+    """Unit vectors (count, 3) spread evenly over the sphere, on a spiral."""
     height = 1.0 - (2.0 * np.arange(count) + 1.0) / count
     turn = np.pi * (3.0 - np.sqrt(5.0)) * np.arange(count)
     across = np.sqrt(1.0 - height**2)
@@ -106,7 +106,7 @@ def around(count: int) -> Floats:
 
 
 def _framed(points: Floats, right: Floats, up: Floats, eye: Floats) -> View:
-    """The view along given axes that holds all points (n, 3)."""
+    """The view with given axes that contains all points (n, 3)."""
     axes = np.stack([right, up, eye])
     flat = points @ axes.T
     low, high = flat.min(axis=0), flat.max(axis=0)
@@ -114,7 +114,7 @@ def _framed(points: Floats, right: Floats, up: Floats, eye: Floats) -> View:
 
 
 def _bend(axis: Floats, long: Floats, sides: Floats) -> Floats:
-    """How far the part's middle strays from a straight line as seen from each of the sides (s,), root mean square."""
+    """Root mean square deviation (s,) of the part's middle from a straight line, as seen from each of the sides."""
     along = axis @ long
     across = axis @ np.cross(sides, long).T
     slope = np.stack([along, np.ones_like(along)], axis=1)
@@ -131,7 +131,7 @@ def _facets(points: Floats, quads: Ints) -> tuple[Floats, Floats]:
 
 
 def _perpendicular(axis: Floats) -> Floats:
-    """A unit vector square to `axis`, as near as may be to -y, or to z where the axis runs along y."""
+    """Unit vector perpendicular to `axis`, as close as possible to -y, or to z if the axis is along y."""
     start = np.array([0.0, -1.0, 0.0]) if abs(axis[1]) < 0.9 else np.array([0.0, 0.0, 1.0])
     square = start - (start @ axis) * axis
     return np.asarray(square / np.linalg.norm(square))

@@ -1,1 +1,1 @@
-"""What other programs take: shell decks, fibre fields, robot frames, CAD and mesh formats, from a results folder."""
+"""Files for other programs from a run's folder: shell decks, fibre fields, robot frames, CAD and mesh formats."""

@@ -1,4 +1,4 @@
-"""Surfaces out of STEP and IGES: the faces that close in one direction, as the one surface type."""
+"""Surfaces from STEP and IGES files: the faces that close in one direction."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -17,16 +17,16 @@ from meshwind.surface.surface import FitError, Surface
 _STEP, _IGES = (".step", ".stp"), (".iges", ".igs")
 _COARSEST, _FINEST = 16, 512
 _CLOSED = 1e-6
-"""Over the diagonal: ends that lie closer than this are a seam."""
+"""Largest distance over the diagonal between ends that form a seam."""
 _CUT = 1e-4
-"""A face that lacks more of its patch's area than this is cut."""
+"""Largest share of its patch's area that a face may lack; otherwise it is trimmed."""
 
 
 @dataclass(frozen=True)
 class Patch:
     """A rational B-spline patch: poles times weight, and weight, (mu, mv, 4), with knots, degrees, bounds in u and v.
 
-    Where it is periodic, bounds may run past the end of the knots: it goes on from their start.
+    In a periodic direction, bounds may exceed the knots.
     """
 
     poles: Floats
@@ -56,12 +56,12 @@ class Patch:
         return Patch(poles, self.knots[::-1], self.degrees[::-1], self.bounds[::-1], self.periodic[::-1])
 
     def mirrored(self) -> "Patch":
-        """The same patch with u run through backwards."""
+        """The same patch with u reversed."""
         return replace(self, bounds=(self.bounds[0][::-1], self.bounds[1]))
 
     @property
     def size(self) -> float:
-        """Diagonal of the bounding box of a few of its points."""
+        """Diagonal of the bounding box of some of its points."""
         t = np.linspace(0.0, 1.0, 17)
         return float(np.linalg.norm(np.ptp(self.on_grid(t, t).reshape(-1, 3), axis=0)))
 
@@ -146,7 +146,7 @@ def _faces(path: Path) -> list[Any]:
 
 
 def _patch(face: Any) -> Patch | None:
-    """The face's patch between its bounds in u and v, None where it fills them in part only."""
+    """The face's patch between its bounds in u and v, None if the face is trimmed within them."""
     bounds = occ("BRepTools").BRepTools.UVBounds_s(face)
     spline = occ("BRep").BRep_Tool.Surface_s(face)
     whole = occ("BRepBuilderAPI").BRepBuilderAPI_MakeFace(spline, *bounds, 1e-7)
@@ -181,13 +181,13 @@ def _numbers(spline: Any, bounds: tuple[float, ...]) -> Patch:
 
 
 def _repeated(count: int, knot: Any, times: Any) -> Floats:
-    """The knots, each as often as it is there."""
+    """The knots, each repeated by its multiplicity."""
     numbers = range(1, count + 1)
     return frozen(np.repeat([knot(k) for k in numbers], [times(k) for k in numbers]))
 
 
 def _closing(patch: Patch) -> tuple[str, Patch | None]:
-    """The patch so that it closes in u and faces outward, or why it cannot be wound."""
+    """The patch, oriented to close in u and to face outward, or the reason why it cannot be wound."""
     t = np.linspace(0.0, 1.0, 65)
     samples = patch.on_grid(t, t)
     near = _CLOSED * patch.size
@@ -203,7 +203,7 @@ def _closing(patch: Patch) -> tuple[str, Patch | None]:
 
 
 def _outward(samples: Floats) -> bool:
-    """Whether s_u x s_v points away from the inside, by the volume that the samples enclose with flat ends."""
+    """Whether s_u x s_v points outward, by the sign of the volume that the samples enclose with flat ends."""
     middle = samples.mean(axis=(0, 1))
     a = samples - middle
     volume = _volume(a[:-1, :-1], a[1:, :-1], a[1:, 1:]) + _volume(a[:-1, :-1], a[1:, 1:], a[:-1, 1:])
@@ -218,7 +218,7 @@ def _volume(a: Floats, b: Floats, c: Floats) -> float:
 
 
 def _approximate(patch: Patch, tolerance: float) -> Surface:
-    """Interpolate with twice the spans, in the direction that needs them, until the patch is met between the sites."""
+    """Interpolate, doubling the spans in each direction that needs it, until the patch is met between the sites."""
     to_u, to_v = _even(patch, 0), _even(patch, 1)
     spans, near = [_COARSEST, _COARSEST], tolerance * patch.size
     while True:
@@ -242,7 +242,7 @@ def _approximate(patch: Patch, tolerance: float) -> Surface:
 
 
 def _even(patch: Patch, axis: int) -> Callable[[Floats], Floats]:
-    """Where on the patch to go for a parameter of even speed on average: CAD's circles speed up and slow down."""
+    """Function from a parameter of constant mean speed to that of the patch, as circles in CAD vary in speed."""
     from scipy.interpolate import PchipInterpolator
 
     along, across = np.linspace(0.0, 1.0, _FINEST * 4 + 1), (np.arange(8) + 0.5) / 8

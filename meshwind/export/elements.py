@@ -14,7 +14,7 @@ from meshwind.surface.grid import grid_quads
 from meshwind.surface.surface import Surface
 
 _FEWEST = 12, 4
-"""Elements around and along below which a part is no part."""
+"""Least number of elements around and along."""
 _ON_RIM = 1e-9
 
 
@@ -43,16 +43,16 @@ class Elements:
 
     @property
     def edges(self) -> Ints:
-        """Every edge (e, 2) once, the lower number first."""
+        """All edges (e, 2), each once with the lower number first."""
         return edge_counts(self.quads, self.triangles)[0]
 
     def between(self, edges: Ints) -> Floats:
-        """Middles in uv (e, 2) of edges (e, 2), the short way around."""
+        """Midpoints in uv (e, 2) of edges (e, 2), by the shorter way around."""
         return middle(self.surface, self.uv[edges])
 
 
 def middle(surface: Surface, corners: Floats) -> Floats:
-    """Means (k, 2) of corners (k, c, 2) in uv; around a closed part the short way."""
+    """Means (k, 2) of corners (k, c, 2) in uv; around a closed part by the shorter way."""
     away = corners - corners[:, :1]
     if surface.periodic:
         away[..., 0] -= np.round(away[..., 0])
@@ -60,7 +60,7 @@ def middle(surface: Surface, corners: Floats) -> Floats:
 
 
 def regular(surface: Surface, count: int) -> Elements:
-    """About `count` quads, about as long as they are wide on average."""
+    """About `count` quads, square on average."""
     t = (np.arange(16) + 0.5) / 16
     frames = surface.frames(np.stack(np.meshgrid(t, t, indexing="ij"), axis=2).reshape(-1, 2))
     around, along = np.linalg.norm(frames[:, 1:3], axis=2).mean(axis=0)
@@ -74,7 +74,7 @@ def regular(surface: Surface, count: int) -> Elements:
 
 
 def on_crossings(results: Results) -> Elements:
-    """The run's quad mesh, its points on the surface; raises BadInputError where the run made none."""
+    """The run's quad mesh with its points on the surface; raises BadInputError if it has no faces."""
     mesh = read_faces(results.folder / QUADS)
     if not len(mesh.quads) + len(mesh.triangles) or UV not in mesh.point_data:
         raise BadInputError(f"{QUADS} of {results.folder} has no faces; take the grid: --shell grid")

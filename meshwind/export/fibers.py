@@ -1,4 +1,4 @@
-"""fibers.vtu and fibers.vtk: on each cell of the surface, where the fibres run and how thick they lie."""
+"""fibers.vtu and fibers.vtk: direction and thickness of the fibres on each cell of the surface."""
 
 from pathlib import Path
 
@@ -26,7 +26,7 @@ def write_fibers(folder: Path, elements: Elements, laid: Plies, units: str = "")
 
 
 def cell_data(laid: Plies) -> dict[str, Floats]:
-    """Fields of k cells, of family +1 with the number 1 and of family -1 with 2.
+    """Fields of k cells; those of family +1 are numbered 1, those of family -1 are numbered 2.
 
     fibre_1 and its alias FIB_DIR1 (k, 3) unit tangents of the fibres; angle_1 (k,) in degrees from the meridian, 0
     along the part, positive towards growing u; layers_1, thickness_1 (k,) in mesh units; thickness (k,) of both

@@ -21,7 +21,7 @@ Data: TypeAlias = Mapping[str, NDArray[Any]]
 
 @dataclass(frozen=True)
 class _Part:
-    """One result as a mesh: cells by kind, data of the points, data of each kind's cells in their order."""
+    """One result as a mesh: cells by kind, point data, and cell data in the order of the cells."""
 
     name: str
     points: Floats
@@ -49,7 +49,7 @@ def write_formats(folder: Path, results: Results, formats: tuple[str, ...]) -> l
 
 
 def _parts(results: Results) -> list[_Part]:
-    """What of the run is a mesh; bridges and crossings may be without points."""
+    """The results that are meshes; bridges and crossings may have no points."""
     folder, units = results.folder, results.units
     surface, quads = read_surface_grid(folder, results.surface), read_faces(folder / QUADS)
     parts = [_of_faces(SURFACE.stem, surface, units), _of_faces(QUADS.stem, quads, units)]
@@ -78,7 +78,7 @@ def _vertices(points: Floats) -> tuple[str, Ints]:
 
 
 def _apart(data: Data, widest: int) -> dict[str, NDArray[Any]]:
-    """The data with vectors of fewer than three components, or of more than `widest`, one by one: uv as uv_0, uv_1."""
+    """The data; vectors that do not have 3 components, or with `widest` 1 all, are split: uv into uv_0, uv_1."""
     out: dict[str, NDArray[Any]] = {}
     for name, values in data.items():
         if values.ndim == 1 or values.shape[1] == 3 <= widest:
@@ -121,7 +121,7 @@ def _gmsh(folder: Path, part: _Part) -> list[str]:
 
 
 def _ply(folder: Path, part: _Part) -> list[str]:
-    """meshio's PLY has faces alone, and data at the points alone: of lines only their points are written."""
+    """meshio's PLY has only faces and point data, so lines are written as their points."""
     lost = [f"ply: no data of cells; of {part.name} it lacks {', '.join(part.cell_data)}"] if part.cell_data else []
     kinds = {kind for kind, _ in part.cells}
     if kinds & {"line", "vertex"}:
@@ -134,7 +134,7 @@ def _ply(folder: Path, part: _Part) -> list[str]:
 
 
 def _obj(folder: Path, part: _Part) -> list[str]:
-    """OBJ by hand: meshio writes its faces alone, and it has lines and points too."""
+    """OBJ without meshio, which writes faces only and neither lines nor points."""
     letters = {"quad": "f", "triangle": "f", "line": "l", "vertex": "p"}
     with (folder / f"{part.name}.obj").open("w", encoding="ascii") as file:
         file.write(f"# {part.name} of a winding, {lengths_in(part.units)}\n")
@@ -147,4 +147,4 @@ def _obj(folder: Path, part: _Part) -> list[str]:
 FORMATS: dict[str, Callable[[Path, _Part], list[str]]] = {
     "vtu": _vtu, "vtk": _vtk, "xdmf": _xdmf, "ply": _ply, "obj": _obj, "gmsh": _gmsh,
 }  # fmt: skip
-"""Mesh formats by name: each writes one part into a folder and returns what it could not hold."""
+"""Mesh formats by name: each writes one part into a folder and returns a line for everything that it cannot hold."""

@@ -1,4 +1,4 @@
-"""Frames that a robot follows: one CSV file a path, and one of all."""
+"""Frames for a robot to follow: one CSV file per path, and one of all paths."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,19 +15,19 @@ HEADER = (
     "index,arc_length,parameter_s,x,y,z,tx,ty,tz,nx,ny,nz,sx,sy,sz,width,left_x,left_y,left_z,right_x,right_y,right_z"
 )
 STEP, ANGLE = 0.02, 5.0
-"""Longest step over the part's diagonal and largest turn in degrees, where none is given."""
+"""Default of the longest step, over the part's diagonal, and of the largest turn, in degrees."""
 _SHORTEST = 0.02
-"""Turning makes no step shorter than this part of the longest: tiny moves make robots rough."""
+"""Shortest step that turning may cause, over the longest: very short steps make robots move roughly."""
 
 _SAFE = 0.99
-"""Share of the largest turn that is planned for: between two particles a frame turns a little unevenly."""
+"""Planned turn over the largest: between two particles a frame does not turn quite evenly."""
 
 
 @dataclass(frozen=True)
 class Frames:
     """Frames of a path at m points: all (m, 3) but arc_length (m,), in the mesh's units, and length.
 
-    tangent, normal and side are orthonormal, side = normal x tangent: to the left of one who walks along the fibre
+    tangent, normal and side are orthonormal, side = normal x tangent: to the left when looking along the fibre
     with the part below.  left and right are the edges of the band.
     """
 
@@ -53,14 +53,14 @@ class Frames:
 def frames(points: Floats, normals: Floats, width: float, step: float, angle: float) -> Frames:
     """Frames along a path of points (n, 3) with outward normals (n, 3).
 
-    Steps are at most `step` long and turn the frame by at most `angle` radians, as few and as even as that allows.
+    Steps are at most `step` long and turn the frame by at most `angle` radians; there are as few as possible.
     Positions and tangents are those of the cubic spline through the points, arc_length that of the polyline as in
     paths.vtp.
     """
     from scipy.interpolate import CubicSpline
 
     chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    moved = np.concatenate([[True], chords > 1e-12 * chords.sum()])  # particles that lie on one another are one
+    moved = np.concatenate([[True], chords > 1e-12 * chords.sum()])  # coincident particles count as one
     points, normals = points[moved], normals[moved]
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     spline = CubicSpline(arc, points)
@@ -74,7 +74,7 @@ def frames(points: Floats, normals: Floats, width: float, step: float, angle: fl
 
 
 def _square(tangent: Floats, normal: Floats) -> tuple[Floats, Floats, Floats]:
-    """Orthonormal tangent, normal and side: the tangent keeps its direction, the normal gives way."""
+    """Orthonormal tangent, normal and side; the direction of the tangent is kept."""
     t = tangent / np.linalg.norm(tangent, axis=1, keepdims=True)
     side = np.cross(normal, t)
     side /= np.linalg.norm(side, axis=1, keepdims=True)
@@ -82,7 +82,7 @@ def _square(tangent: Floats, normal: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 def _stations(arc: Floats, tangent: Floats, normal: Floats, step: float, angle: float) -> Floats:
-    """Arc lengths (m,) that share out length and turning evenly: both in their limits counted from one to the next."""
+    """Arc lengths (m,) of frames that divide length and turning evenly, each measured in units of its limit."""
     turns = np.maximum(_turn(tangent), _turn(normal)) / (_SAFE * angle)
     chords = np.diff(arc)
     effort = np.maximum(chords / step, np.minimum(turns, chords / (_SHORTEST * step)))
@@ -94,7 +94,7 @@ def _stations(arc: Floats, tangent: Floats, normal: Floats, step: float, angle: 
 
 
 def _turn(directions: Floats) -> Floats:
-    """Angles (n - 1,) between unit vectors (n, 3) that follow one another."""
+    """Angles (n - 1,) between consecutive unit vectors (n, 3)."""
     apart = np.linalg.norm(np.diff(directions, axis=0), axis=1)
     return np.asarray(2.0 * np.arcsin(np.minimum(0.5 * apart, 1.0)))
 
@@ -102,11 +102,11 @@ def _turn(directions: Floats) -> Floats:
 def write_frames(
     folder: Path, results: Results, step: float | None = None, angle: float | None = None, width: float | None = None
 ) -> list[str]:
-    """Write frames/path_000.csv and so on, one a path at rest, and frames/all.csv; lengths in mm.
+    """Write frames/path_000.csv and so on, one per converged path, and frames/all.csv; lengths in mm.
 
     step: longest step in the mesh's units, 2 % of the part's diagonal by default; angle: largest turn from frame to
     frame in degrees, 5 by default; width of the band in the mesh's units, the run's own by default.  Returns what the
-    user should know.  Raises BadInputError where no path came to rest, or a limit is none.
+    user should know.  Raises BadInputError if no path converged, or a limit is none.
     """
     longest = _above("step", STEP * results.diagonal if step is None else step)
     turn = np.radians(_above("angle", ANGLE if angle is None else angle))

@@ -12,7 +12,7 @@ MISSING = "STEP and IGES need OpenCASCADE; install it with: pip install 'meshwin
 
 
 def need() -> None:
-    """Raise BadInputError where OpenCASCADE is not installed, or is too old for this."""
+    """Raise BadInputError if OpenCASCADE is not installed or too old."""
     if find_spec("OCP") is None or find_spec("OCP.collections") is None:
         raise BadInputError(MISSING)
 
@@ -24,7 +24,7 @@ def occ(module: str) -> Any:
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Keep OpenCASCADE's reports of each transfer off the terminal; its results are checked instead."""
+    """Suppress OpenCASCADE's messages on the terminal; its results are checked instead."""
     message = occ("Message")
     messenger = message.Message.DefaultMessenger_s()
     printers = list(messenger.Printers())
@@ -38,7 +38,7 @@ def quiet() -> Iterator[None]:
 
 
 def points_array(values: Any) -> Any:
-    """An OpenCASCADE array of points, of the shape of values (m, 3) or (m, n, 3)."""
+    """An OpenCASCADE array of the points of an array (m, 3) or (m, n, 3)."""
     collections, gp = occ("collections"), occ("gp")
     if values.ndim == 2:
         line = collections.Array1_gp_Pnt(1, len(values))

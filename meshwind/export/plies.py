@@ -1,4 +1,4 @@
-"""What lies on each element: of each family, the direction of its fibres and how thick it lies."""
+"""Direction and thickness of each family's fibres on each element."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from meshwind.layup.direction import axes, directions, fibres_of
 from meshwind.results.reading import Results
 
 LAYER = 1e-3
-"""Thickness of one layer of band over the part's diagonal, where none is given."""
+"""Default thickness of one layer of band, over the part's diagonal."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Ply:
 
 @dataclass(frozen=True)
 class Plies:
-    """The families on k elements, +1 first; normal (k, 3) outward; what one layer was taken to be, in mesh units."""
+    """The families on k elements, +1 first; normal (k, 3) outward; thickness of one layer and width of the band."""
 
     families: tuple[Ply, ...]
     normal: Floats
@@ -40,15 +40,15 @@ class Plies:
 
     @property
     def thickness(self) -> Floats:
-        """Thickness (k,) of all families together."""
+        """Total thickness (k,) of all families."""
         return np.asarray(sum(ply.thickness for ply in self.families))
 
 
 def plies(results: Results, elements: Elements, layer: float | None = None, width: float | None = None) -> Plies:
-    """Lay the paths at rest on the elements as bands of `width` and of the thickness `layer`, in mesh units.
+    """Plies of the converged paths as bands of `width` and of the thickness `layer`, in mesh units.
 
-    By default a layer is 1e-3 of the part's diagonal thick, and the band as wide as the run's coverage took it.
-    Raises BadInputError where either is no length, or there is no band at all.
+    By default a layer is 1e-3 of the part's diagonal thick, and the band is that of the run's coverage.  Raises
+    BadInputError if either is not a length above 0.
     """
     thick = _length("thickness", LAYER * results.diagonal if layer is None else layer)
     wide = _length("band width", results.band_width if width is None else width)

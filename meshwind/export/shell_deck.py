@@ -1,6 +1,6 @@
 """Shell decks for CalculiX and Abaqus: each element with its own layers, directions and thickness.
 
-`shell.inp` is for CalculiX: eight-node elements (S8R, and S6 at triangles), the only ones that it gives layers.
+`shell.inp` is for CalculiX: eight-node elements (S8R, and S6 for triangles), the only ones that can have layers there.
 `shell_s4r.inp` is for Abaqus: four-node elements (S4R, S3).
 """
 
@@ -18,11 +18,11 @@ from meshwind.export.plies import Plies
 from meshwind.results.schema import SHELL, SHELL_S4R
 
 LEAST = 0.05
-"""Where fibres lie thinner than this part of a layer, or not at all, a family counts as that thick."""
+"""Least thickness of a family, in layers, also where it has no fibres."""
 FORCE = 1000.0
-"""Of the load step, in N."""
+"""Load of the step, in N."""
 _STEPS = 1.15
-"""Thicknesses are rounded to powers of this: where neighbours differ CalculiX joins them by a rigid knot."""
+"""Thicknesses are rounded to powers of this, as CalculiX joins elements of different thickness by rigid knots."""
 _SHAPES = {3: "S3", 4: "S4R", 6: "S6", 8: "S8R"}
 
 
@@ -30,7 +30,7 @@ _SHAPES = {3: "S3", 4: "S4R", 6: "S6", 8: "S8R"}
 class Material:
     """A transversely isotropic layer, fibres along 1: moduli in MPa (N/mm2), density in t/mm3.
 
-    By default carbon fibre of standard modulus in epoxy, 60 % of fibre by volume, from data sheets' common range.
+    By default carbon fibre of standard modulus in epoxy, 60 % fibre by volume, with typical values of data sheets.
     """
 
     name: str = "CARBON_EPOXY"
@@ -43,7 +43,7 @@ class Material:
 
     @property
     def g23(self) -> float:
-        """Shear modulus across the fibres: that of the isotropic plane, e2 / (2 (1 + nu23))."""
+        """Shear modulus of the isotropic plane across the fibres, e2 / (2 (1 + nu23))."""
         return self.e2 / (2.0 * (1.0 + self.nu23))
 
     def moduli(self, units: str) -> tuple[float, ...]:
@@ -60,7 +60,7 @@ class Material:
 
 @dataclass(frozen=True)
 class Deck:
-    """What a deck is made of: the mesh, what lies on it, the material, the unit of length and the part's name."""
+    """Contents of a deck: mesh, plies, material, unit of length and name of the part."""
 
     elements: Elements
     plies: Plies
@@ -73,7 +73,7 @@ class Deck:
 class _Nodes:
     """Points (n, 3) and the elements' nodes, quads (q, 4 or 8) and triangles (t, 3 or 6), from 0; rims with shares.
 
-    A rim is its nodes and the share of the rim's load that each takes.
+    A rim is its nodes and the share of its load on each.
     """
 
     points: Floats
@@ -97,7 +97,7 @@ def write_decks(folder: Path, deck: Deck) -> list[str]:
 
 
 def thicknesses(deck: Deck) -> Floats:
-    """Thickness of each family on each element (f, k) as the deck has it: rounded, and nowhere nothing."""
+    """Thickness (f, k) of each family on each element in the deck: rounded, and at least `LEAST` of a layer."""
     layers = np.stack([np.maximum(_layers(deck, k), LEAST) for k in range(len(deck.plies.families))])
     return np.asarray(deck.plies.layer * _STEPS ** np.round(np.log(layers) / np.log(_STEPS)))
 
@@ -107,7 +107,7 @@ def _layers(deck: Deck, family: int) -> Floats:
 
 
 def _nodes(elements: Elements, quadratic: bool) -> _Nodes:
-    """Number the nodes; those amid edges lie on the surface itself."""
+    """Number the nodes; mid-side nodes lie on the surface."""
     edges = elements.edges
     number = len(elements.points) + np.arange(len(edges))
     rims = elements.rims
@@ -121,7 +121,7 @@ def _nodes(elements: Elements, quadratic: bool) -> _Nodes:
 
 
 def _with_middles(faces: Ints, edges: Ints, number: Ints) -> Ints:
-    """Faces (m, c) with the nodes amid their edges behind their corners (m, 2 c)."""
+    """Faces (m, 2 c): corners, then mid-side nodes, of faces (m, c)."""
     most = edges.max(initial=0) + 1
     sides = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2), axis=2)
     at = np.searchsorted(edges[:, 0] * most + edges[:, 1], sides[..., 0] * most + sides[..., 1])
@@ -129,7 +129,7 @@ def _with_middles(faces: Ints, edges: Ints, number: Ints) -> Ints:
 
 
 def _shares(elements: Elements, edges: Ints, rim: Ints, number: Ints | None) -> tuple[Ints, Floats]:
-    """Nodes of a rim and what each takes of a load that is even along it: Simpson's weights with middle nodes."""
+    """Nodes of a rim and the share of a uniform load on each: Simpson's weights if there are mid-side nodes."""
     along = np.isin(edges, rim).all(axis=1)
     mine = edges[along]
     length = np.linalg.norm(np.diff(elements.points[mine], axis=1)[:, 0], axis=1)
@@ -189,7 +189,7 @@ def _material(deck: Deck) -> Iterator[str]:
 
 
 def _sections(deck: Deck) -> Iterator[str]:
-    """Element by element its set, its orientations and its layers."""
+    """Set, orientations and layers of each element."""
     thick = thicknesses(deck)
     families = deck.plies.families
     across = [np.cross(deck.plies.normal, ply.direction) for ply in families]
@@ -208,7 +208,7 @@ def _sections(deck: Deck) -> Iterator[str]:
 
 
 def _stack(families: int) -> tuple[tuple[int, float], ...]:
-    """From the inside out: which family, and what share of its thickness."""
+    """Layers from the inside out: number of the family and share of its thickness."""
     return ((0, 0.5), (1, 1.0), (0, 0.5)) if families > 1 else ((0, 1.0),)
 
 
@@ -217,7 +217,7 @@ def _axes(family: int, element: int) -> str:
 
 
 def _step(nodes: _Nodes) -> Iterator[str]:
-    """Hold the start rim, pull the end rim along the line between the rims' middles."""
+    """Load step: start rim fixed, end rim pulled along the line between the centres of the rims."""
     (start, _), (end, shares) = nodes.rims
     axis = nodes.points[end].mean(axis=0) - nodes.points[start].mean(axis=0)
     axis = axis / np.linalg.norm(axis)

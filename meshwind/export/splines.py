@@ -1,4 +1,4 @@
-"""B-splines as CAD writes them: clamped, so that the end knots are as often there as the degree says and once more."""
+"""Clamped B-splines, as CAD needs them: the end knots are repeated degree + 1 times."""
 
 from dataclasses import dataclass
 
@@ -11,14 +11,14 @@ from meshwind.surface.surface import Surface
 
 @dataclass(frozen=True)
 class Clamped:
-    """Poles (m, ...) of a cubic spline on clamped `knots` (m + 4,): the first and the last pole lie on it."""
+    """Poles (m, ...) of a cubic spline with clamped `knots` (m + 4,): the first and the last pole are its ends."""
 
     poles: Floats
     knots: Floats
 
 
 def clamped(poles: Floats, knots: Floats, axis: int) -> Clamped:
-    """The same spline between its outermost whole spans, by inserting knots there: nothing is approximated."""
+    """The same spline on its domain, clamped exactly by knot insertion."""
     from scipy.interpolate import BSpline
 
     first, last = float(knots[DEGREE]), float(knots[-DEGREE - 1])
@@ -31,18 +31,18 @@ def clamped(poles: Floats, knots: Floats, axis: int) -> Clamped:
 
 
 def clamped_surface(surface: Surface) -> tuple[Floats, Floats, Floats]:
-    """Poles (mu, mv, 3) and clamped knots in u and in v of a surface; where it closes, both ends are the same."""
+    """Poles (mu, mv, 3) and clamped knots in u and in v of a surface; if it is closed, both ends are the same."""
     knots_u, knots_v = surface.knots
     along = clamped(surface.net, knots_v, 1)
     around = clamped(along.poles, knots_u, 0)
     poles = np.array(around.poles)
     if surface.periodic:
-        poles[-1] = poles[0]  # equal but for rounding, and CAD wants it closed
+        poles[-1] = poles[0]  # equal except for rounding; CAD needs it closed exactly
     return frozen(poles), around.knots, along.knots
 
 
 def curve_through(points: Floats) -> Clamped:
-    """The cubic spline through points (n, 3), by the length of its chords; points on one another count once."""
+    """The cubic spline through points (n, 3), parametrised by chord length; coincident points count once."""
     from scipy.interpolate import make_interp_spline
 
     chords = np.linalg.norm(np.diff(points, axis=0), axis=1)

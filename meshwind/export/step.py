@@ -16,14 +16,14 @@ from meshwind.surface.evaluate import DEGREE
 from meshwind.surface.surface import Surface
 
 TIME = "1970-01-01T00:00:00"
-"""In place of the time of writing, which STEP asks for: the same run gives the same bytes."""
+"""Written instead of the present time, so that the same run gives the same bytes."""
 
 
 def write_step(folder: Path, results: Results) -> list[str]:
     """Write surface.step into an existing folder, in mm; return what the user should know.
 
-    The surface is the fitted one, not facets of it; a fibre is the cubic spline through its particles, and named by
-    its path and family.  Paths that are not at rest are left out.  Raises BadInputError without OpenCASCADE.
+    The surface is the fitted spline, not facets; a fibre is the cubic spline through its particles, named by its path
+    and family.  Paths that did not converge are left out.  Raises BadInputError without OpenCASCADE.
     """
     need()
     scale = millimetres(results.units)

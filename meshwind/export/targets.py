@@ -1,4 +1,4 @@
-"""What a results folder can be exported to, by name, and the export itself."""
+"""Export of a run's folder to named targets."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -48,7 +48,7 @@ class ExportOptions:
 
 @dataclass(frozen=True)
 class Exported:
-    """The files that an export wrote, and what the user should know of them, a line each."""
+    """The files that an export wrote, and notes for the user."""
 
     files: tuple[Path, ...]
     notes: tuple[str, ...]
@@ -66,8 +66,8 @@ def export(
 ) -> Exported:
     """Write the named `TARGETS` and the formats of the options into `out`, by default the results folder itself.
 
-    All files appear, or none.  Raises BadInputError for a name that is not known, for a folder that holds no results
-    and where a target cannot be made of them.
+    All files appear, or none.  Raises BadInputError if a name is not known, the folder holds no results, or a target
+    cannot be made from them.
     """
     given = options or ExportOptions()
     _known("target", to, TARGETS)

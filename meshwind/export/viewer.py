@@ -1,6 +1,6 @@
-"""viewer.html: a run in one file that a browser turns, offline.
+"""viewer.html: a run in one page for a browser, which works offline.
 
-The page is `viewer.html` beside this file; plotly.js goes into it whole, from the installed package plotly.
+The template is `viewer.html` beside this file; plotly.js is copied into it from the installed package plotly.
 """
 
 import base64
@@ -23,16 +23,16 @@ from meshwind.results.schema import NORMAL, UV, VIEWER
 from meshwind.results.vtk_reading import Faces
 
 _MOST = 12_000
-"""Points of the surface that a browser turns smoothly without a graphics card."""
+"""Number of points of the surface that a browser turns smoothly without a graphics card."""
 _SUNK = 2e-3
-"""The surface is drawn so far below itself, over its size, that fibres on it are in sight."""
+"""Offset below the surface, over its size, at which it is drawn, so that fibres on it are visible."""
 _STOPS = 33
-"""Colours of a colour map that the page has; it mixes those between."""
+"""Number of colours of a colour map in the page, which interpolates between them."""
 _NO_PLOTLY = 'the viewer needs the Python package plotly, for plotly.js; pip install "meshwind[viewer]"'
 
 
 Stops = list[list[float | str]]
-"""A colour map as shares of a scale from 0 to 1, each with the colour there."""
+"""A colour map as positions from 0 to 1, each with its colour."""
 
 
 class Packed(TypedDict):
@@ -43,7 +43,7 @@ class Packed(TypedDict):
 
 
 class MapData(TypedDict):
-    """A map of the surface and how it is shown; marks are shares of its scale."""
+    """A map of the surface and how it is shown; marks are positions on its scale."""
 
     name: str
     title: str
@@ -59,7 +59,7 @@ class MapData(TypedDict):
 
 
 class SurfaceData(TypedDict):
-    """The surface: points as they are and as they are drawn, triangles between them, uv, and the maps."""
+    """The surface: points, points as drawn, triangles, uv and maps."""
 
     points: Packed
     drawn: Packed
@@ -69,7 +69,7 @@ class SurfaceData(TypedDict):
 
 
 class LineData(TypedDict):
-    """Segments of fibres of one kind, with data at their points; NaN points part them."""
+    """Segments of fibres of one kind, with data at their points; NaN points separate them."""
 
     kind: str
     family: int
@@ -84,7 +84,7 @@ class LineData(TypedDict):
 
 
 class CameraData(TypedDict):
-    """Directions to the eye and up, and the extents seen over the largest of the part's box."""
+    """Directions to the eye and up, and visible extents over the largest side of the bounding box."""
 
     eye: list[float]
     up: list[float]
@@ -93,7 +93,7 @@ class CameraData(TypedDict):
 
 
 class PageData(TypedDict):
-    """All that the page shows."""
+    """Contents of the page."""
 
     name: str
     units: str
@@ -106,7 +106,7 @@ class PageData(TypedDict):
 
 
 def write_viewer(folder: Path, results: Results) -> list[str]:
-    """Write viewer.html into an existing folder; raises BadInputError where plotly is not installed."""
+    """Write viewer.html into an existing folder; raises BadInputError if plotly is not installed."""
     if find_spec("plotly") is None:
         raise BadInputError(_NO_PLOTLY)
     from plotly.offline import get_plotlyjs
@@ -121,7 +121,7 @@ def write_viewer(folder: Path, results: Results) -> list[str]:
 
 
 def page_data(results: Results) -> PageData:
-    """All that the page shows."""
+    """Contents of the page."""
     grid = read_surface_grid(results.folder, results.surface)
     return {
         "name": results.name,
@@ -136,7 +136,7 @@ def page_data(results: Results) -> PageData:
 
 
 def _surface(grid: Faces, results: Results) -> SurfaceData:
-    """The surface thinned to what a browser can turn, with its maps."""
+    """The surface, thinned to about `_MOST` points, with its maps."""
     uv = grid.point_data[UV]
     nv = int((uv[:, 0] == uv[0, 0]).sum())
     nu = len(uv) // nv
@@ -178,7 +178,7 @@ def _map(name: str, grid: Faces, kept: Ints, units: str) -> MapData:
 
 
 def _fibres(results: Results) -> list[LineData]:
-    """The fibres of each family on the surface, their bridges, and all paths not at rest; none without points."""
+    """Fibres of each family on the surface, bridges, and paths that did not converge; empty kinds are left out."""
     paths, taut = results.paths, results.at_rest
     touching = paths.on_surface[:, :-1] & paths.on_surface[:, 1:]
     kinds = [("loose", 0, "not at rest", ~taut, np.ones_like(touching))]
@@ -193,7 +193,7 @@ def _fibres(results: Results) -> list[LineData]:
 
 
 def _lines(results: Results, kind: str, family: int, words: str, mine: Bools, wanted: Bools) -> LineData:
-    """The wanted segments (p, n - 1) of some paths (p,), one after the other, with a NaN point after each run."""
+    """The wanted segments (p, n - 1) of some paths (p,) in sequence, with a NaN point after each run."""
     paths = results.paths
     segments = wanted & mine[:, None]
     used = np.zeros(paths.gap.shape, dtype=bool)
@@ -222,7 +222,7 @@ def _lines(results: Results, kind: str, family: int, words: str, mine: Bools, wa
 
 
 def _camera(grid: Faces, results: Results) -> CameraData:
-    """Where the eye is and what is up, as on the pictures; the extents seen over the largest of the part's box."""
+    """The camera, as on the pictures."""
     nv = int((grid.point_data[UV][:, 0] == grid.point_data[UV][0, 0]).sum())
     axis = grid.points.reshape(-1, nv, 3).mean(axis=0)
     paths = results.paths
@@ -238,7 +238,7 @@ def _camera(grid: Faces, results: Results) -> CameraData:
 
 
 def _facts(results: Results) -> list[str]:
-    """The run in a few lines."""
+    """Summary of the run in a few lines."""
     paths = results.paths
     each = lengths(paths)
     at_rest = int(results.at_rest.sum())
@@ -253,7 +253,7 @@ def _facts(results: Results) -> list[str]:
 
 
 def _thinned(count: int, share: float, closed: bool) -> Ints:
-    """Numbers below count, evenly, about such a share of them: both ends, or all around."""
+    """About `share` of the numbers below `count`, evenly spaced, with both ends or around a circle."""
     many = max(round(share * count), 3)
     return np.unique(np.rint(np.linspace(0, count - (count / many if closed else 1), many)).astype(np.int64))
 

@@ -1,7 +1,7 @@
 """XDMF with its numbers in one binary file beside it.
 
-meshio's writer asks for h5py even where it writes no HDF5, and numbers in the XML itself would lose NaN: VTK's reader,
-which is ParaView's, makes garbage of it.
+meshio's writer needs h5py even without HDF5, and numbers in the XML itself would lose NaN, which VTK's reader (also
+ParaView's) misreads.
 """
 
 from collections.abc import Mapping, Sequence
@@ -22,9 +22,9 @@ Data: TypeAlias = Mapping[str, NDArray[Any]]
 def write_xdmf(
     path: Path, points: Floats, cells: Sequence[tuple[str, Ints]], point_data: Data, cell_data: Data, units: str = ""
 ) -> None:
-    """Write points (n, 3), cells by kind, data of the points and of the cells in their order; PATH.xdmf and PATH.raw.
+    """Write PATH.xdmf and PATH.raw: points (n, 3), cells by kind, point data, cell data in the order of the cells.
 
-    Cells of several kinds may be quads and triangles.
+    If there are several kinds of cells, they must be quads and triangles.
     """
     raw = path.with_suffix(".raw")
     with path.open("w", encoding="utf-8") as file, raw.open("wb") as numbers:
@@ -40,7 +40,7 @@ def write_xdmf(
 
 
 def _topology(numbers: BinaryIO, cells: Sequence[tuple[str, Ints]]) -> str:
-    """One kind by its name; quads and triangles as one list of kind and corners, face by face."""
+    """A single kind by its name; quads and triangles as one list of kind and corners for each face."""
     count = sum(len(block) for _, block in cells)
     if len(cells) == 1:
         kind, block = cells[0]

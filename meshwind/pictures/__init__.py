@@ -1,1 +1,1 @@
-"""Pictures of a winding, drawn off the screen."""
+"""Pictures and movies of a winding: scenes (what is shown) and pictures (how it is drawn)."""

@@ -15,7 +15,7 @@ from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import AnimationScene
 
 _HOLD = 1.5
-"""Seconds that the finished winding stays."""
+"""Seconds for which the finished winding is shown."""
 
 
 def draw(window: Any, scene: AnimationScene, page: Page, drawn: Callable[[], None]) -> None:
@@ -30,7 +30,7 @@ def draw(window: Any, scene: AnimationScene, page: Page, drawn: Callable[[], Non
 
 
 def frames(window: Any, scene: AnimationScene, page: Page) -> Iterator[Any]:
-    """The frames one after the other, the last one wound in full."""
+    """The frames in sequence; the last one shows the finished winding."""
     winding = scene.winding
     frame, part = winding.frame, winding.part
     scale = canvas.fitting(page, frame.view)
@@ -77,7 +77,7 @@ def _bridges(window: Any, scene: AnimationScene, thick: float) -> Iterator[tuple
 
 
 def _head(scene: AnimationScene, done: float, thick: float) -> Floats:
-    """Where the fibre is being laid."""
+    """Position of the point where fibre is being laid."""
     laid = scene.laid
     path = int(np.flatnonzero(laid[:, 0] <= done)[np.argmax(laid[laid[:, 0] <= done, 0])])
     k = int(np.clip(np.searchsorted(laid[path], done), 1, laid.shape[1] - 1))
@@ -88,14 +88,14 @@ def _head(scene: AnimationScene, done: float, thick: float) -> Floats:
 
 
 def _turned(view: View, spin: Floats, angle: float) -> View:
-    """The view after the eye has gone around the part's axis: the part turns the other way."""
+    """The view after turning the eye about the part's axis; the part seems to turn the other way."""
     around = np.array([[0.0, -spin[2], spin[1]], [spin[2], 0.0, -spin[0]], [-spin[1], spin[0], 0.0]])
     turn = np.eye(3) + np.sin(angle) * around + (1.0 - np.cos(angle)) * around @ around
     return replace(view, right=turn @ view.right, up=turn @ view.up, eye=turn @ view.eye)
 
 
 def _counted(image: Any, page: Page, done: float, total: float, units: str) -> Any:
-    """A bar of how much fibre is laid, and the words."""
+    """The image with a progress bar of the laid fibre."""
     s = page.unit
     left, width = 0.5 * page.width, 300.0 * s
     top = page.height - 52.0 * s

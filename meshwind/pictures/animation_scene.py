@@ -1,4 +1,4 @@
-"""What is to be seen while a part is wound: the fibres in the order they are laid, and the axis it turns about."""
+"""Scene of the animation: the fibres in the order of laying, and the axis about which the part turns."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -14,16 +14,16 @@ from meshwind.pictures.winding_scene import winding_scene
 
 FRAMES_PER_SECOND = 25
 SHORTEST, LONGEST = 1.0, 120.0
-"""Seconds of a movie."""
+"""Shortest and longest movie, in seconds."""
 _TURNS = 2
 _MOST_POINTS = 40_000
-"""Points of all fibres together that are drawn."""
+"""Largest number of points of all fibres together."""
 
 
 def animation_scene(of: Subject, seconds: float, movies: list[Path], encoder: str = "") -> AnimationScene:
-    """The winding with how much fibre is laid before each of its points; movies: files to write, by an encoder.
+    """The winding with the length of fibre laid before each of its points; movies: files to write; encoder: FFmpeg.
 
-    Raises BadInputError for seconds that are no length of a movie.
+    Raises BadInputError if `seconds` is out of range.
     """
     if not SHORTEST <= seconds <= LONGEST:
         raise BadInputError(f"seconds is {seconds:g}; give a number from {SHORTEST:g} to {LONGEST:g}")
@@ -55,7 +55,7 @@ def animation_scene(of: Subject, seconds: float, movies: list[Path], encoder: st
 
 
 def laid_before(family: Ints, length: Floats) -> Floats:
-    """Length of fibre (p,) that is laid before each path: the families take turns, path by path."""
+    """Length of fibre (p,) laid before each path; paths of the two families alternate."""
     rank = np.zeros(len(family), dtype=np.int64)
     for name in np.unique(family):
         mine = np.flatnonzero(family == name)
@@ -67,7 +67,7 @@ def laid_before(family: Ints, length: Floats) -> Floats:
 
 
 def turning(points: Floats, fibres: Floats, up: Floats, right: Floats) -> tuple[Floats, Floats, Floats]:
-    """The part's long axis, the middle of all on it, and the extents on the picture that hold it as it turns."""
+    """The part's long axis, the centre of everything on it, and extents on the picture that suffice for every turn."""
     middle = points.mean(axis=0)
     spin = np.linalg.svd(points - middle, full_matrices=False)[2][0]
     everything = np.concatenate([points, fibres])
@@ -76,7 +76,7 @@ def turning(points: Floats, fibres: Floats, up: Floats, right: Floats) -> tuple[
     off = everything - centre
     height = off @ spin
     radius = np.sqrt(np.maximum((off**2).sum(axis=1) - height**2, 0.0))
-    # a point on a circle about the axis strays so far in a direction of the picture, at most
+    # the largest distance of a point that circles about the axis, in a direction of the picture
     extent = [
         2.0 * float((np.abs(height * (spin @ side)) + radius * np.sqrt(max(1.0 - (spin @ side) ** 2, 0.0))).max())
         for side in (right, up)

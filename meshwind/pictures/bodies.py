@@ -1,4 +1,4 @@
-"""What stands on the pictures: the part, fibres as tubes, bridges by their gap."""
+"""Meshes in the pictures: the part, fibres as tubes, bridges coloured by their gap."""
 
 from typing import Any
 
@@ -13,19 +13,19 @@ FAMILY = {1: "#0072b2", -1: "#e69f00"}  # Okabe and Ito's blue and orange, which
 LOOSE = "#7a7a7a"
 NAMES = {1: "family +1", -1: "family −1"}
 TUBE = 3.0, 0.16
-"""Radius of a tube in pixels, but no more than this part of the pitch."""
+"""Radius of a tube in pixels, and its upper limit over the pitch."""
 _MANY = 60_000
-"""Points of tubes above which they are too thin to look angular."""
+"""Number of points above which tubes are thin enough to have fewer sides."""
 
 
 def add_part(window: Any, part: Part) -> None:
-    """The fitted surface, matt, darker inside."""
+    """Add the fitted surface, matt, darker inside."""
     inside = {"color": INSIDE, "ambient": 0.25, "interpolation": "Phong"}
     add_smooth(window, body(part), backface_params=inside, color=PART, ambient=0.3, diffuse=0.8)
 
 
 def add_map(window: Any, part: Part, shares: Floats, colours: Any) -> None:
-    """The fitted surface coloured by shares (k,), plain inside: there colours would be read as the outside's."""
+    """Add the fitted surface coloured by shares (k,) outside, and plain inside, where colours would mislead."""
     inside = body(part)
     add_smooth(window, inside, color=INSIDE, ambient=0.25, culling="front")
     outside = inside.copy()
@@ -44,18 +44,18 @@ def body(part: Part) -> Any:
 
 
 def radius(part: Part, scale: float, unit: float) -> float:
-    """Radius of the fibres' tubes, with `scale` mesh units per pixel and `unit` pixels per pixel as designed."""
+    """Radius of the fibres' tubes; scale: mesh units per pixel, unit: pixels per pixel of the designed page."""
     pixels, share = TUBE
     return float(min(pixels * unit * scale, share * part.pitch))
 
 
 def lifted(fibres: Fibres, thick: float) -> Floats:
-    """Points (p, n, 3) of tubes lifted by their radius, so that they lie on the part and do not sink in."""
+    """Points (p, n, 3) of the fibres, lifted by the radius of their tubes so that these lie on the part."""
     return np.asarray(fibres.points + thick * fibres.lift)
 
 
 def add_fibres(window: Any, fibres: Fibres, thick: float, colours: dict[int, str] = FAMILY) -> None:
-    """Both families as tubes."""
+    """Add both families as tubes."""
     points = lifted(fibres, thick)
     for name, colour in colours.items():
         add_tubes(window, points[(fibres.family == name) & fibres.converged], thick, colour)
@@ -63,12 +63,12 @@ def add_fibres(window: Any, fibres: Fibres, thick: float, colours: dict[int, str
 
 
 def sides(points: int) -> int:
-    """Sides of tubes through so many points."""
+    """Number of sides of tubes through this many points in all."""
     return 8 if points <= _MANY else 4
 
 
 def add_tubes(window: Any, points: Floats, thick: float, colour: str) -> None:
-    """Tubes around paths (p, n, 3)."""
+    """Add tubes around paths (p, n, 3)."""
     if len(points):
         lines = polylines(points.reshape(-1, 3), np.full(len(points), points.shape[1]))
         add_smooth(
@@ -77,7 +77,7 @@ def add_tubes(window: Any, points: Floats, thick: float, colour: str) -> None:
 
 
 def add_coloured_tubes(window: Any, lines: Any, thick: float, name: str, colours: Any, most: float) -> None:
-    """Tubes around polylines, coloured by one of their fields from 0 to most."""
+    """Add tubes around polylines, coloured by one of their fields from 0 to `most`."""
     tubes = lines.tube(radius=thick, n_sides=sides(lines.n_points) + 2)
     add_smooth(
         window, tubes, scalars=name, cmap=colours, show_scalar_bar=False, clim=[0.0, most], ambient=0.4, diffuse=0.65
@@ -85,7 +85,7 @@ def add_coloured_tubes(window: Any, lines: Any, thick: float, name: str, colours
 
 
 def polylines(points: Floats, sizes: Ints) -> Any:
-    """Polylines of so many points each over consecutive points (k, 3)."""
+    """Polylines over consecutive points (k, 3); sizes (l,): number of points of each."""
     starts = np.concatenate([[0], np.cumsum(sizes)])
     cells = np.insert(np.arange(len(points)), starts[:-1], sizes)
     return pv.PolyData(points, lines=cells)

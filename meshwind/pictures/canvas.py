@@ -1,4 +1,4 @@
-"""What the pictures share: colours, typeface, light, legend, ruler and axes."""
+"""Parts that all pictures share: colours, typeface, light, legend, ruler and axes."""
 
 from pathlib import Path
 from typing import Any
@@ -27,7 +27,7 @@ Box = tuple[float, float, float, float]
 
 
 def plotter() -> Any:
-    """An empty window off the screen, its graphics proved to work."""
+    """An empty off-screen window, after a test that its graphics work."""
     window = pv.Plotter(off_screen=True, window_size=list(DESIGNED), lighting="none")
     window.add_mesh(pv.Sphere(theta_resolution=4, phi_resolution=4))
     window.enable_anti_aliasing("msaa", multi_samples=4)
@@ -42,12 +42,12 @@ def room(page: Page) -> Box:
 
 
 def legend_left(page: Page) -> float:
-    """Where words to the right of the part begin."""
+    """Left edge, in pixels, of text to the right of the part."""
     return page.width - page.unit * (RIGHT - 20)
 
 
 def fitting(page: Page, view: View) -> float:
-    """Mesh units per pixel with which what is seen fills the room for it."""
+    """Mesh units per pixel at which the view fills the room for it."""
     _, _, width, height = room(page)
     return float(max(view.width / width, view.height / height))
 
@@ -58,13 +58,13 @@ def middle(box: Box) -> tuple[float, float]:
 
 
 def add_smooth(window: Any, mesh: Any, **look: Any) -> None:
-    """Add a mesh that brings its normals: `smooth_shading` would compute them anew, a third of the time."""
+    """Add a mesh that has normals; `smooth_shading` would compute them again, which takes a third of the time."""
     actor = window.add_mesh(mesh, render=False, **look)
     actor.prop.interpolation = "Phong"
 
 
 def portrait(window: Any, page: Page, view: View, points: Floats) -> Any:
-    """The picture of what is in the window, in the middle of the room for it; points (k, 3) are the part's."""
+    """Picture of the window's contents in the middle of the room for it; points (k, 3): of the part."""
     aim(window, page, view, points, view.centre, middle(room(page)), fitting(page, view))
     return shot(window, page)
 
@@ -72,24 +72,24 @@ def portrait(window: Any, page: Page, view: View, points: Floats) -> Any:
 def aim(
     window: Any, page: Page, view: View, points: Floats, target: Floats, at: tuple[float, float], scale: float
 ) -> None:
-    """Look at a target (3,) so that it appears at a position in pixels, with `scale` mesh units per pixel.
+    """Aim the camera so that a target (3,) appears at a position in pixels; scale: mesh units per pixel.
 
-    points (k, 3) are the part's: in perspective the eye keeps its distance from the nearest.
+    points (k, 3): of the part, which the eye stays in front of in perspective.
     """
     right, up, eye = view.right, view.up, view.eye
     off = 0.5 * page.width - at[0], at[1] - 0.5 * page.height
     focus = target + scale * (off[0] * right + off[1] * up)
     half = 0.5 * page.height * scale
     reach = 4.0 * float(np.linalg.norm([view.width, view.height]))
-    if page.perspective:  # what is nearest to the eye comes out as large as in parallel, so that nothing is cut off
+    if page.perspective:  # the nearest point appears as large as in parallel projection, so that nothing is cut off
         reach = half / np.tan(_ANGLE) + 0.5 * float(np.ptp(points @ eye))
     window.camera_position = [focus + reach * eye, focus, up]
-    window.camera.parallel_projection = not page.perspective  # the window's own switch would move the camera
+    window.camera.parallel_projection = not page.perspective  # the window's own method would move the camera
     window.camera.parallel_scale = half
     window.camera.view_angle = float(np.degrees(2.0 * _ANGLE))
     window.set_background(PAPER)
     window.remove_all_lights()
-    for x, y, strength in ((-0.6, 0.6, 0.68), (0.9, 0.0, 0.35)):  # a key from the upper left, a fill
+    for x, y, strength in ((-0.6, 0.6, 0.68), (0.9, 0.0, 0.35)):  # a key light from the upper left, a fill light
         light = pv.Light(position=focus + reach * (eye + x * right + y * up), focal_point=focus, intensity=strength)
         light.positional = False
         window.add_light(light)
@@ -97,7 +97,7 @@ def aim(
 
 
 def shot(window: Any, page: Page) -> Any:
-    """The picture as it stands."""
+    """Picture of the window."""
     size = [page.width, page.height]
     if list(window.window_size) != size:
         window.window_size = size
@@ -112,7 +112,7 @@ def blank(page: Page) -> Any:
 
 
 def titled(image: Any, page: Page, frame: Frame) -> Any:
-    """A pen for the image, its title and subtitle written, small enough for the page."""
+    """Write title and subtitle, small enough for the page; return a pen for the image."""
     drawn, s = pen(image), page.unit
     for words, top, size, colour in ((frame.title, 36, 38, INK), (frame.subtitle, 88, 25, FAINT)):
         wide = drawn.textlength(words, font=face(page, size)) / (page.width - 2.0 * s * LEFT)
@@ -126,12 +126,12 @@ def pen(image: Any) -> Any:
 
 
 def face(page: Page, size: float) -> Any:
-    """The typeface that comes with Matplotlib, so that the picture is the same on every machine."""
+    """The typeface that Matplotlib contains, so that the picture is the same on every machine."""
     return ImageFont.truetype(str(Path(get_data_path(), "fonts", "ttf", "DejaVuSans.ttf")), max(size * page.unit, 1.0))
 
 
 def legend(pen: Any, page: Page, rows: list[tuple[str, str]]) -> None:
-    """Which colour is what: a stroke and its words, one row each."""
+    """Draw the legend: a stroke and its text per row."""
     s = page.unit
     x, y = legend_left(page), s * (TOP + 40)
     for k, (colour, words) in enumerate(rows):
@@ -140,14 +140,14 @@ def legend(pen: Any, page: Page, rows: list[tuple[str, str]]) -> None:
 
 
 def scale_bar(image: Any, pen: Any, page: Page, scale: Scale) -> None:
-    """A scale with its words and marks."""
+    """Draw a scale with its text and marks."""
     colour_bar(image, pen, page, colour_map(scale.colours), list(scale.words), scale.marks)
 
 
 def colour_bar(
     image: Any, pen: Any, page: Page, colours: Any, words: list[str], marks: list[tuple[float, str]]
 ) -> None:
-    """A scale of colours with lines of words above it and marks at shares of its height, 0 below."""
+    """Draw a scale of colours with lines of text above it and marks at positions from 0, below, to 1."""
     s = page.unit
     x, width, top = legend_left(page), s * _BAR_WIDTH, s * _BAR_TOP
     bottom = max(page.height - s * (DESIGNED[1] - _BAR_BOTTOM), top + 40.0 * s)
@@ -166,10 +166,10 @@ def colour_bar(
 def ruler(
     pen: Any, page: Page, scale: float, units: str, left: float = LEFT, base: float = 52.0, most: float = 320.0
 ) -> None:
-    """A bar of a round length, if the page has one.
+    """Draw a scale bar of a round length, if the page has one.
 
-    scale: mesh units per pixel; left, base, most: its distances from the page's left and lower edges and its largest
-    length, for a page of 1600 x 1200.
+    scale: mesh units per pixel; left, base, most: distances of the bar from the left and lower edges of the page, and
+    its largest length, for a page of 1600 x 1200.
     """
     if not page.ruled:
         return
@@ -182,7 +182,7 @@ def ruler(
 
 
 def axes(pen: Any, page: Page, view: View) -> None:
-    """The model's axes as they point on the picture, the one towards the eye drawn last."""
+    """Draw the axes of the model, the one towards the eye last."""
     toward, s = view.eye, page.unit
     centre, reach = np.array([page.width - s * (RIGHT - 110.0), page.height - s * 110.0]), 62.0 * s
     flat = np.stack([view.right, -view.up], axis=1)
@@ -191,19 +191,19 @@ def axes(pen: Any, page: Page, view: View) -> None:
         tip = centre + reach * flat[axis]
         colour = INK if toward[axis] > -0.2 else FAINT
         pen.line((*centre, *tip), fill=colour, width=max(round(4 * s), 1))
-        # an axis that points at the eye is all but a dot: its name goes where the other two are not
+        # an axis that points at the eye is nearly a dot: its name is put away from the other two
         plain = bool(np.linalg.norm(flat[axis]) > 0.2)
         away = flat[axis] if plain else -flat.sum(axis=0)
         away = away / max(float(np.linalg.norm(away)), 1e-300)
         label = (tip if plain else centre) + 22.0 * s * away
-        if any(np.linalg.norm(label - other) < 24.0 * s for other in labels):  # two axes that look like one
+        if any(np.linalg.norm(label - other) < 24.0 * s for other in labels):  # two axes that coincide on the picture
             label = label + 24.0 * s * np.array([-away[1], away[0]])
         labels.append(label)
         pen.text(tuple(label), "xyz"[axis], colour, font=face(page, 25), anchor="mm")
 
 
 def note(pen: Any, page: Page, lines: list[str]) -> None:
-    """A few words where the legend stands on other pictures."""
+    """Write a few lines where other pictures have their legend."""
     s = page.unit
     for k, line in enumerate(lines):
         pen.text((legend_left(page), s * (TOP + 40 + 32 * k)), line, INK, font=face(page, 23))

@@ -12,13 +12,13 @@ from meshwind.pictures.scenes import CrossingsScene
 
 FIBRE = "#a9a296"
 _DOT = 9.0, 0.3
-"""Radius of a dot in pixels, but no more than this part of the pitch."""
+"""Radius of a dot in pixels, and its upper limit over the pitch."""
 _RINGED = 4.0
-"""Smaller dots have no ring."""
+"""Least radius of a dot with a ring, in pixels."""
 
 
 def draw(window: Any, scene: CrossingsScene, page: Page) -> Any:
-    """The picture of the crossings, with words."""
+    """Draw the crossings, with text."""
     view = scene.frame.view
     scale = canvas.fitting(page, view)
     thick = 0.6 * bodies.radius(scene.part, scale, page.unit)
@@ -35,7 +35,7 @@ def draw(window: Any, scene: CrossingsScene, page: Page) -> Any:
 
 
 def add_dots(window: Any, scene: CrossingsScene, scale: float, unit: float, thick: float) -> None:
-    """A dot per crossing, in a ring of ink so that pale ones stand out, unless they are too many for that."""
+    """Add a dot per crossing, in a dark ring unless dots are small, so that pale ones stand out."""
     if not len(scene.points):
         return
     pixels, share = _DOT

@@ -1,7 +1,7 @@
-"""Pictures are drawn by a process of their own.
+"""Drawing in a process of its own.
 
-VTK without an OpenGL driver takes its whole process down, and it is slow to import and to draw its first
-frame.  A second process is the probe for the one and hides the other behind the solver: start it early.
+Without an OpenGL driver VTK ends its process, and it is slow to import and to draw its first frame.  A second process
+makes the first harmless, and started early it hides the second behind the solver.
 """
 
 import atexit
@@ -28,24 +28,24 @@ NO_DRIVER = (
     "(Debian: apt-get install libegl1 libgl1-mesa-dri)"
 )
 _SILENT_SECONDS = 120.0
-"""Seconds without a sign of life after which a picture is given up."""
+"""Seconds without output after which the process is ended."""
 
 Drawn = Callable[[str], None]
-"""Called with the name of each picture, or "frame", as it is done."""
+"""Called with the name of each picture when it is drawn, and with "frame" for each frame of a movie."""
 
 _waiting: "list[Painter]" = []
-"""The renderer that was started and has not drawn yet; there is never more than one."""
+"""The renderer that was started and has not drawn yet; at most one."""
 
 
 class Painter:
-    """A process that can draw, once."""
+    """A process that can draw once."""
 
     def __init__(self) -> None:
         environment = dict(os.environ)
         if sys.platform.startswith("linux"):
             environment.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
         script = Path(__file__).with_name("renderer.py")
-        # a file, not a pipe: what VTK complains of must not fill a pipe that nobody empties while it draws
+        # a file, not a pipe: error messages of VTK must not fill a pipe that is not read while it draws
         self._complaint = tempfile.TemporaryFile()  # noqa: SIM115
         # -P keeps this folder off the process's import path, where its module names could shadow others.
         self._process = subprocess.Popen(
@@ -64,14 +64,14 @@ class Painter:
         self._complaint.close()
 
     def paint(self, drawings: Mapping[Path, Drawing], drawn: Drawn | None = None) -> str:
-        """Draw each into its file; return "" or one line that says which picture there is not, and why."""
+        """Draw each into its file; return "" or one line that says which picture is missing and why."""
         names = [picture.name for picture in drawings]
         words, late = self._work(pack(drawings), drawn)
         complaint = self._complained()
         self.close()
         for picture in drawings:
             if picture.name not in words:
-                picture.unlink(missing_ok=True)  # a process that has stopped may leave half of it
+                picture.unlink(missing_ok=True)  # a process that was ended may leave an incomplete file
         missing = " and ".join(name for name in names if name not in words)
         if late:
             return f"no {missing}: drawing took more than {_SILENT_SECONDS:.0f} s"
@@ -83,7 +83,7 @@ class Painter:
         return f"no {missing or 'picture'}: {''.join(last) or 'the renderer stopped'}"
 
     def _work(self, packed: bytes, drawn: Drawn | None) -> tuple[list[str], bool]:
-        """Hand the scenes over and follow the process to its end: what it said, and whether it was ended."""
+        """Send the scenes and wait for the end of the process: its output, and whether it was too slow and killed."""
         process, words, late = self._process, [], False
         stdin, stdout = process.stdin, process.stdout
         assert stdin is not None and stdout is not None
@@ -91,7 +91,7 @@ class Painter:
         watch.start()
         try:
             for send in (lambda: stdin.write(packed), stdin.close):
-                with suppress(BrokenPipeError):  # it has crashed: what it said and how it ended say why
+                with suppress(BrokenPipeError):  # it has crashed: its output and return code say why
                     send()
             for line in stdout:
                 words.append(line.decode(errors="replace").strip())
@@ -113,19 +113,19 @@ class Painter:
 
 
 def start_probe() -> None:
-    """Start the renderer: it finds out whether this machine can draw while other work runs."""
+    """Start the renderer, which tests whether this machine can draw while other work runs."""
     if not _waiting:
         _waiting.append(Painter())
 
 
 def stop() -> None:
-    """End a renderer that was started and is not needed."""
+    """End a renderer that was started but is not needed."""
     while _waiting:
         _waiting.pop().close()
 
 
 def can_draw() -> str:
-    """Find out whether this machine can draw: "" or one line that says why it cannot."""
+    """Test whether this machine can draw: return "" or one line that says why it cannot."""
     return paint({})
 
 
@@ -140,7 +140,7 @@ def draw(
 
 
 def draw_fit(picture: str | PathLike[str], surface: Surface, annulus: Annulus, name: str = "", units: str = "") -> str:
-    """Draw the distance between a surface and its mesh into a .png: both, and the worst place from near.
+    """Draw the distance between a surface and its mesh into a .png: both, and a close-up of the worst place.
 
     Returns "" or one line that says why there is no picture; name: for the title, by default the mesh's.
     """
@@ -148,7 +148,7 @@ def draw_fit(picture: str | PathLike[str], surface: Surface, annulus: Annulus, n
 
 
 def paint(drawings: Mapping[Path, Drawing], drawn: Drawn | None = None) -> str:
-    """Draw into .png files by one process; return "" or one line that says which there is not, and why."""
+    """Draw into files in one process; return "" or one line that says which picture is missing and why."""
     start_probe()
     return _waiting.pop().paint(drawings, drawn)
 

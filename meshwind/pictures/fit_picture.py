@@ -1,4 +1,4 @@
-"""fit_error.png: the mesh, the surface that was fitted to it, and the worst place from near, by their distance."""
+"""fit_error.png: the mesh and the fitted surface, coloured by their distance, and a close-up of the worst place."""
 
 from typing import Any
 
@@ -14,21 +14,21 @@ from meshwind.pictures.scenes import FitScene
 
 DISTANCES = colour_map("distance")
 FAINTEST = 0.05
-"""The scale is logarithmic from the worst down to this part of it, and palest for all that is less."""
+"""Lower end of the logarithmic scale over the largest distance; smaller distances get its palest colour."""
 LOST = 0.15
-"""A vertex of the mesh that is further off than this part of the worst is drawn over the surface."""
+"""Vertices of the mesh whose distance over the largest is more than this are drawn over the surface."""
 GLASS, MARK = "#0072b2", "#0072b2"
 GAP, HEAD = 20, 44
-"""Pixels between the views, and above each for its name."""
+"""Pixels between the views, and above each view for its name."""
 RING = 17
 LEGIBLE = 14.0
-"""Pixels that an edge of the mesh must be long for a net of them not to hide all else."""
+"""Least length in pixels of the mesh's edges for them to be drawn."""
 _MESH, _SURFACE, _LOST = "mesh", "surface", "lost"
-"""What a view shows; the last is what the surface lost of the mesh."""
+"""Bodies in a view; the last is the part of the mesh that the surface misses."""
 
 
 def draw(window: Any, scene: FitScene, page: Page) -> Any:
-    """Three views from one side, with words."""
+    """Draw three views from the same side, with text."""
     seen_from, units = scene.frame.view, scene.frame.units
     extent = seen_from.width, seen_from.height
     image = canvas.blank(page)
@@ -61,7 +61,7 @@ def draw(window: Any, scene: FitScene, page: Page) -> Any:
 
 
 def cells(page: Page, extent: tuple[float, float]) -> list[Box]:
-    """Left, top, width and height of three boxes: in a row, in a column, or two over one; as the part is largest."""
+    """Three boxes in a row, in a column, or two over one, whichever shows the part largest."""
     left, top, width, height = canvas.room(page)
     gap, head = page.unit * GAP, page.unit * HEAD
     w, h = (width - 2 * gap) / 3, (height - 2 * gap) / 3
@@ -73,7 +73,7 @@ def cells(page: Page, extent: tuple[float, float]) -> list[Box]:
 
 
 def below(page: Page, box: Box) -> Box:
-    """What its name leaves of a box."""
+    """The box without the room for its name."""
     left, top, width, height = box
     head = page.unit * HEAD
     return left, top + head, width, height - head
@@ -87,7 +87,7 @@ def paste(window: Any, image: Any, page: Page, scene: FitScene, box: Box, target
 
 
 def add(window: Any, scene: FitScene, name: str, scale: float) -> None:
-    """The mesh or the surface coloured by its distance to the other, or as blue glass what the surface lost of it."""
+    """The mesh or the surface coloured by its distance to the other, or in transparent blue what the surface misses."""
     body = scene.surface if name == _SURFACE else scene.mesh
     faces, share = body.faces, body.distances / scene.most
     if name == _LOST:
@@ -103,14 +103,14 @@ def add(window: Any, scene: FitScene, name: str, scale: float) -> None:
 
 
 def spots(scene: FitScene, box: Box, target: Floats, scale: float, points: Floats) -> Floats:
-    """Where points (k, 3) appear in a view, in pixels (k, 2)."""
+    """Positions (k, 2) in pixels of points (k, 3) in a view."""
     view = scene.frame.view
     flat = (points - target) @ np.stack([view.right, -view.up], axis=1) / scale
     return np.asarray(flat + np.array(canvas.middle(box)))
 
 
 def rings(pen: Any, page: Page, box: Box, at: Floats, numbers: Ints) -> None:
-    """A ring about each place in a view, then the numbers beside them: to the left where the view ends."""
+    """Draw a ring about each place in a view, then the numbers beside them, to the left at the edge of the view."""
     s = page.unit
     for x, y in at:
         for width, colour in ((7, PAPER), (3, MARK)):
@@ -125,7 +125,7 @@ def rings(pen: Any, page: Page, box: Box, at: Floats, numbers: Ints) -> None:
 
 
 def legend(image: Any, pen: Any, scene: FitScene, page: Page) -> None:
-    """The places by number with their distance, and the scale of colours."""
+    """Draw the list of places with their distances, and the scale of colours."""
     s = page.unit
     x, y = canvas.legend_left(page), s * (canvas.TOP + 6)
     for k, distance in enumerate(scene.distances):
@@ -141,7 +141,7 @@ def legend(image: Any, pen: Any, scene: FitScene, page: Page) -> None:
 
 
 def marks(scene: FitScene) -> list[tuple[float, str]]:
-    """1, 2 and 5 times powers of ten on the scale, with their shares of the part."""
+    """Marks at 1, 2 and 5 times powers of ten, with the values also as percentages of the diagonal."""
     most = scene.most
     powers = 10.0 ** np.arange(np.floor(np.log10(FAINTEST * most)), np.ceil(np.log10(most)) + 1)
     values = np.outer(powers, [1.0, 2.0, 5.0]).ravel()
@@ -151,5 +151,5 @@ def marks(scene: FitScene) -> list[tuple[float, str]]:
 
 
 def with_share(scene: FitScene, distance: float) -> str:
-    """A distance and its share of the part."""
+    """A distance, and its percentage of the diagonal."""
     return f"{distance:.2g} ({100.0 * distance / scene.diagonal:.2g} %)"

@@ -1,4 +1,4 @@
-"""What is to be seen on fit_error.png."""
+"""Scene of fit_error.png."""
 
 import numpy as np
 
@@ -13,11 +13,11 @@ from meshwind.surface.surface import Surface
 
 _EYES = 240
 _EXACT = 1e-9
-"""Over the diagonal: distances below are round-off, and the scale of colours does not go there."""
+"""Smallest upper end of the scale, over the diagonal: distances below are round-off."""
 _SKIP = 1e-3
-"""Over the diagonal: a ray from a point starts this far off it, clear of its own facets."""
+"""Distance, over the diagonal, from a point to the start of a ray from it, which must not hit its own facets."""
 _CLOSE_UP = 8.0, 0.05, 0.15
-"""Half a close-up's width over the worst distance, and its bounds over the diagonal."""
+"""Half the width of the close-up over the largest distance, and its bounds over the diagonal."""
 
 
 def fit_scene(surface: Surface, annulus: Annulus, name: str, units: str = "") -> FitScene:
@@ -44,7 +44,7 @@ def fit_scene(surface: Surface, annulus: Annulus, name: str, units: str = "") ->
 
 
 def _merit(found: Deviation, eyes: Floats, skip: float) -> Floats:
-    """How well each direction (k, 3) shows the worst place: in sight on both bodies, and the gap from its side."""
+    """Merit of each direction (k, 3): whether the worst place is visible on both bodies, and the gap from its side."""
     worst = found.regions[0]
     gap = worst.on_surface - worst.on_mesh
     gap = gap / max(float(np.linalg.norm(gap)), 1e-300)
@@ -55,7 +55,7 @@ def _merit(found: Deviation, eyes: Floats, skip: float) -> Floats:
 
 
 def _seen(found: Deviation, region: Mismatch, eyes: Floats, skip: float) -> Bools:
-    """Whether a region is in sight (2, k) from each direction (k, 3): on the mesh alone and on the surface alone."""
+    """Whether a place is visible (2, k) from each direction (k, 3): on the mesh alone and on the surface alone."""
     bodies = (found.mesh, region.on_mesh), (found.surface, region.on_surface)
     return np.stack([body.clear(point, eyes, skip) for body, point in bodies])
 

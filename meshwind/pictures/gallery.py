@@ -1,4 +1,4 @@
-"""All pictures of a winding by name, where each is drawn, and the sheet that shows them on one page."""
+"""All pictures of a winding by name, and the sheet that shows them on one page."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -15,7 +15,7 @@ from meshwind.pictures.winding_scene import winding_scene
 from meshwind.results.schema import FIT, FIT_ERROR, PICTURES, SHEET, picture
 
 CELL = 800, 600
-"""Pixels of a picture on the sheet, at most."""
+"""Largest size of a picture on the sheet, in pixels."""
 _SCENES: tuple[Callable[[Subject], Scene], ...] = (
     winding_scene, crossings_scene, coverage_scene, windability_scene, slip_scene, fit_map_scene, unrolled_scene,
     quads_scene,
@@ -24,7 +24,7 @@ _SCENES: tuple[Callable[[Subject], Scene], ...] = (
 
 
 def scenes_of(of: Subject) -> dict[str, Scene]:
-    """All pictures that there are of a winding; without its fit error the surface has no picture of that."""
+    """Scenes of a winding by name of the picture; that of the fit error is missing if the error is not known."""
     named = zip(PICTURES, _SCENES, strict=True)
     return {name: make(of) for name, make in named if name != FIT or FIT_ERROR in of.maps}
 
@@ -43,14 +43,14 @@ def placed(
 
 
 def cell(page: Page) -> Page:
-    """The page for a picture that is drawn for the sheet alone: of the same shape, but no larger than need be."""
+    """The page for a picture that is drawn for the sheet alone: the same shape in a smaller size."""
     share = min(CELL[0] / page.width, CELL[1] / page.height, 1.0)
     share = max(share, LEAST / min(page.width, page.height))
     return replace(page, width=round(share * page.width), height=round(share * page.height))
 
 
 def write_sheet(sheet: Path, pictures: Sequence[Path], transparent: bool = False) -> None:
-    """Lay pictures of one shape out on a sheet, in their order, row by row."""
+    """Arrange pictures of the same shape on a sheet, row by row."""
     columns, rows = layout(len(pictures))
     images = []
     for file in pictures:
@@ -65,6 +65,6 @@ def write_sheet(sheet: Path, pictures: Sequence[Path], transparent: bool = False
 
 
 def layout(count: int) -> tuple[int, int]:
-    """Columns and rows for so many pictures: few blanks first, then about as many columns as rows."""
+    """Columns and rows for `count` pictures, with few blanks and about as many columns as rows."""
     choices = [(columns, -(-count // columns)) for columns in range(1, count + 1) if columns <= 4]
     return min(choices, key=lambda shape: (shape[0] * shape[1] - count) + 1.5 * abs(shape[0] - shape[1]))

@@ -1,4 +1,4 @@
-"""What is to be seen on the pictures of crossings, of the slip, of the quad mesh and of the unrolled part."""
+"""Scenes of the crossings, the slip, the quad mesh and the unrolled part."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ _PIXELS = 384
 
 
 def crossings_scene(of: Subject) -> CrossingsScene:
-    """Where the two families cross, by the angle between them."""
+    """Crossings of the two families, coloured by their angle."""
     crossings = of.layup.crossings
     angle = np.degrees(crossings.angle)
     scale = ANGLE.scale(angle, of.units)
@@ -45,7 +45,7 @@ def quads_scene(of: Subject) -> QuadsScene:
 
 
 def slip_scene(of: Subject) -> SlipScene:
-    """Converged fibres by the friction that they need; NaN where it is not defined: off the surface, at the ends."""
+    """Converged fibres by required friction; NaN where it is not defined: off the surface and at the ends."""
     friction, most = of.paths.friction, of.figures.max_slip
     end = max(friction, most) if max(friction, most) > NO_SLIP else 0.0
     scale = Scale(("slip:", "friction", "needed"), "viridis", 0.0, end or 1.0)
@@ -72,13 +72,13 @@ def _slip_subtitle(of: Subject, end: float) -> str:
 
 
 def _at_limit(slip: Floats, friction: float) -> float:
-    """Share of the known slips that are at the friction: there the fibre has slipped until friction held it."""
+    """Share of the known values of slip that equal the friction, where the fibre slipped until friction held it."""
     known = slip[np.isfinite(slip)]
     return float((known > 0.999 * friction).mean()) if len(known) and friction > 0.0 else 0.0
 
 
 def unrolled_scene(of: Subject) -> UnrolledScene:
-    """The chart, 1 x 1, its red, green and blue being x, y and z, and the fibres with their feet where they bridge."""
+    """The chart, 1 x 1, with x, y and z as red, green and blue, and the fibres; bridges by their feet."""
     points = np.array(surface_image(of.paths.surface, _PIXELS, _PIXELS))
     low, high = points.min(axis=(0, 1)), points.max(axis=(0, 1))
     return UnrolledScene(
@@ -92,7 +92,7 @@ def unrolled_scene(of: Subject) -> UnrolledScene:
 
 
 def _unrolled_subtitle(low: Floats, high: Floats, units: str) -> str:
-    step = 1e-3 * float((high - low).max())  # what is less is round-off, and would be shown as such
+    step = 1e-3 * float((high - low).max())  # smaller values are round-off and should not be shown
     low, high = (np.rint(end / step) * step + 0.0 for end in (low, high))
     tints = zip("xyz", low, high, ("red", "green", "blue"), strict=True)
     spans = (f"{name} {a:.4g} to {b:.4g} as {tint}" for name, a, b, tint in tints)

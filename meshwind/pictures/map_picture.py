@@ -1,4 +1,4 @@
-"""Pictures of a map: the part coloured by it, with a scale, and fans of directions where there are some."""
+"""Pictures of maps: the part coloured by a map, with a scale and, if the scene has them, fans of directions."""
 
 from typing import Any
 
@@ -16,7 +16,7 @@ _ARC = 12
 
 
 def draw(window: Any, scene: MapScene, page: Page) -> Any:
-    """The picture of a map, with words."""
+    """Draw the map, with text."""
     view = scene.frame.view
     bodies.add_map(window, scene.part, scene.shares, colour_map(scene.scale.colours))
     fans = scene.fans if scene.fans is not None and len(scene.fans.points) else None
@@ -33,13 +33,13 @@ def draw(window: Any, scene: MapScene, page: Page) -> Any:
 
 
 def add_fans(window: Any, fans: Fans, eye: Floats) -> None:
-    """Two flat sectors about each direction, as wide as the fibres that press."""
+    """Add two flat sectors about each direction, as wide as the range of directions in which fibres press."""
     normal = fans.normals / np.linalg.norm(fans.normals, axis=1, keepdims=True)
     ahead = fans.directions
     aside = np.cross(normal, ahead)
     turn = fans.reach[:, None] * np.linspace(-1.0, 1.0, _ARC + 1)
     arc = np.cos(turn)[..., None] * ahead[:, None] + np.sin(turn)[..., None] * aside[:, None]
-    tip = fans.points + fans.size * eye  # towards the eye, so that no bend of the part cuts them
+    tip = fans.points + fans.size * eye  # moved towards the eye, so that the part does not cut them
     rim = np.concatenate([fans.size * arc, -fans.size * arc], axis=1) + tip[:, None]
     points = np.concatenate([tip[:, None], rim], axis=1)
     k = np.arange(1, _ARC + 1)

@@ -1,4 +1,4 @@
-"""What is to be seen on the pictures of a map: coverage, windability, distance to the mesh."""
+"""Scenes of the maps: coverage, windability, distance to the mesh."""
 
 from dataclasses import replace
 
@@ -14,11 +14,11 @@ from meshwind.pictures.subject import Subject
 from meshwind.results.schema import CLASS, COVERAGE, FIT_ERROR, PRESS_DIRECTION, PRESS_REACH, WINDABILITY, Field
 
 _FANS = 26
-"""Fans along the longer side of the picture."""
+"""Number of fans along the longer side of the picture."""
 _ALL_BUT = 80.0
-"""Where a fibre presses up to so many degrees to both sides, a fan would be all but a full circle."""
+"""Largest reach, in degrees, of a fan; beyond, it would be nearly a full circle."""
 _ASLANT = 0.25
-"""Cosine from the eye to the normal below which a fan cannot be read."""
+"""Least cosine between the directions to the eye and of the normal at which a fan is legible."""
 
 
 def map_scene(of: Subject, field: Field, title: str, subtitle: str) -> MapScene:
@@ -29,7 +29,7 @@ def map_scene(of: Subject, field: Field, title: str, subtitle: str) -> MapScene:
 
 
 def coverage_scene(of: Subject) -> MapScene:
-    """How many layers of fibre lie over each point."""
+    """Number of layers of fibre over each point."""
     bands = of.layup.bands
     shares = ("bare", bands.bare), ("once", bands.share(1)), ("twice", bands.share(2)), ("more often", bands.more)
     covered = ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in shares)
@@ -38,7 +38,7 @@ def coverage_scene(of: Subject) -> MapScene:
 
 
 def fit_map_scene(of: Subject) -> MapScene:
-    """How far the surface lies from the mesh's facets, on a logarithmic scale."""
+    """Distance of the surface to the mesh's facets, on a logarithmic scale."""
     away = of.maps[FIT_ERROR]
     figures = ("median", np.median(away)), ("99 % below", np.quantile(away, 0.99)), ("largest", away.max())
     subtitle = "  ·  ".join(f"{word} {quantity(float(value), of.units, 2)}" for word, value in figures)
@@ -46,7 +46,7 @@ def fit_map_scene(of: Subject) -> MapScene:
 
 
 def windability_scene(of: Subject) -> MapScene:
-    """In what share of the directions a taut fibre presses, with a fan of those directions where not all do."""
+    """Share of the directions in which a taut fibre presses, with fans of those directions where not all do."""
     kind, area = of.maps[CLASS], _areas(of)
     share = {each: 100.0 * float(area[kind == each].sum() / area.sum()) for each in (CONVEX, SADDLE, CONCAVE)}
     subtitle = (
@@ -69,7 +69,7 @@ def windability_scene(of: Subject) -> MapScene:
 
 
 def spread_out(points: Floats, apart: float) -> Ints:
-    """Numbers of points (n, 3) no two of which are closer than a distance, and none of which can be added."""
+    """Numbers of a largest subset of points (n, 3) no two of which are closer than a distance."""
     if not len(points):
         return np.zeros(0, dtype=np.int64)
     tree, free, chosen = cKDTree(points), np.ones(len(points), dtype=bool), []
@@ -81,7 +81,7 @@ def spread_out(points: Floats, apart: float) -> Ints:
 
 
 def _areas(of: Subject) -> Floats:
-    """The area that each of the surface's points stands for."""
+    """Area of the surface that belongs to each of its points."""
     corner = of.points[of.quads]
     area = 0.5 * np.linalg.norm(np.cross(corner[:, 2] - corner[:, 0], corner[:, 3] - corner[:, 1]), axis=1)
     return np.bincount(of.quads.ravel(), np.repeat(0.25 * area, 4), len(of.points)).astype(np.float64)

@@ -1,4 +1,4 @@
-"""Frames to GIF and MP4."""
+"""Writers of GIF and MP4."""
 
 import shutil
 import subprocess
@@ -19,7 +19,7 @@ _COLOURS = 255
 
 
 def encoder() -> str:
-    """FFmpeg's executable: the machine's own, or that of imageio-ffmpeg; raises BadInputError where there is none."""
+    """Path of FFmpeg, installed or from imageio-ffmpeg; raises BadInputError if there is none."""
     found = shutil.which("ffmpeg")
     if found:
         return found
@@ -35,9 +35,9 @@ def encoder() -> str:
 
 @contextmanager
 def writers(files: list[Path], page: Page, rate: int, ffmpeg: str) -> Iterator[Callable[[Any], None]]:
-    """A function that takes one frame after the other and writes it to all files; rate: frames per second.
+    """Yield a function that writes a frame to all files; rate: frames per second.
 
-    ffmpeg: its executable, for what is no GIF.  Raises OSError where it fails.
+    ffmpeg: path of its executable, for other files than GIF.  Raises OSError if it fails.
     """
     with ExitStack() as stack:
         each = [
@@ -56,7 +56,7 @@ def writers(files: list[Path], page: Page, rate: int, ffmpeg: str) -> Iterator[C
 def _gif(file: Path, rate: int) -> Iterator[Callable[[Any], None]]:
     held: list[Any] = []
     yield held.append
-    # one palette for all frames, or plain areas would flicker: that of the last, which has every colour
+    # one palette for all frames, so that plain areas do not flicker: that of the last, which has all colours
     palette = held[-1].convert("RGB").quantize(_COLOURS, dither=Image.Dither.NONE)
     drawn = [frame.convert("RGB").quantize(palette=palette, dither=Image.Dither.NONE) for frame in held]
     drawn[0].save(file, save_all=True, append_images=drawn[1:], duration=1000 // rate, loop=0, optimize=False)
@@ -64,7 +64,7 @@ def _gif(file: Path, rate: int) -> Iterator[Callable[[Any], None]]:
 
 @contextmanager
 def _mp4(file: Path, page: Page, rate: int, ffmpeg: str) -> Iterator[Callable[[Any], None]]:
-    width, height = page.width - page.width % 2, page.height - page.height % 2  # the coding takes even sizes only
+    width, height = page.width - page.width % 2, page.height - page.height % 2  # the encoding needs even sizes
     asked = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", str(rate), "-i", "-"]
     made = ["-pix_fmt", "yuv420p", "-movflags", "+faststart", str(file)]
     process = subprocess.Popen(

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from meshwind.core.errors import BadInputError
 
 LEAST, MOST = 240, 8192
-"""Fewest pixels of a side that words can be read on, most that graphics can be trusted to draw."""
+"""Smallest side, in pixels, at which text is legible, and largest that graphics drivers draw reliably."""
 DESIGNED = 1600, 1200
 """The size that all measures in the drawing code are for; other pages scale them."""
 
@@ -64,7 +64,7 @@ class Page:
 
 
 def parse_size(text: str) -> tuple[int, int]:
-    """Width and height in pixels from text as in 1920x1080; raises BadInputError where it holds none."""
+    """Width and height in pixels from text as in 1920x1080; raises BadInputError for other text."""
     sides = text.lower().replace("×", "x").split("x")
     if len(sides) != 2 or not all(side.strip().isdecimal() for side in sides):
         raise BadInputError(f"size is {text!r}; give width and height in pixels, as in 1920x1080")

@@ -12,11 +12,11 @@ from meshwind.pictures.scenes import QuadsScene
 
 QUAD, TRIANGLE, EDGE, OFF = "#cfdce8", "#f0c987", "#33485a", "#b0127b"
 _CLEAR = 20.0
-"""Pixels between fibres above which edges are drawn in full."""
+"""Distance between fibres, in pixels, above which edges are drawn opaque."""
 
 
 def draw(window: Any, scene: QuadsScene, page: Page) -> Any:
-    """The picture of the quad mesh, with words."""
+    """Draw the quad mesh, with text."""
     view = scene.frame.view
     scale = canvas.fitting(page, view)
     kinds = (scene.quads, QUAD, "quads"), (scene.triangles, TRIANGLE, "triangles")
@@ -40,7 +40,7 @@ def draw(window: Any, scene: QuadsScene, page: Page) -> Any:
 
 
 def add_faces(window: Any, scene: QuadsScene, cells: Ints, colour: str, scale: float, unit: float) -> None:
-    """Faces of one kind with their edges, fainter where they are so many that they would hide all else."""
+    """Add faces of one kind with their edges, which are fainter the denser they are."""
     apart = scene.part.pitch / (scale * unit)
     mesh = pv.PolyData.from_regular_faces(scene.corners, cells)
     window.add_mesh(

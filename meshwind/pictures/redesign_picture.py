@@ -1,4 +1,4 @@
-"""redesign.png: a part before and after it was changed, the second coloured by how far it moved."""
+"""redesign.png: a part before and after the redesign, the latter coloured by its displacement."""
 
 from typing import Any
 
@@ -11,11 +11,11 @@ from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import RedesignScene
 
 _GAP, _HEAD = 24, 44
-"""Pixels between the views, and above each for its name."""
+"""Pixels between the views, and above each view for its name."""
 
 
 def draw(window: Any, scene: RedesignScene, page: Page) -> Any:
-    """The two views from one side, with words."""
+    """Draw two views from the same side, with text."""
     view, both = scene.frame.view, np.concatenate([scene.before, scene.after])
     image = canvas.blank(page)
     pen = canvas.titled(image, page, scene.frame)
@@ -37,7 +37,7 @@ def draw(window: Any, scene: RedesignScene, page: Page) -> Any:
 
 
 def halves(page: Page, extent: tuple[float, float]) -> list[canvas.Box]:
-    """Two boxes side by side or one above the other, as the part comes out larger."""
+    """Two boxes side by side or one above the other, whichever shows the part larger."""
     left, top, width, height = canvas.room(page)
     gap, head = page.unit * _GAP, page.unit * _HEAD
     w, h = (width - gap) / 2, (height - gap) / 2
@@ -47,7 +47,7 @@ def halves(page: Page, extent: tuple[float, float]) -> list[canvas.Box]:
 
 
 def add(window: Any, scene: RedesignScene, after: bool) -> None:
-    """The part before, plain, or after, coloured."""
+    """Add the part before, plain, or after, coloured."""
     part = pv.PolyData.from_regular_faces(scene.after if after else scene.before, scene.faces)
     part.point_data["shares"] = np.asarray(scene.shares)
     look: dict[str, Any] = {"color": canvas.PART, "ambient": 0.3, "diffuse": 0.8}

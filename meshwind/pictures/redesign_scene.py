@@ -1,4 +1,4 @@
-"""What is to be seen on redesign.png: a part before and after it was changed, and by how much."""
+"""Scene of redesign.png: a part before and after the redesign."""
 
 from os import PathLike
 from pathlib import Path
@@ -19,7 +19,7 @@ from meshwind.results.schema import LENGTHS
 _MOVES = Look("displacement", "moved outward\n(red) or\ninward (blue)", LENGTHS, DIVERGING, both_ways)
 _EYES = 240
 _MOVED = 0.01
-"""Of the largest displacement: vertices that move by more count as moved."""
+"""Displacement over the largest above which a vertex counts as moved."""
 
 
 def draw_redesign(
@@ -77,14 +77,14 @@ def draw_redesign(
 
 
 def redesign_in(folder: Path, name: str, units: str = "", seen_from: str = "auto") -> RedesignScene:
-    """The scene of a redesign's folder; raises BadInputError where its edited mesh is none."""
+    """The scene of a redesign's folder; raises BadInputError if its edited mesh cannot be used."""
     return redesign_scene(*read_edited(folder), name, units, seen_from)
 
 
 def redesign_scene(
     before: Floats, moves: Floats, faces: Ints, name: str, units: str = "", seen_from: str = "auto"
 ) -> RedesignScene:
-    """The mesh before and after, seen from where most of the change is in sight, coloured by its outward part."""
+    """The mesh before and after, seen from where most of the change is visible, coloured by its outward component."""
     vertices, moved = floats(before, "before", -1, 3), floats(moves, "moves", len(before), 3)
     corners = ints(faces, "faces", -1, 3)
     normals = np.asarray(igl.per_vertex_normals(np.array(vertices), np.array(corners)))

@@ -1,4 +1,4 @@
-"""Draw a results folder: all that is needed is in it."""
+"""Pictures and movies from a run's folder alone."""
 
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
@@ -22,7 +22,7 @@ from meshwind.results.reading import is_redesign, read_report, read_results
 from meshwind.results.schema import MOVIES, PATHS, PICTURES, REDESIGN, SHEET, movie, picture
 
 PictureProgress = Callable[[str, int, int], None]
-"""Called with what was drawn, how many pictures and frames are done, and how many there are."""
+"""Called with the name of a picture, the number of pictures and frames drawn, and their total."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,7 @@ def _check(only: Sequence[str], animate: Sequence[str], page: Page) -> None:
 
 
 def _subject(source: Path, page: Page) -> Subject | None:
-    """The winding in a folder; None where there is but a redesign."""
+    """The winding in a folder; None if it has only a redesign."""
     if is_redesign(source) and not (source / PATHS).is_file():
         return None
     return subject_of(read_results(source), page.view)
@@ -132,7 +132,7 @@ def _scenes(source: Path, of: Subject | None, page: Page) -> dict[str, Scene]:
 
 
 def _part(source: Path) -> tuple[str, str]:
-    """Name and unit of the part by a redesign's report, or the folder's name."""
+    """Name and unit of the part from a redesign's report; without one, the folder's name."""
     try:
         part = read_report(source)["mesh"]
         return str(part["name"]), unit_told(str(part["units"]))

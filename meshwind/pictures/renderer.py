@@ -1,7 +1,7 @@
 """Draws scenes in a process of its own: `python -P renderer.py < scenes.npz`.
 
-Says "ready" once the machine has proved that it can draw, then the name of each picture that it has saved, and "frame"
-for each frame of a movie; without input it ends quietly.  Of meshwind it loads nothing but what draws.
+Prints "ready" after a test that the machine can draw, then the name of each picture that it has saved, and "frame" for
+each frame of a movie; without input it does nothing more.  It loads only those parts of meshwind that draw.
 """
 
 import sys
@@ -40,7 +40,7 @@ FRAME = "frame"
 
 
 def main() -> None:
-    """Prove that the machine draws, read scenes, draw them."""
+    """Test that the machine can draw, read scenes, draw them."""
     window = canvas.plotter()
     say("ready")
     for file, drawing in scenes.unpack(sys.stdin.buffer.read()):
@@ -55,7 +55,7 @@ def main() -> None:
 
 
 def say(word: str) -> None:
-    """Send a word to the process that waits."""
+    """Print a word for the process that waits."""
     sys.stdout.write(f"{word}\n")
     sys.stdout.flush()
 

@@ -1,4 +1,4 @@
-"""revolutions.png: the choice of revolutions, with what it rests on."""
+"""revolutions.png: the choice of revolutions and its reasons."""
 
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ _DPI = 150
 
 
 def draw_revolutions(picture: Path, chosen: Revolutions, name: str = "") -> None:
-    """Draw into a .png: the histogram of where the surface presses, both limits, what bridges, and the choice."""
+    """Draw a .png: the share of the surface on which fibres press, the bounds, the bridged shares, and the choice."""
     # imported late, as all that draws
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -38,7 +38,7 @@ def draw_revolutions(picture: Path, chosen: Revolutions, name: str = "") -> None
 
 
 def _last(chosen: Revolutions) -> float:
-    """How far the picture goes: past all that bounds the choice, with room to see it."""
+    """Right end of the picture, beyond all bounds of the choice."""
     bound = chosen.feasible.high
     ends = [1.5 * chosen.choice, 1.2 * chosen.square, 1.3 * bound if np.isfinite(bound) else 0.0]
     ends += [1.05 * gain for gain in (chosen.with_friction, chosen.with_opening) if np.isfinite(gain)]

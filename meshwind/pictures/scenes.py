@@ -1,6 +1,6 @@
-"""What is to be seen on each picture, as records that travel to the process that draws.
+"""Scenes: contents of the pictures, as records that are sent to the process that draws.
 
-Gathered by the `*_scene` modules, drawn by the `*_picture` modules of the same names.  Loads nothing heavy, as both
+The `*_scene` modules make them, the `*_picture` modules draw them.  Importing this module loads nothing heavy, as both
 processes need it.
 """
 
@@ -22,7 +22,7 @@ from meshwind.pictures.page import Page
 
 @dataclass(frozen=True)
 class Frame:
-    """What every picture has: its words, the name of the unit of length, and the side that it is seen from."""
+    """Title and subtitle, name of the unit of length, and view, which every picture has."""
 
     title: str
     subtitle: str
@@ -45,7 +45,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Fibres:
-    """The fibres as points (p, n, 3), and where to lift them (p, n, 3), in radii of the tube; which converged (p,)."""
+    """The fibres as points (p, n, 3), with the lift (p, n, 3) of their tubes, in radii; which converged (p,)."""
 
     points: Floats
     lift: Floats
@@ -55,9 +55,9 @@ class Fibres:
 
 @dataclass(frozen=True)
 class BridgeLines:
-    """The bridges as polylines one after the other, of so many points each: points and lift (k, 3), gap (k,).
+    """The bridges as consecutive polylines of `sizes` (b,) points: points and lift (k, 3), gap (k,).
 
-    path and particle (k,) say which particle a point is.
+    path and particle (k,): numbers of the path and of the particle on it.
     """
 
     points: Floats
@@ -81,10 +81,10 @@ class WindingScene:
 
 @dataclass(frozen=True)
 class AnimationScene:
-    """A winding with how much fibre is laid before each point of its fibres (p, n) and of its bridges (k,).
+    """A winding with the length of fibre laid before each point of its fibres (p, n) and of its bridges (k,).
 
-    total: length of all; spin (3,): the axis that the part turns about, by so many turns; frames: how many, so many a
-    second; movies: the files; encoder: FFmpeg's executable.
+    total: length of all fibres; spin (3,): axis about which the part turns; turns: number of its turns; frames: number
+    of frames; movies: files to write; encoder: path of FFmpeg.
     """
 
     winding: WindingScene
@@ -101,7 +101,7 @@ class AnimationScene:
 
 @dataclass(frozen=True)
 class CrossingsScene:
-    """The crossings (c, 3), with the surface's normals (c, 3) there, and where they lie on the scale (c,)."""
+    """The crossings (c, 3), with the surface's normals (c, 3) there, and positions on the scale (c,)."""
 
     frame: Frame
     part: Part
@@ -114,7 +114,7 @@ class CrossingsScene:
 
 @dataclass(frozen=True)
 class Fans:
-    """Directions that press at some points: points, normals, middle directions (f, 3), angle to both sides (f,).
+    """Directions in which a fibre presses: points, normals, middle directions (f, 3), reach to both sides (f,).
 
     size: radius of a fan, in mesh units.
     """
@@ -128,7 +128,7 @@ class Fans:
 
 @dataclass(frozen=True)
 class MapScene:
-    """A map on the part: where its values lie on the scale (k,), and fans of directions, if it has them."""
+    """A map on the part: positions of its values on the scale (k,) and, if it has them, fans of directions."""
 
     frame: Frame
     part: Part
@@ -139,7 +139,7 @@ class MapScene:
 
 @dataclass(frozen=True)
 class SlipScene:
-    """The fibres by their slip: where it lies on the scale (p, n), NaN where it is not defined.
+    """The fibres by their slip: positions on the scale (p, n), NaN where it is not defined.
 
     needed: whether any fibre needs friction; bridges: whether any leaves the surface.
     """
@@ -167,7 +167,7 @@ class QuadsScene:
 
 @dataclass(frozen=True)
 class UnrolledScene:
-    """The chart as an image (h, w, 3) and the fibres on it, uv (p, n, 2), with where they bridge (p, n)."""
+    """The chart as an image (h, w, 3) and the fibres on it, uv (p, n, 2); bridging (p, n): whether particles bridge."""
 
     frame: Frame
     image: Floats
@@ -188,11 +188,11 @@ class MeasuredBody:
 
 @dataclass(frozen=True)
 class FitScene:
-    """The mesh and the surface by their distance, and the worst place from near.
+    """The mesh and the surface by their distance, and the worst places.
 
-    pairs (r, 2, 3): a point on the mesh and one on the surface for each region that the surface misses, their
-    distances (r,), and whether each is in sight (r, 2); most: end of the scale; edge: usual length of the mesh's;
-    close_up: half the width of the view from near.
+    pairs (r, 2, 3): for each place a point on the mesh and one on the surface; distances (r,) between them; seen
+    (r, 2): whether they are visible; most: end of the scale; edge: median length of the mesh's edges; close_up: half
+    the width of the close-up.
     """
 
     frame: Frame
@@ -209,7 +209,7 @@ class FitScene:
 
 @dataclass(frozen=True)
 class RedesignScene:
-    """Vertices (n, 3) before and after, with faces (m, 3), and where the displacement lies on the scale (n,)."""
+    """Vertices (n, 3) before and after, with faces (m, 3), and positions of the displacement on the scale (n,)."""
 
     frame: Frame
     scale: Scale
@@ -242,7 +242,7 @@ class Drawing:
 
 
 def pack(drawings: Mapping[Path, Drawing]) -> bytes:
-    """Drawings by the file of each, as an .npz whose arrays are named 0/file, 0/page/width, 0/scene/part/points, ..."""
+    """Drawings, by their files, as an .npz whose arrays are named 0/file, 0/page/width, 0/scene/part/points, ..."""
     arrays: dict[str, Any] = {}
     for number, (file, drawing) in enumerate(drawings.items()):
         named = {"file": str(file.absolute()), "kind": type(drawing.scene).__name__} | _arrays(drawing)
@@ -265,7 +265,7 @@ def unpack(packed: bytes) -> Iterator[tuple[Path, Drawing]]:
 
 
 def _arrays(record: Any) -> dict[str, Any]:
-    """The fields of a record, and of the records in it, that are not None."""
+    """Fields of a record, and of records in it, that are not None, as arrays."""
     arrays: dict[str, Any] = {}
     for each in fields(record):
         value = getattr(record, each.name)
@@ -277,13 +277,13 @@ def _arrays(record: Any) -> dict[str, Any]:
 
 
 def _record(kind: type[Any], arrays: Mapping[str, NDArray[Any]]) -> Any:
-    """The record of a kind whose fields these arrays are."""
+    """A record of the given kind from the arrays of its fields."""
     hints = get_type_hints(kind)
     return kind(**{each.name: _value(hints[each.name], each.name, arrays) for each in fields(kind)})
 
 
 def _value(hint: Any, name: str, arrays: Mapping[str, NDArray[Any]]) -> Any:
-    """A field by its type: a record, a plain value, a tuple, an array; None where there is none."""
+    """Value of a field by its type: a record, a plain value, a tuple or an array; None if it has no arrays."""
     kind = next(part for part in get_args(hint) if part is not NoneType) if isinstance(hint, UnionType) else hint
     if is_dataclass(kind):
         below = _below(arrays, name)
@@ -296,5 +296,5 @@ def _value(hint: Any, name: str, arrays: Mapping[str, NDArray[Any]]) -> Any:
 
 
 def _below(arrays: Mapping[str, NDArray[Any]], name: str) -> dict[str, NDArray[Any]]:
-    """The arrays whose names begin with this one, without it."""
+    """Arrays whose names start with the given one, by the rest of their names."""
     return {key.removeprefix(f"{name}/"): array for key, array in arrays.items() if key.startswith(f"{name}/")}

@@ -1,4 +1,4 @@
-"""slip.png: fibres coloured by the friction they need, grey where they leave the surface."""
+"""slip.png: fibres coloured by required friction, grey where they leave the surface."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ OFF = "#8c857a"
 
 
 def draw(window: Any, scene: SlipScene, page: Page) -> Any:
-    """The picture of the slip, with words."""
+    """Draw the slip, with text."""
     view, converged = scene.frame.view, scene.fibres.converged
     scale = canvas.fitting(page, view)
     thick = bodies.radius(scene.part, scale, page.unit)
@@ -36,7 +36,7 @@ def draw(window: Any, scene: SlipScene, page: Page) -> Any:
 
 
 def _add_known(window: Any, scene: SlipScene, points: Floats, thick: float) -> None:
-    """Converged fibres: coloured between particles whose slip is known, thin and grey between others."""
+    """Add converged fibres: coloured between particles whose slip is known, thin and grey between others."""
     shares = scene.shares[scene.fibres.converged]
     known = np.isfinite(shares[:, 1:]) & np.isfinite(shares[:, :-1])
     grey, lines = runs(points, shares, ~known), runs(points, shares, known)
@@ -49,7 +49,7 @@ def _add_known(window: Any, scene: SlipScene, points: Floats, thick: float) -> N
 
 
 def runs(points: Floats, shares: Floats, wanted: Bools) -> Any:
-    """Polylines over each run of wanted segments (p, n - 1) of paths (p, n, 3), with their shares; None without one."""
+    """Polylines over runs of wanted segments (p, n - 1) of paths (p, n, 3), with shares; None if there is none."""
     padded = np.pad(wanted, ((0, 0), (1, 1))).astype(np.int8)
     path, first = np.nonzero(np.diff(padded, axis=1) == 1)
     _, last = np.nonzero(np.diff(padded, axis=1) == -1)

@@ -1,4 +1,4 @@
-"""What the pictures of a winding are of: its layup, the maps on its surface, and the side to look at it from."""
+"""Subject of the pictures of a winding: its layup, the maps on its surface, and the view."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -21,7 +21,7 @@ from meshwind.results.schema import NORMAL
 from meshwind.surface.grid import grid
 
 _MOST_POINTS, _FEWEST_POINTS, _ALL_POINTS = 250, 40, 60_000
-"""Points of a path that are drawn, as more do not show; of many paths fewer each, as tubes take 7 kB a point."""
+"""Points drawn of a path, most and fewest, and of all paths together: more are not visible, and take 7 kB each."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Subject:
 
     @cached_property
     def view(self) -> View:
-        """Square onto the long side that shows most of the part, its bend and its bridges, or the given side."""
+        """View of the long side that shows most of the part, its bend and its bridges, or from the given side."""
         paths = self.paths
         if isinstance(self.seen_from, View):
             return self.seen_from
@@ -73,13 +73,13 @@ class Subject:
 
     @cached_property
     def kept(self) -> Ints:
-        """Numbers of the particles that are drawn: evenly, the last among them."""
+        """Numbers of the particles that are drawn: every `stride`-th and the last."""
         count = self.paths.gap.shape[1]
         return np.unique(np.r_[np.arange(0, count, self.stride), count - 1])
 
     @property
     def stride(self) -> int:
-        """Every so many-th particle is drawn."""
+        """Step between the particles that are drawn."""
         most = min(_MOST_POINTS, max(_FEWEST_POINTS, _ALL_POINTS // len(self.paths)))
         return -(-self.paths.gap.shape[1] // most)
 
@@ -117,9 +117,9 @@ def subject_in(
     seen_from: str = "auto",
     trusted: bool = True,
 ) -> Subject:
-    """A layup to draw with the maps of the surface.vtu in a folder; raises BadInputError where there is none.
+    """A layup to draw with the maps of the surface.vtu in a folder; raises BadInputError if it has none.
 
-    trusted: this very process has written the file.
+    trusted: the file was written by this process.
     """
     read = read_surface_grid(folder, layup.paths.surface, trusted)
     maps = dict(read.point_data)
@@ -128,6 +128,6 @@ def subject_in(
 
 
 def subject_of(results: Results, seen_from: str = "auto") -> Subject:
-    """A results folder to draw."""
+    """The winding of a run's folder."""
     turns = results.revolutions
     return subject_in(results.folder, results.layup, results.name, results.units, turns, seen_from, trusted=False)

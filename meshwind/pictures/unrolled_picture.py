@@ -14,12 +14,12 @@ from meshwind.pictures.scenes import UnrolledScene
 
 _BRIDGING = "#b0127b"
 _PALE = 0.55
-"""How far the image is led towards white, so that the fibres stand out."""
+"""Share of white mixed into the image, so that the fibres stand out."""
 _DPI = 100.0
 
 
 def draw(window: Any, scene: UnrolledScene, page: Page) -> Any:
-    """The picture of the chart; the window is not needed."""
+    """Draw the chart; the window is not needed."""
     del window
     s = page.unit
     figure = Figure(figsize=(page.width / _DPI, page.height / _DPI), dpi=_DPI, facecolor="none")
@@ -42,7 +42,7 @@ def draw(window: Any, scene: UnrolledScene, page: Page) -> Any:
 
 
 def _fill(axes: Any, scene: UnrolledScene, s: float, width: float) -> None:
-    """The image, the fibres, the words of the axes."""
+    """Draw image, fibres and labels of the axes."""
     thick = min(1.6 * s, 0.16 * width / len(scene.uv))
     axes.imshow(_PALE + (1.0 - _PALE) * scene.image, extent=(0.0, 1.0, 0.0, 1.0), origin="lower", aspect="auto")
     for path, (uv, family) in enumerate(zip(scene.uv, scene.family, strict=True)):
@@ -58,7 +58,7 @@ def _fill(axes: Any, scene: UnrolledScene, s: float, width: float) -> None:
 
 
 def _wrapped(uv: Floats) -> tuple[Floats, Floats]:
-    """A path (n, 2) whose u is unwrapped, drawn in [0, 1]: broken where it leaves one side and enters the other."""
+    """A path (n, 2) with u in [0, 1], broken where it crosses u = 0."""
     turn = np.floor(uv[:, 0])
     parts = []
     known = turn[np.isfinite(turn)]

@@ -13,7 +13,7 @@ GAPS = colour_map("gap")
 
 
 def draw(window: Any, scene: WindingScene, page: Page) -> Any:
-    """The picture of the part and its fibres, with words."""
+    """Draw the part and its fibres, with text."""
     scale = canvas.fitting(page, scene.frame.view)
     thick = bodies.radius(scene.part, scale, page.unit)
     bodies.add_part(window, scene.part)
@@ -36,13 +36,13 @@ def lettered(image: Any, scene: WindingScene, page: Page) -> Any:
 
 
 def families(fibres: Fibres) -> list[tuple[str, str]]:
-    """Which colour is which family, for the legend."""
+    """Rows of the legend: colour and name of each family."""
     rows = [(bodies.FAMILY[name], words) for name, words in bodies.NAMES.items()]
     return rows if fibres.converged.all() else [*rows, (bodies.LOOSE, "not at rest")]
 
 
 def add_bridges(window: Any, scene: WindingScene, thick: float) -> None:
-    """The spans off the surface, thicker and coloured by their gap."""
+    """Add the spans off the surface, thicker and coloured by their gap."""
     bridges = scene.bridges
     if not len(bridges.points):
         return
@@ -52,7 +52,7 @@ def add_bridges(window: Any, scene: WindingScene, thick: float) -> None:
 
 
 def marks(most: float) -> list[tuple[float, str]]:
-    """Round values from 0 to most: their share of it, and their words."""
+    """Round values from 0 to `most`: their positions and their text."""
     step = round_below(most / 3.0)
     values = step * np.arange(int(most / step * (1.0 + 1e-9)) + 1)
     return [(float(value / most), f"{value:.4g}") for value in values]

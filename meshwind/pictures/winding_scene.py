@@ -1,4 +1,4 @@
-"""What is to be seen on winding.png."""
+"""Scene of winding.png."""
 
 import numpy as np
 
@@ -19,16 +19,16 @@ def winding_scene(of: Subject) -> WindingScene:
 
 
 def fibres(of: Subject) -> Fibres:
-    """The fibres by those of their particles that are drawn."""
+    """The fibres, with those of their particles that are drawn."""
     kept = of.kept
     return Fibres(of.paths.points[:, kept], lifts(of.paths)[:, kept], of.paths.family, of.converged)
 
 
 def lifts(paths: Paths) -> Floats:
-    """Where to lift the particles so that tubes lie on the part (p, n, 3), in radii of the tube.
+    """Lift (p, n, 3) of the particles so that tubes lie on the part, in radii of the tube.
 
-    Along the normal on the surface.  Along a bridge evenly from one end's normal to the other's: it is straight
-    and stays so, which lifting along the normals below it would bend.
+    It is along the normal on the surface, and interpolated between the normals at both ends along a bridge, which
+    stays straight.
     """
     spans = bridges(paths)
     row, column, share = _inside(paths, spans)
@@ -51,7 +51,7 @@ def _inside(paths: Paths, spans: Bridges) -> tuple[Ints, Ints, Floats]:
 
 
 def _bridge_lines(of: Subject) -> BridgeLines:
-    """The bridges as polylines one after the other: every stride-th point and both ends."""
+    """The bridges as consecutive polylines: every stride-th point and both ends."""
     paths, spans = of.paths, of.figures.spans
     row, column, _ = _inside(paths, spans)
     size = spans.last - spans.first + 1
@@ -69,13 +69,13 @@ def _families(paths: Paths) -> str:
 
 
 def _turns(of: Subject) -> float:
-    """The given revolutions; without them the paths' mean, which bent rims shift a little."""
+    """The given revolutions; without them the mean of the paths, which bent rims change slightly."""
     mean = float(np.abs(of.paths.uv[:, -1, 0] - of.paths.uv[:, 0, 0]).mean())
     return mean if of.revolutions is None else of.revolutions
 
 
 def _subtitle(of: Subject) -> str:
-    """The report's figures in a line."""
+    """Figures of the report in one line."""
     figures, paths = of.figures, of.paths
     length = f"fibre length {quantity(figures.fibre_length, of.units)}"
     if figures.converged < len(paths):

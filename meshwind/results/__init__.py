@@ -1,1 +1,3 @@
-"""Files, report and pictures.  Loads nothing by itself: the process that draws must start quickly."""
+"""A run's folder: names of files and fields, writers, readers, report, staging.
+
+Importing the package loads nothing: the process that draws must start quickly."""

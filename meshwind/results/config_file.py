@@ -22,7 +22,7 @@ def write_config(path: Path, out: Path, options: Mapping[str, object], version: 
 
 
 def _toml(value: object) -> str:
-    """A number, a text or a truth as TOML writes it: as JSON does, but for floats, which come back to the last bit."""
+    """A number, string or boolean as TOML: written as JSON, except for floats, which keep every bit."""
     return repr(value) if isinstance(value, float) else json.dumps(value, ensure_ascii=False)
 
 

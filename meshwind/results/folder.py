@@ -1,4 +1,4 @@
-"""A run's folder: files appear in it whole and together, or not at all, and results are replaced only on demand."""
+"""Writing into a folder: all files appear together or none, and results are replaced only on demand."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,14 +10,13 @@ from meshwind.results.staging import staged
 
 
 class _TrialError(Exception):
-    """Ends a trial before anything has been written."""
+    """Ends a trial run of `writing` before anything is written."""
 
 
 def prepare(out: Path, overwrite: bool = False) -> None:
-    """Make sure that files can be written into `out`, and leave nothing behind; first finish what a killed run left.
+    """Check that files can be written into `out` without leaving any; first finish what a killed run left.
 
-    Raises BadInputError where a file is in the way, where the folder cannot be written or where, without `overwrite`,
-    it holds results.
+    Raises BadInputError if `out` is a file, cannot be written or, without `overwrite`, holds results.
     """
     try:
         with writing(out, overwrite):
@@ -28,12 +27,12 @@ def prepare(out: Path, overwrite: bool = False) -> None:
 
 @contextmanager
 def writing(out: Path, overwrite: bool = False) -> Iterator[Path]:
-    """Give a folder to write a run's files into; on leaving they move to `out`, on an error they vanish.
+    """Yield a folder for the files of a run; they move to `out` at the end, or vanish on an error.
 
-    With `overwrite` all results of an earlier run in `out` and exports of them are removed, also those that this one
-    does not have, as they would belong to another report; all else is left alone.  On an error nothing is left, not
-    even `out` itself where it was missing, and killed on the way the next run into `out` finishes the move or clears
-    away.  Raises BadInputError where `out` cannot be written or, without `overwrite`, holds results.
+    With `overwrite`, all results of an earlier run in `out` and their exports are removed, including files that this
+    run does not have, as they would belong to another report; other files stay.  After an error nothing is left, not
+    even `out` if it did not exist before.  After a killed run, the next one into `out` finishes the move or cleans
+    up.  Raises BadInputError if `out` cannot be written or, without `overwrite`, holds results.
     """
     _not_a_file(out)
     with staged(out, lambda _: map(Path, held)) as staging:
@@ -44,11 +43,10 @@ def writing(out: Path, overwrite: bool = False) -> Iterator[Path]:
 
 @contextmanager
 def beside(out: Path) -> Iterator[Path]:
-    """Give a folder for exports of a run; on leaving they move to `out` beside what is there, on an error they vanish.
+    """Yield a folder for exports of a run; they move to `out` beside its other files at the end, or vanish on an error.
 
-    Files of the same names in `out` are replaced, and in a folder of the same name numbered files (path_007.csv) of
-    an earlier export do not stay.  All else in `out` is left alone.  Raises BadInputError where `out` cannot be
-    written.
+    Files of the same name in `out` are replaced, and numbered files (path_007.csv) of an earlier export in a folder
+    of the same name are removed.  Other files stay.  Raises BadInputError if `out` cannot be written.
     """
     _not_a_file(out)
     with staged(out, lambda fresh: _outdated(out, fresh)) as staging:
@@ -56,7 +54,7 @@ def beside(out: Path) -> Iterator[Path]:
 
 
 def exports_in(out: Path) -> list[str]:
-    """Names of the exported files in a folder, relative to it; other files there and below are not among them."""
+    """Names of the exported files in a folder and its export folders, relative to it."""
     folders = out, *map(out.joinpath, EXPORT_FOLDERS)
     files = [file for folder in folders if folder.is_dir() for file in folder.iterdir()]
     names = (file.relative_to(out).as_posix() for file in files if file.is_file())
@@ -69,7 +67,7 @@ def _not_a_file(out: Path) -> None:
 
 
 def _held(out: Path, overwrite: bool) -> list[str]:
-    """Names of the results in `out`; raises BadInputError where there are some that must not be replaced."""
+    """Names of the results in `out`; raises BadInputError if there are any that must not be replaced."""
     held = sorted(name for name in RESULTS if (out / name).is_file()) + exports_in(out)
     if held and not overwrite:
         what = ", ".join(held[:2]) + ", ..." * (len(held) > 2)
@@ -80,7 +78,7 @@ def _held(out: Path, overwrite: bool) -> list[str]:
 
 
 def _outdated(out: Path, fresh: list[Path]) -> Iterator[Path]:
-    """What an earlier export left in folders of the same kinds and this one does not have."""
+    """Numbered files of an earlier export, of kinds that this one writes into the same folder."""
     for top in {name.parts[0] for name in fresh if len(name.parts) > 1}:
         kinds = {name.name.rsplit("_", 1)[0] for name in fresh if name.parts[0] == top and "_" in name.name}
         for old in (out / top).iterdir() if (out / top).is_dir() else ():

@@ -1,4 +1,4 @@
-"""The chart as a picture: PNG of 16 bits a channel, or the numbers themselves in NPZ."""
+"""The chart as an image: PNG with 16 bits per channel, or an array in NPZ."""
 
 import struct
 import zlib
@@ -19,19 +19,19 @@ LOW, HIGH, UNITS = "meshwind XYZ min", "meshwind XYZ max", "meshwind units"
 """Text entries of the PNG: the x, y and z, in the mesh's units, of a channel's darkest and lightest level, and
 that unit's name."""
 PIXELS, LEAST, MOST = 2, 256, 2048
-"""Pixels a span, and bounds: the spline between them is then closer than 16 bits can tell."""
+"""Pixels per span, and bounds: the spline between pixels is then known to more than 16 bits."""
 
 
 def write_chart_image(path: Path, surface: Surface, units: str = "") -> None:
-    """Write the surface as a picture, two pixels a span: PNG to 1/65535 of the part's size, or NPZ in full."""
+    """Write the surface as an image, two pixels per span: PNG to 1/65535 of the part's size, or NPZ in full."""
     width, height = (int(np.clip(PIXELS * spans, LEAST, MOST)) for spans in surface.spans)
     write_image(path, surface_image(surface, width, height), units)
 
 
 def write_image(path: Path, image: ArrayLike, units: str = "") -> None:
-    """Write an image (height, width, 3) of a surface: .png in 16 bits, .npz as it is; units: of its lengths.
+    """Write an image (height, width, 3) of a surface: .png in 16 bits, .npz in full precision; units: of its lengths.
 
-    Rows of the array are rows of the picture from the top.  Raises BadInputError for another ending.
+    Rows of the array are rows of the picture from the top.  Raises BadInputError for any other file name extension.
     """
     path = Path(path)
     pixels = floats(image, "image", -1, -1, 3)
@@ -130,7 +130,7 @@ def _write_png(path: Path, levels: NDArray[np.uint16], texts: dict[str, str]) ->
     picture.SetDimensions(width, height, 1)
     picture.GetPointData().SetScalars(convert(_upside_down(levels).reshape(-1, 3), deep=True))
     writer = vtkPNGWriter()
-    writer.WriteToMemoryOn()  # VTK itself cannot tell of a full disk
+    writer.WriteToMemoryOn()  # VTK itself does not report a full disk
     writer.SetInputData(picture)
     for key, text in texts.items():
         writer.AddText(key, text)
@@ -157,7 +157,7 @@ def _read_png(path: Path) -> tuple[NDArray[Any], dict[str, str]]:
 
 
 def _checked(path: Path) -> dict[str, str]:
-    """The text entries of a PNG that is whole: VTK crashes on one that is cut off, and Pillow drops half the bits."""
+    """Text entries of a PNG, checked to be complete: VTK crashes on truncated files, Pillow drops half the bits."""
     from PIL import Image
 
     try:
@@ -179,5 +179,5 @@ def _checked(path: Path) -> dict[str, str]:
 
 
 def _upside_down(rows: NDArray[Any]) -> NDArray[Any]:
-    """VTK counts rows from the bottom, pictures and arrays from the top."""
+    """Rows in reverse order: VTK counts them from the bottom, pictures and arrays from the top."""
     return np.ascontiguousarray(rows[::-1])

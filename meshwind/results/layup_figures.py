@@ -21,18 +21,18 @@ from meshwind.results.report_types import (
 )
 
 REGIONS = (4, 8)
-"""Equal parts of u and of v in which crossings are counted."""
+"""Number of equal parts of u and of v in which crossings are counted."""
 
 
 def spread(values: Floats) -> Spread:
-    """Smallest, median and largest; None of nothing."""
+    """Minimum, median and maximum; None if there are no values."""
     if not len(values):
         return {"min": None, "median": None, "max": None}
     return {"min": float(values.min()), "median": float(np.median(values)), "max": float(values.max())}
 
 
 def crossing_figures(crossings: Crossings, own: int) -> CrossingFigures:
-    """Angles in degrees, quality as |cos|, counts by region, and how often fibres cross their own family."""
+    """Angles in degrees, quality as |cos|, counts by region; own: crossings of fibres of the same family."""
     return {
         "count": len(crossings),
         "angle": spread(np.degrees(crossings.angle)),
@@ -44,7 +44,7 @@ def crossing_figures(crossings: Crossings, own: int) -> CrossingFigures:
 
 
 def coverage_figures(layup: Layup) -> CoverageFigures:
-    """Layers by cells of a pitch, and shares of the area under no, one, two and more bands."""
+    """Layers on cells one pitch wide, and shares of the area under no, one, two and more bands."""
     bands, cover = layup.bands, layup.coverage
     return {
         "min": cover.min,
@@ -82,7 +82,7 @@ def spacing_figures(layup: Layup, spaced: Spaced | None) -> SpacingFigures:
 
 
 def windability_figures(press: Windability) -> WindabilityFigures:
-    """Shares of the area by kind, and of the directions that press."""
+    """Shares of the area by class, and share of the directions in which a fibre presses."""
     share = float((press.share * press.weight).sum())
     return {
         "convex": press.area(CONVEX),
@@ -119,7 +119,7 @@ def fibre_figures(layup: Layup, linear_density: float | None) -> FibreFigures:
 
 
 def revolution_figures(chosen: Revolutions) -> RevolutionFigures:
-    """The choice of revolutions and what it rests on; None for a bound stands for none."""
+    """The choice of revolutions and its reasons; a bound is None if there is none."""
     found = chosen.feasible
     return {
         "chosen": chosen.choice,

@@ -31,6 +31,6 @@ def maps(on: Grid, layup: Layup, fit_error: Floats | None = None) -> dict[schema
 
 
 def _stretch(on: Grid) -> Floats:
-    """Area scale from the plane to the part at each point, over its mean: how far the chart squeezes it."""
+    """Area scale from the chart to the part at each point, over its mean."""
     scale = np.linalg.norm(np.cross(on.frames[:, 1], on.frames[:, 2]), axis=1)
     return np.asarray(scale / scale.mean())

@@ -1,4 +1,4 @@
-"""Mesh files by meshio, with their unit of length."""
+"""Mesh files written by meshio, with their unit of length."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -12,7 +12,7 @@ from meshwind.core.cast import Floats
 from meshwind.core.units import lengths_in
 
 _SIGNED = re.compile(rb"(written|This file was created) by meshio v[\w.]+|Created by meshio [^\n]+")
-"""meshio's own line in the header of a file, which gives way to one with the unit."""
+"""meshio's own line in the header of a file, which is replaced by one with the unit."""
 
 
 def write_meshio(
@@ -24,7 +24,7 @@ def write_meshio(
     cell_data: Mapping[str, Sequence[NDArray[Any]]] | None = None,
     units: str,
 ) -> None:
-    """Write a .vtu, .vtk or .ply file, binary, that says in its header what its lengths are in."""
+    """Write a binary .vtu, .vtk or .ply file whose header names the unit of length."""
     import meshio
 
     own = [(kind, np.array(block)) for kind, block in cells]

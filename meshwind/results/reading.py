@@ -1,4 +1,4 @@
-"""A results folder read back: what `meshwind wind --out DIR` left is all that an export needs."""
+"""Reading a run's folder; exports and pictures need nothing else."""
 
 import json
 import zipfile
@@ -29,17 +29,17 @@ _NEEDED = PATHS, SPLINE, REPORT
 _AT_PARTICLES = schema.UV, schema.ON_SURFACE, schema.GAP, schema.NORMAL, schema.SLIP
 _OF_PATHS = schema.FAMILY, schema.STATUS
 _FARTHEST, _MOST_TURNS = 1e100, 1e6
-"""Of any length of a surface, and of u: beyond them a file is damaged."""
+"""Largest coordinate of a surface, and largest u; a file with larger values is damaged."""
 _OFF, _OFF_GRID = 1e-5, 1e-9
-"""Particles on the surface, and points of its grid, lie no further off it than this, over its size."""
+"""Largest distance from the surface, over its size, of particles on it and of points of its grid."""
 
 
 @dataclass(frozen=True)
 class Results:
-    """What a run left in `folder`: its paths on their fitted surface, and its report.
+    """Results of a run in `folder`: its paths on their fitted surface, and its report.
 
-    Some of `paths` is not in the files: `residual` is the report's largest at paths at rest and infinite at others,
-    `holding_turns` and `holding_friction` are 0.
+    The files lack some fields of `paths`: `residual` is the report's largest for paths at rest and infinite for
+    others, `holding_turns` and `holding_friction` are 0.
     """
 
     folder: Path
@@ -63,34 +63,34 @@ class Results:
 
     @property
     def diagonal(self) -> float:
-        """Diagonal of the part, in its own units."""
+        """Diagonal of the part, in the mesh's units."""
         return float(_under(self.report, "mesh", "diagonal") or self.surface.size)
 
     @property
     def revolutions(self) -> float | None:
-        """Turns from end to end, None where the report has none."""
+        """Revolutions from end to end, None if the report has none."""
         turns = _under(self.report, "winding", "revolutions")
         return None if turns is None else float(turns)
 
     @property
     def band_width(self) -> float | None:
-        """Width of the band that coverage was counted with, None where the report has none."""
+        """Width of the band for the coverage, None if the report has none."""
         width = _under(self.report, "coverage", "band_width")
         return float(width) if width else None
 
     @property
     def at_rest(self) -> Bools:
-        """Which paths (p,) came to rest: the others are no places where a fibre stays."""
+        """Which paths (p,) converged; no fibre stays on the others."""
         return np.asarray(self.paths.status == Status.CONVERGED)
 
     @cached_property
     def layup(self) -> Layup:
-        """Crossings, quad mesh and coverage, found anew."""
+        """Crossings, quad mesh and coverage, computed again."""
         return assess(self.paths, self.band_width)
 
 
 def read_results(folder: str | PathLike[str]) -> Results:
-    """Read the folder of a run; raises BadInputError where it is none, or its files do not belong together."""
+    """Read the folder of a run; raises BadInputError if it is none or its files do not belong together."""
     source = _folder(folder, _NEEDED)
     report = _report(source / REPORT)
     try:
@@ -104,14 +104,14 @@ def read_results(folder: str | PathLike[str]) -> Results:
 
 
 def read_report(folder: str | PathLike[str]) -> Report | RedesignReport:
-    """Read the report of a run or of a redesign; raises BadInputError where there is none, or it cannot be read."""
+    """Read the report of a run or of a redesign; raises BadInputError if it is missing or cannot be read."""
     return _report(_folder(folder, (REPORT,)) / REPORT)
 
 
 def read_surface_grid(folder: Path, surface: Surface, trusted: bool = False) -> Faces:
     """Read surface.vtu, the grid of a folder's surface with its maps.
 
-    trusted: this very process has written the file.  Raises BadInputError where it is damaged or of another surface.
+    trusted: the file was written by this process.  Raises BadInputError if it is damaged or of another surface.
     """
     read, on = read_faces(folder / SURFACE, trusted), grid(surface)
     if (
@@ -127,14 +127,14 @@ def read_surface_grid(folder: Path, surface: Surface, trusted: bool = False) -> 
 
 
 def is_redesign(folder: Path) -> bool:
-    """Whether a folder holds what a redesign left."""
+    """Whether a folder holds the results of a redesign."""
     return (folder / EDITED).is_file()
 
 
 def read_edited(folder: Path) -> tuple[Floats, Floats, Ints]:
-    """Vertices (n, 3) of a redesign's mesh as they were, their displacement (n, 3), and its faces (m, 3).
+    """Read vertices (n, 3) before a redesign, their displacement (n, 3), and the faces (m, 3).
 
-    Raises BadInputError where the folder's edited mesh is none.
+    Raises BadInputError if the folder's edited mesh cannot be used.
     """
     read = read_faces(folder / EDITED)
     moves = read.point_data.get(schema.DISPLACEMENT)
@@ -144,7 +144,7 @@ def read_edited(folder: Path) -> tuple[Floats, Floats, Ints]:
 
 
 def _folder(folder: str | PathLike[str], needed: tuple[str, ...]) -> Path:
-    """The folder, once it is known to be one and to hold the needed files."""
+    """Path of a folder, checked to exist and to hold the needed files."""
     path = Path(folder)
     if not path.is_dir():
         raise BadInputError(f"{path} is no folder; give one that `meshwind wind MESH --out DIR` left")
@@ -198,7 +198,7 @@ def _paths(path: Path, surface: Surface, report: Report) -> Paths:
     lacking: list[str] = [name for name in _AT_PARTICLES if name not in lines.point_data]
     lacking += [name for name in _OF_PATHS if name not in lines.cell_data]
     if lacking or not len(sizes) or (sizes != sizes[0]).any():
-        raise _spoilt(path, f"no {' or '.join(lacking)} in it" if lacking else "its lines are no paths of one run")
+        raise _spoilt(path, f"no {' or '.join(lacking)} in it" if lacking else "its lines are not the paths of one run")
     held = {name: _shaped(lines, name, len(sizes)) for name in _AT_PARTICLES}
     known = (values for name, values in held.items() if name != schema.SLIP)
     if not all(np.isfinite(values).all() for values in (lines.points, *known)):
@@ -208,7 +208,7 @@ def _paths(path: Path, surface: Surface, report: Report) -> Paths:
     if np.abs(uv).max(initial=0.0) > _MOST_TURNS or np.abs(surface.points(uv) - points).max(initial=0.0) > (
         _OFF * surface.size
     ):
-        raise _spoilt(path, f"its paths are none on the surface of {SPLINE}")
+        raise _spoilt(path, f"its paths do not lie on the surface of {SPLINE}")
     status = lines.cell_data[schema.STATUS].astype(np.int64)
     worst = _under(report, "paths", "max_residual")
     residual = np.where(status == Status.CONVERGED, np.inf if worst is None else float(worst), np.inf)
@@ -242,7 +242,7 @@ def _counters(report: Report) -> Counters:
 
 
 def _under(report: Report, *names: str) -> Any:
-    """What the report has under these names, None where it has nothing: a file may lack anything."""
+    """Value under nested keys of the report, None if any is missing: the file may lack any of them."""
     here: Any = report
     for name in names:
         here = here.get(name) if isinstance(here, dict) else None

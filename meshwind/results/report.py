@@ -42,10 +42,10 @@ from meshwind.surface.surface import Surface
 
 @dataclass(frozen=True)
 class RunFacts:
-    """What a report says of a run beside what it made.
+    """Facts about a run, beside its layup, for the report.
 
-    tolerance: that of the fit; seconds: wall time per stage; notes: what the user should know; chosen, spaced: how
-    revolutions and spacing were found, where they were; linear_density: mass of the fibre over its length.
+    tolerance: that of the fit; seconds: wall time per stage; notes: messages for the user; chosen, spaced: how
+    revolutions and spacing were found, if they were; linear_density: mass of the fibre over its length.
     """
 
     revolutions: float
@@ -62,8 +62,7 @@ class RunFacts:
 def report(layup: Layup, mesh: Mesh, chart: Chart | None, run: RunFacts) -> Report:
     """Gather all figures as plain Python values; lengths in the mesh's units, angles in degrees.
 
-    chart is None for a surface that was given rather than fitted.  A figure that does not exist (NaN or infinite) is
-    None.
+    chart is None if the surface was given rather than fitted.  NaN and infinite values become None.
     """
     paths = layup.paths
     figures: Report = {
@@ -90,12 +89,12 @@ def report(layup: Layup, mesh: Mesh, chart: Chart | None, run: RunFacts) -> Repo
 
 
 def write_report(path: Path, figures: Mapping[str, object]) -> None:
-    """Write figures as JSON; a figure that does not exist (NaN or infinite) is null."""
+    """Write figures as JSON; NaN and infinite values become null."""
     path.write_text(json.dumps(plain(figures), indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def plain(value: Any) -> Any:
-    """Turn mappings, sequences and NumPy values into what JSON knows, with None for what is not finite."""
+    """Convert mappings, sequences and NumPy values to JSON types; NaN and infinite values become None."""
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, np.ndarray | np.generic):
@@ -108,7 +107,7 @@ def plain(value: Any) -> Any:
 
 
 def mesh_figures(mesh: Mesh, units: str, chart: Chart | None) -> MeshFigures:
-    """What a report says of the mesh that was read and, with its chart, of where it was opened."""
+    """Figures of the mesh that was read and, if its chart is given, of the ends where it was opened."""
     figures: MeshFigures = {
         "name": mesh.name,
         "vertices": len(mesh.vertices),
@@ -169,7 +168,7 @@ def _paths(paths: Paths) -> PathsFigures:
 
 
 def failures(paths: Paths) -> list[Failure]:
-    """The paths that did not converge, each with why and what would hold it."""
+    """Paths that did not converge, each with the reason and what would hold it."""
     return [_failure(paths, int(k)) for k in np.flatnonzero(paths.status != Status.CONVERGED)]
 
 

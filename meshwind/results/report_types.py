@@ -1,13 +1,13 @@
-"""report.json by type: the figures of a run, and those of a redesign.
+"""Types of report.json: the figures of a run, and those of a redesign.
 
-Lengths are in the mesh's units, angles in degrees, shares from 0 to 1; None stands for a figure that does not exist.
+Lengths are in the mesh's units, angles in degrees, shares from 0 to 1; None is a figure that does not exist.
 """
 
 from typing import NotRequired, TypedDict, final
 
 
 class Spread(TypedDict):
-    """Smallest, median and largest of some values; None of nothing."""
+    """Minimum, median and maximum; None if there are no values."""
 
     min: float | None
     median: float | None
@@ -46,7 +46,7 @@ class FitFigures(TypedDict):
 
 
 class SurfaceFigures(TypedDict):
-    """The fitted surface: control points around and along, the tolerance that it was fitted to, how well it fits."""
+    """The fitted surface: control points around and along, tolerance and error of the fit."""
 
     control_points: list[int]
     tolerance: float | None
@@ -64,7 +64,7 @@ class WindingFigures(TypedDict):
 
 
 class Failure(TypedDict):
-    """A path that did not converge: its number, its status, the status's name, and why with what would hold it."""
+    """A path that did not converge: number, status, name of the status, and reason with what would hold the path."""
 
     path: int
     status: int
@@ -73,7 +73,7 @@ class Failure(TypedDict):
 
 
 class PathsFigures(TypedDict):
-    """The paths; all but the first two are over those that `figures_over` names, max_residual over the tension."""
+    """The paths; lengths, bridges and maxima are over those that `figures_over` names, residuals over the tension."""
 
     converged: int
     not_converged: list[Failure]
@@ -99,7 +99,7 @@ class CrossingFigures(TypedDict):
 
 
 class CoverageFigures(TypedDict):
-    """Layers by cells of a pitch, and shares of the area under no, one, two and more bands."""
+    """Layers on cells one pitch wide, and shares of the area under no, one, two and more bands."""
 
     min: float
     median: float
@@ -118,7 +118,7 @@ class CoverageFigures(TypedDict):
 class SpacingFigures(TypedDict):
     """Distances between neighbours and, along the fibres, between crossings; gaps that the band's width leaves.
 
-    From `asked` on only where a spacing was asked for: partings are pairs of paths between which it was not kept.
+    `asked` and the following are present only if a spacing was given; partings are pairs of paths that exceed it.
     """
 
     neighbours: Spread
@@ -134,7 +134,7 @@ class SpacingFigures(TypedDict):
 
 
 class WindabilityFigures(TypedDict):
-    """Shares of the area by kind, and of the directions in which a taut fibre presses."""
+    """Shares of the area by class, and share of the directions in which a taut fibre presses."""
 
     convex: float
     saddle: float
@@ -144,7 +144,7 @@ class WindabilityFigures(TypedDict):
 
 
 class QuadFigures(TypedDict):
-    """Counts and quality of the quad mesh; `of` says what it was made of, note why there is none."""
+    """Counts and quality of the quad mesh; `of` names the paths that it is made of, `note` says why it is missing."""
 
     faces: int
     quads: int
@@ -160,7 +160,7 @@ class QuadFigures(TypedDict):
 
 
 class FibreFigures(TypedDict):
-    """Length of all fibres, and their mass where the linear density is known."""
+    """Length of all fibres, and their mass if the linear density is known."""
 
     length: float
     linear_density: float | None
@@ -168,7 +168,7 @@ class FibreFigures(TypedDict):
 
 
 class ModelFigures(TypedDict):
-    """Which parts of the model the paths needed, and what they cost."""
+    """Parts of the model that the paths needed, and counts of operations."""
 
     lifting: bool
     friction: bool
@@ -179,14 +179,14 @@ class ModelFigures(TypedDict):
 
 
 class PressingFigures(TypedDict):
-    """Revolutions at which both families press on most of the surface, and its share."""
+    """Intervals of revolutions at which both families press on most of the surface, and the share of that."""
 
     intervals: list[list[float]]
     share: float
 
 
 class HoldingFigures(TypedDict):
-    """Revolutions between which every path converges, how they were found, and the ends that fibres slide off."""
+    """Bounds between which every path converges, how they were found, and the ends that fibres slide off."""
 
     low: float
     high: float | None
@@ -195,7 +195,7 @@ class HoldingFigures(TypedDict):
 
 
 class FurtherFigures(TypedDict):
-    """The bound of the revolutions with this friction, and with openings so many times as wide."""
+    """Upper bound of the revolutions with this friction, and with openings wider by this factor."""
 
     friction: float
     with_friction: float | None
@@ -204,7 +204,7 @@ class FurtherFigures(TypedDict):
 
 
 class RevolutionFigures(TypedDict):
-    """The choice of revolutions and what it rests on; a trial is revolutions, share at rest, share bridged."""
+    """The choice of revolutions and its reasons; a trial is revolutions, share at rest, share bridged."""
 
     chosen: float
     why: str
@@ -218,7 +218,7 @@ class RevolutionFigures(TypedDict):
 
 @final
 class Report(TypedDict):
-    """The report of a run; seconds are per stage, notes what the user should know beside the figures."""
+    """The report of a run; seconds are per stage, notes are messages for the user."""
 
     meshwind: str
     command: str
@@ -239,7 +239,7 @@ class Report(TypedDict):
 
 
 class RedesignWindingFigures(TypedDict):
-    """What was wound on both meshes, and why by so many revolutions."""
+    """What was wound on both meshes, and the reason for the number of revolutions."""
 
     revolutions: float
     paths_per_family: int
@@ -255,7 +255,7 @@ class BeforeAfter(TypedDict):
 
 
 class DisplacementFigures(TypedDict):
-    """How far vertices moved, and how many by more than a hundredth of the largest displacement."""
+    """Displacement of the vertices, and number that moved by more than a hundredth of the largest."""
 
     max: float
     mean: float
@@ -271,7 +271,7 @@ class VolumeFigures(TypedDict):
 
 
 class RedesignFigures(TypedDict):
-    """How a redesign ended; bridged is the share of the particles whose gap is above the threshold."""
+    """Outcome of a redesign; bridged is the share of the particles whose gap is above the threshold."""
 
     windable: bool
     outcome: str
@@ -286,7 +286,7 @@ class RedesignFigures(TypedDict):
 
 
 class RoundFigures(TypedDict):
-    """One round of one stage, on the surface that is edited."""
+    """One round of one stage, on the edited surface."""
 
     stage: int
     round: int
@@ -321,7 +321,7 @@ class WoundBeforeAfter(TypedDict):
 
 @final
 class RedesignReport(TypedDict):
-    """The report of a redesign: the second of `wound` is the proof, which the last of the rounds predicts."""
+    """The report of a redesign: `after` in `wound` is the proof, which the last round predicts."""
 
     meshwind: str
     command: str

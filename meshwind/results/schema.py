@@ -1,50 +1,50 @@
 """The files of a run's folder: their names, their fields, and each field's unit and type.
 
-What writes, reads, draws, exports or sums up a run takes these names from here; the keys of report.json stand in
-`report_types`.  Loads nothing: the process that draws and the command line's help need the names, too.
+All other modules take these names from here; the keys of report.json are in `report_types`.  Importing this module
+loads nothing else, as the process that draws and the help of the command line need the names, too.
 """
 
 import re
 from typing import NamedTuple
 
 LENGTHS = "{u}"
-"""The unit of a length; "{u}" stands for the name of the mesh's."""
+"""Unit of a length; "{u}" is replaced by the name of the mesh's unit."""
 DEGREES = "degrees"
 
 
 class Field(str):
-    """Name of an array in a file, with the unit of its values, their type and how many a point or cell has."""
+    """Name of an array in a file, with the unit and the type of its values and their number per point or cell."""
 
     unit: str
     dtype: str
     columns: int
 
     def __new__(cls, name: str, unit: str = "", dtype: str = "float64", columns: int = 1) -> "Field":
-        """Name a field; `unit` holds "{u}" for the mesh's unit of length."""
+        """Make a field; `unit` may contain "{u}" for the mesh's unit of length."""
         field = super().__new__(cls, name)
         field.unit, field.dtype, field.columns = unit, dtype, columns
         return field
 
     def unit_in(self, units: str) -> str:
-        """The field's unit where lengths are in `units`; "" for plain numbers, and where `units` is not known."""
+        """Unit of the field if lengths are in `units`; "" for plain numbers, and if `units` is ""."""
         return self.unit.format(u=units) if units or LENGTHS not in self.unit else ""
 
 
 class File(str):
-    """Name of a file, with the fields of its points and of its cells, each in the order of the file."""
+    """Name of a file, with the fields of its points and of its cells in the order of the file."""
 
     point_data: tuple[Field, ...]
     cell_data: tuple[Field, ...]
 
     def __new__(cls, name: str, point_data: tuple[Field, ...] = (), cell_data: tuple[Field, ...] = ()) -> "File":
-        """Name a file with its fields, if it holds arrays."""
+        """Make a file name with the fields of the file."""
         file = super().__new__(cls, name)
         file.point_data, file.cell_data = point_data, cell_data
         return file
 
     @property
     def stem(self) -> str:
-        """The name without its ending."""
+        """The name without its extension."""
         return self.rpartition(".")[0]
 
 
@@ -56,10 +56,10 @@ GAP = Field("gap", LENGTHS)
 NORMAL = Field("normal", columns=3)
 PATH = Field("path", dtype="int64")
 LENGTH = Field("length", LENGTHS)
-"""Of the polyline through the particles."""
+"""Length of the polyline through the particles."""
 MAX_GAP = Field("max_gap", LENGTHS)
 ANGLE = Field("angle", DEGREES)
-"""At a crossing that between the families, on the surface the winding angle of family +1."""
+"""At a crossing the angle between the families, on the surface the winding angle of family +1."""
 
 # the fibres
 
@@ -98,7 +98,7 @@ COVERAGE = Field("coverage")
 LAYERS = Field("layers", dtype="int64")
 STRETCH = Field("stretch")
 FIT_ERROR = Field("fit_error", LENGTHS)
-"""Only where the mesh is known."""
+"""Present if the mesh is known."""
 SURFACE = File(
     "surface.vtu",
     point_data=(
@@ -119,10 +119,10 @@ CHART = File("chart.png")
 
 DISPLACEMENT = Field("displacement", LENGTHS, columns=3)
 MOVED = Field("moved", LENGTHS)
-"""Size of the displacement."""
+"""Magnitude of the displacement."""
 DX, DY, DZ = Field("dx", LENGTHS), Field("dy", LENGTHS), Field("dz", LENGTHS)
 EDITED = File("edited.vtu", point_data=(DISPLACEMENT, MOVED))
-"""A folder that holds it is a redesign's."""
+"""Present in the folder of a redesign only."""
 EDITED_PLY = File("edited.ply", point_data=(DX, DY, DZ, MOVED))
 
 # figures and options
@@ -159,7 +159,7 @@ STEP = File("surface.step")
 
 
 class FamilyFields(NamedTuple):
-    """The fields of one family in the files of the fibre field; `alias` holds the direction, too."""
+    """The fields of one family in the files of the fibre field; `alias` is a second name of the direction."""
 
     direction: Field
     alias: Field
@@ -183,7 +183,7 @@ def family_fields(family: int) -> FamilyFields:
 U, V, THICKNESS = Field("u"), Field("v"), Field("thickness", LENGTHS)
 _FIBRE_FIELD = (*family_fields(1), *family_fields(-1), THICKNESS, NORMAL)
 FIBERS, FIBERS_LEGACY = (File(name, point_data=(U, V), cell_data=_FIBRE_FIELD) for name in ("fibers.vtu", "fibers.vtk"))
-"""A family that the run does not have has no fields."""
+"""Fields of families that the run does not have are missing."""
 
 FRAMES_FOLDER, ALL_FRAMES = "frames", "all.csv"
 """A folder, and the file in it that holds the frames of all paths."""
@@ -208,7 +208,7 @@ EXPORTS = re.compile(
     + rf"|{FRAMES_FOLDER}/(path_\d{{3,}}\.csv|{re.escape(ALL_FRAMES)})"
     + rf"|{FORMATS_FOLDER}/({'|'.join(file.stem for file in CONVERTED)})\.({'|'.join(sum(SUFFIXES.values(), ()))})"
 )
-"""What exports of a run leave beside it, VIEWER apart: files about that run, which go when it is replaced."""
+"""Names of exported files except VIEWER; they are removed when the run is replaced."""
 
 RESULTS = frozenset(
     (PATHS, BRIDGES, CROSSINGS, QUADS, QUADS_OBJ, SURFACE, SPLINE, CHART, EDITED, EDITED_PLY, REPORT, CONFIG, VIEWER)
@@ -216,4 +216,4 @@ RESULTS = frozenset(
     + tuple(picture(name) for name in (*PICTURES, REDESIGN, SHEET))
     + tuple(movie(kind) for kind in MOVIES)
 )
-"""All that a run, or what is made of it, may leave in its folder."""
+"""All files of a run or a redesign, their pictures included."""

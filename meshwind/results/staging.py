@@ -1,14 +1,14 @@
-"""Files made in a hidden folder appear together in another, even where the process is killed on the way.
+"""Files written to a hidden folder appear together in another, even if the process is killed meanwhile.
 
-Where that other folder is not there yet, the hidden one lies beside it and is renamed as a whole.  Otherwise it lies
-within, and its name says how far it has come:
+If the other folder does not exist yet, the hidden one lies beside it and is renamed as a whole.  Otherwise it lies
+within, and its name is the state:
 
-    .writing-    files are being written; what a killed process left is rubbish
-    .complete-   all are written: what they stand in for has to go
-    .moving-     that has gone: they move in, report.json as the last: with it a folder is whole
+    .writing-    files are being written; after a kill they are discarded
+    .complete-   all are written; files that they replace are removed next
+    .moving-     those are removed; files move in, report.json last, as it marks a folder as complete
 
-Each step can be taken again, so `settle` clears away or finishes what a killed process left.  As long as a process
-lives it holds a lock on its folder, and others leave that alone.
+Each step can be repeated, so `settle` discards or finishes what a killed process left.  A running process holds a lock
+on its hidden folder, which others leave alone.
 """
 
 import json
@@ -25,57 +25,57 @@ from meshwind.results.schema import REPORT
 
 WRITING, COMPLETE, MOVING = ".writing-", ".complete-", ".moving-"
 _REPLACED = ".replaced.json"
-"""In a complete folder: the names of the files that go."""
+"""In a complete folder: the names of the files to remove."""
 _ATTEMPTS = 3
 
 Replaced = Callable[[list[Path]], Iterable[Path]]
-"""From the new files, the old ones that go as those come; all paths relative to their folder."""
+"""Function from the new files to the old ones that they replace; all paths relative to their folder."""
 
 
 @contextmanager
 def staged(out: Path, replaced: Replaced) -> Iterator[Path]:
-    """Give a folder to write into; on leaving its files appear in `out`, on an error they vanish.
+    """Yield a folder to write into; its files appear in `out` at the end, or vanish on an error.
 
-    Files in folders within it go into those of `out`.  What is in `out` and neither of a new file's name nor
-    `replaced` stays.  Raises BadInputError where `out` cannot be written.
+    Files in subfolders go into those of `out`.  Files of `out` that have no new file's name and are not `replaced`
+    stay.  Raises BadInputError if `out` cannot be written.
     """
     made = missing(out)
-    place, lock = None, -1
+    hidden, lock = None, -1
     try:
         settle(out)
-        place, lock = _made(out)
-        yield place
-        if place.parent == out:
-            _finish(_commit(place, out, replaced), out)
+        hidden, lock = _made(out)
+        yield hidden
+        if hidden.parent == out:
+            _finish(_commit(hidden, out, replaced), out)
         else:
-            place.rename(out)
+            hidden.rename(out)
     except OSError as error:
         raise unwritable(out, error) from error
     finally:
-        if place is not None:
-            shutil.rmtree(place, ignore_errors=True)
+        if hidden is not None:
+            shutil.rmtree(hidden, ignore_errors=True)
         if lock >= 0:
             os.close(lock)
         remove_empty(made)
 
 
 def settle(out: Path) -> None:
-    """Finish what a killed process had completed for `out`, and clear away what it had not."""
-    for place in _left(out):
-        lock = _locked(place)
+    """Finish what a killed process had completed for `out`, and discard what it had not."""
+    for hidden in _left(out):
+        lock = _locked(hidden)
         if lock is None:
             continue
         try:
-            if place.name.startswith((COMPLETE, MOVING)):
-                _finish(place, out)
+            if hidden.name.startswith((COMPLETE, MOVING)):
+                _finish(hidden, out)
             else:
-                shutil.rmtree(place, ignore_errors=True)
+                shutil.rmtree(hidden, ignore_errors=True)
         finally:
             os.close(lock)
 
 
 def unwritable(out: Path, error: OSError) -> BadInputError:
-    """What to tell of a folder that takes no files."""
+    """The error for a folder that cannot be written."""
     return BadInputError(f"cannot write to {out}: {error.strerror or error}; give another folder")
 
 
@@ -86,7 +86,7 @@ def missing(out: Path) -> list[Path]:
 
 
 def remove_empty(folders: list[Path]) -> None:
-    """Remove those folders that are there and empty; results keep theirs."""
+    """Remove those folders that exist and are empty."""
     for folder in folders:
         if folder.is_dir() and not any(folder.iterdir()):
             folder.rmdir()
@@ -95,21 +95,21 @@ def remove_empty(folders: list[Path]) -> None:
 def _made(out: Path) -> tuple[Path, int]:
     """A hidden folder for `out` and the lock on it, -1 where the file system has no locks."""
     if os.path.lexists(out):
-        out.mkdir(exist_ok=True)  # tells of a link that leads nowhere
+        out.mkdir(exist_ok=True)  # fails on a link that leads nowhere
         prefix = out / WRITING
     else:
         prefix = out.parent / f".{out.name}{WRITING}"
         out.parent.mkdir(parents=True, exist_ok=True)
     for attempt in range(1, _ATTEMPTS + 1):
-        place = prefix.with_name(prefix.name + token_hex(4))
-        place.mkdir()
-        lock = _locked(place)
+        hidden = prefix.with_name(prefix.name + token_hex(4))
+        hidden.mkdir()
+        lock = _locked(hidden)
         if lock is not None:
-            return place, lock
+            return hidden, lock
         if attempt < _ATTEMPTS:  # another process that settles may have it: leave it to that
             with suppress(OSError):
-                place.rmdir()
-    return place, -1
+                hidden.rmdir()
+    return hidden, -1
 
 
 def _left(out: Path) -> list[Path]:
@@ -121,17 +121,17 @@ def _left(out: Path) -> list[Path]:
     return sorted(found)
 
 
-def _locked(place: Path) -> int | None:
-    """An open descriptor that holds the folder as long as this process lives; None where it cannot be held."""
+def _locked(hidden: Path) -> int | None:
+    """An open descriptor that locks the folder as long as this process lives; None if it cannot be locked."""
     if sys.platform == "win32":
         return None
     import fcntl
 
     lock = -1
     try:
-        lock = os.open(place, os.O_RDONLY)
+        lock = os.open(hidden, os.O_RDONLY)
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        if os.path.samestat(os.fstat(lock), place.stat()):
+        if os.path.samestat(os.fstat(lock), hidden.stat()):
             return lock
     except OSError:
         pass  # held by another process or gone
@@ -140,32 +140,34 @@ def _locked(place: Path) -> int | None:
     return None
 
 
-def _commit(place: Path, out: Path, replaced: Replaced) -> Path:
-    """Mark the folder as complete, once all its files can move in."""
-    fresh = _files(place)
+def _commit(hidden: Path, out: Path, replaced: Replaced) -> Path:
+    """Mark the folder as complete, after checking that all its files can move in."""
+    fresh = _files(hidden)
     for name in fresh:
         if (out / name).is_dir():
             raise BadInputError(f"{out / name} is a folder where a file belongs; move it away")
         if any((out / above).is_file() for above in name.parents):
             raise BadInputError(f"{out / name} cannot be written: something of another kind is there; move it away")
     names = {*fresh, *replaced(fresh)}
-    (place / _REPLACED).write_text(json.dumps(sorted(map(str, names), key=lambda name: name != REPORT)))
-    return place.rename(out / place.name.replace(WRITING, COMPLETE))
+    (hidden / _REPLACED).write_text(json.dumps(sorted(map(str, names), key=lambda name: name != REPORT)))
+    return hidden.rename(out / hidden.name.replace(WRITING, COMPLETE))
 
 
-def _finish(place: Path, out: Path) -> None:
-    """Move a complete folder's files in, from wherever that stopped."""
-    if place.name.startswith(COMPLETE):
-        for name in json.loads((place / _REPLACED).read_text()):
+def _finish(hidden: Path, out: Path) -> None:
+    """Move a complete folder's files in, from whichever step it had reached."""
+    if hidden.name.startswith(COMPLETE):
+        for name in json.loads((hidden / _REPLACED).read_text()):
             (out / name).unlink(missing_ok=True)
             if Path(name).parent != Path():
                 remove_empty([(out / name).parent])
-        place = place.rename(out / place.name.replace(COMPLETE, MOVING))
-    for name in sorted(_files(place), key=lambda name: name == Path(REPORT)):
+        hidden = hidden.rename(out / hidden.name.replace(COMPLETE, MOVING))
+    for name in sorted(_files(hidden), key=lambda name: name == Path(REPORT)):
         (out / name).parent.mkdir(exist_ok=True)
-        os.replace(place / name, out / name)
-    shutil.rmtree(place)
+        os.replace(hidden / name, out / name)
+    shutil.rmtree(hidden)
 
 
-def _files(place: Path) -> list[Path]:
-    return sorted(path.relative_to(place) for path in place.rglob("*") if path.is_file() and path != place / _REPLACED)
+def _files(hidden: Path) -> list[Path]:
+    """All files in a hidden folder but its own list, relative to it."""
+    files = (path for path in hidden.rglob("*") if path.is_file() and path != hidden / _REPLACED)
+    return sorted(path.relative_to(hidden) for path in files)

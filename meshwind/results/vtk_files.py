@@ -74,7 +74,7 @@ def _write_polydata(path: Path, poly: Any) -> None:
 def _write(writer: Any, path: Path, data: Any) -> None:
     """Write uncompressed: five times as fast as with zlib, which saves only a tenth on such numbers.
 
-    By way of memory: VTK itself ends the process where the disk is full.
+    The text is made in memory, as VTK itself ends the process if the disk is full.
     """
     writer.WriteToOutputStringOn()
     writer.SetInputData(data)
@@ -109,7 +109,7 @@ def _add(attributes: Any, data: Data, units: str) -> None:
 
 
 def _labelled(array: Any, unit: str) -> Any:
-    """The array with the name of its unit, if it has one."""
+    """The array, labelled with the name of its unit if it has one."""
     if unit:
         array.GetInformation().Set(array.UNITS_LABEL(), unit)
     return array

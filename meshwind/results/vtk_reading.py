@@ -13,7 +13,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.mesh.io.isolated import Arrays, isolated
 
 POINT, CELL = "point: ", "cell: "
-"""Before the names of data of points and of cells among the arrays of a file."""
+"""Prefixes of the names of point data and cell data among the arrays of a file."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Faces:
 
 
 def read_lines(path: Path) -> Lines:
-    """Read the polylines of a .vtp file; raises BadInputError where it cannot be read."""
+    """Read the polylines of a .vtp file; raises BadInputError if it cannot be read."""
     held = _held(lines_by_vtk, path)
     starts, corners, points = held["starts"], held["corners"], held["points"]
     if len(starts) < 2 or len(corners) == 0:
@@ -48,15 +48,15 @@ def read_lines(path: Path) -> Lines:
 
 
 def read_vertices(path: Path) -> tuple[Floats, dict[str, NDArray[Any]]]:
-    """Read the points (n, 3) of a .vtp file and their data; raises BadInputError where it cannot be read."""
+    """Read the points (n, 3) of a .vtp file and their data; raises BadInputError if it cannot be read."""
     held = _held(lines_by_vtk, path)
     return held["points"], _named(held, POINT)
 
 
 def read_faces(path: Path, trusted: bool = False) -> Faces:
-    """Read the quads and triangles of a .vtu file; raises BadInputError where it cannot be read.
+    """Read the quads and triangles of a .vtu file; raises BadInputError if it cannot be read.
 
-    trusted: it is read by this process, which saves starting another one.
+    trusted: read it in this process, which saves starting another one.
     """
     held = faces_by_vtk(path) if trusted else _held(faces_by_vtk, path)
     starts, corners = held["starts"], held["corners"]
@@ -68,7 +68,7 @@ def read_faces(path: Path, trusted: bool = False) -> Faces:
 
 
 def _held(work: Callable[[Path], Arrays], path: Path) -> Arrays:
-    """What a file holds, read by another process, which survives no damaged one."""
+    """Arrays of a file, read in another process, as a damaged file can end it."""
     if not path.is_file():
         raise BadInputError(f"{path} is missing; run `meshwind wind` again")
     try:
@@ -79,7 +79,7 @@ def _held(work: Callable[[Path], Arrays], path: Path) -> Arrays:
     if len(starts) and (starts[0] != 0 or (np.diff(starts) < 0).any() or starts[-1] != len(corners)):
         raise BadInputError(f"{path} cannot be used (its cells are damaged); run `meshwind wind` again")
     if len(corners) and (corners.min() < 0 or corners.max() >= len(held["points"])):
-        raise BadInputError(f"{path} cannot be used (its cells name no points); run `meshwind wind` again")
+        raise BadInputError(f"{path} cannot be used (its cells name points that it lacks); run `meshwind wind` again")
     return held
 
 

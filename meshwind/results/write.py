@@ -1,4 +1,4 @@
-"""The files of a run but its report and its pictures, and those of an edited mesh."""
+"""Writers of a run's files, except report and pictures, and of an edited mesh."""
 
 from pathlib import Path
 from typing import Any
@@ -43,7 +43,7 @@ def write_files(out: Path, layup: Layup, mesh: Mesh | None = None, units: str = 
 
 
 def write_paths(path: Path, paths: Paths, units: str = "") -> None:
-    """Write one polyline per path, with all that is known at its particles."""
+    """Write one polyline per path, with the data of its particles."""
     p, n = paths.gap.shape
     each = lengths(paths)
     point_data = {
@@ -100,7 +100,7 @@ def write_quads(path: Path, mesh: QuadMesh, units: str = "") -> None:
 
 
 def write_obj(path: Path, mesh: QuadMesh, units: str = "") -> None:
-    """Write the quad mesh for CAD and mesh tools; 17 digits bring every coordinate back exactly."""
+    """Write the quad mesh for CAD and mesh tools; 17 digits keep every coordinate exactly."""
     with path.open("w", encoding="ascii") as file:
         file.write(f"# quad mesh on the crossings of the fibres, {lengths_in(units)}\n")
         np.savetxt(file, mesh.points, fmt="v %.17g %.17g %.17g")
@@ -114,7 +114,7 @@ def write_surface(path: Path, on: Grid, data: dict[schema.Field, Floats], units:
 
 
 def write_spline(path: Path, surface: Surface, units: str = "") -> None:
-    """Write the surface itself: with `periodic_u`, repeat the first three rows for scipy's BSpline."""
+    """Write the spline of the surface; if `periodic_u`, scipy's BSpline needs the first three rows again at the end."""
     knots_u, knots_v = surface.knots
     arrays: dict[str, Any] = {
         schema.CONTROL_POINTS: surface.control_points,
