@@ -99,7 +99,7 @@ def test_what_a_file_may_not_hold_is_refused_in_one_line(text: str, says: str, t
 
 
 @pytest.mark.parametrize(("name", "content", "says"), [
-    ("none.toml", None, "No such file"), (".", None, "Is a directory"), ("latin.toml", b"# \xe9", "no text in UTF-8"),
+    ("none.toml", None, "No such file"), (".", None, "Is a directory"), ("latin.toml", b"# \xe9", "not text in UTF-8"),
 ])  # fmt: skip
 def test_files_that_cannot_be_read_are_refused(name: str, content: bytes | None, says: str, tmp_path: Path) -> None:
     if content is not None:

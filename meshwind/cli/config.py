@@ -9,8 +9,7 @@ import typer
 from meshwind.cli.help import FILES
 from meshwind.cli.signature import InFile
 from meshwind.core.errors import BadInputError
-from meshwind.core.parsing import shortened
-from meshwind.core.toml import nearest, read_toml
+from meshwind.core.parsing import nearest, read_toml, shortened
 
 _PATHS = "mesh", "out", "pins"
 """Options that are paths, relative to the file that they are read from."""

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from meshwind.appearance.words import quantity, ratio
-from meshwind.core.units import unit_told
+from meshwind.core.units import reported_unit
 from meshwind.results.report_types import (
     Failure,
     PathsFigures,
@@ -18,7 +18,7 @@ from meshwind.results.report_types import (
 def run_lines(report: Report) -> list[str]:
     """A run's report in a few lines; raises LookupError or TypeError where a figure is missing."""
     part = report["mesh"]
-    units = unit_told(part["units"])
+    units = reported_unit(part["units"])
     return [
         f"part      {part['name']}: {part['vertices']} vertices, {part['faces']} faces; {part['ends']}",
         *_surface(report["surface"], part["diagonal"], units),
@@ -93,7 +93,7 @@ def _not_converged(failures: Sequence[Failure]) -> list[str]:
 
 def redesign_lines(report: RedesignReport) -> list[str]:
     """A redesign's report in a few lines; raises LookupError or TypeError where a figure is missing."""
-    units = unit_told(report["mesh"]["units"])
+    units = reported_unit(report["mesh"]["units"])
     return [
         *_edited_part(report),
         *(_round(each, units) for each in report["rounds"]),

@@ -1,1 +1,1 @@
-"""What every other package stands on: errors, casts, units, threads, what people spell."""
+"""What all other packages use: errors, casts of arrays, parsing, units, options, threads."""

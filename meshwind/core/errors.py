@@ -1,10 +1,10 @@
-"""The one error that a user can mend."""
+"""The exception for input that cannot be used."""
 
 
 class BadInputError(ValueError):
     """Input that cannot be used.
 
-    It is raised for everything that the caller can mend.  Its message is one line that says what is wrong and what to
+    It is raised for everything that the caller can correct.  Its message is one line that says what is wrong and what to
     do about it.
 
     Examples

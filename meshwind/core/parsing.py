@@ -1,19 +1,19 @@
-"""What people spell: fractions of whole numbers, auto for one that is to be chosen, and texts that are too long."""
+"""Text that a user wrote: numbers, fractions, `auto`, TOML files, and names that were misspelt."""
 
+import difflib
+import tomllib
+from collections.abc import Collection
 from fractions import Fraction
+from pathlib import Path
+from typing import Any
 
 from meshwind.core.errors import BadInputError
 
 AUTO = "auto"
 
 
-def shortened(text: str) -> str:
-    """At most 40 characters of a text."""
-    return text if len(text) <= 40 else text[:37] + "..."
-
-
 def turns(text: str) -> float | str:
-    """A number or a fraction of whole numbers: 0.5, 5/12; or auto."""
+    """Number of revolutions as a number or a fraction of whole numbers, such as 0.5 or 5/12, or `AUTO`."""
     if text.strip().lower() == AUTO:
         return AUTO
     try:
@@ -23,10 +23,33 @@ def turns(text: str) -> float | str:
 
 
 def count(text: str) -> int | None:
-    """A whole number, or None for auto."""
+    """Whole number, or None for auto."""
     if text.strip().lower() == AUTO:
         return None
     try:
         return int(text)
     except ValueError as error:
         raise BadInputError(f"particles is {text!r}; give a whole number, or auto") from error
+
+
+def read_toml(file: Path, kind: str) -> dict[str, Any]:
+    """Read a TOML file; `kind` is what its messages call it.  Raises BadInputError if it cannot be read."""
+    try:
+        return tomllib.loads(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise BadInputError(f"cannot read the {kind} {file}: {error.strerror or error}; give a TOML file") from error
+    except UnicodeDecodeError as error:
+        raise BadInputError(f"the {kind} {file} is not text in UTF-8; give a TOML file") from error
+    except tomllib.TOMLDecodeError as error:
+        raise BadInputError(f"the {kind} {file} is not valid TOML: {error}; write option = value") from error
+
+
+def nearest(key: str, known: Collection[str]) -> str:
+    """Advice on an unknown name: the one that was probably meant, or a list of all."""
+    near = difflib.get_close_matches(key.lower().replace("_", "-").removeprefix("no-"), list(known), 1)
+    return f"did you mean {near[0]!r}?" if near else f"give {', '.join(known)}"
+
+
+def shortened(text: str) -> str:
+    """At most 40 characters of a text, for messages."""
+    return text if len(text) <= 40 else text[:37] + "..."

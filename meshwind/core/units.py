@@ -1,17 +1,17 @@
-"""Units of length: their names, their size, and what a file says of them."""
+"""Units of length: names, sizes, and how files name them."""
 
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import shortened
 
 UNKNOWN = "unknown"
-"""What a report says where the unit is not known."""
+"""Unit in a report if it is not known."""
 
 MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "in": 25.4, "inch": 25.4, "ft": 304.8}
 """Length of a unit in mm."""
 
 
 def check_units(units: object) -> None:
-    """Raise BadInputError for what is neither the name of a known unit nor "", which stands for one not known."""
+    """Raise BadInputError unless `units` is the name of a unit, or "" for an unknown one."""
     if not isinstance(units, str) or (units and units.lower() not in MILLIMETRES):
         raise BadInputError(
             f'units is {shortened(repr(units))}; give {", ".join(MILLIMETRES)}, or "" where the unit is not known'
@@ -19,7 +19,7 @@ def check_units(units: object) -> None:
 
 
 def millimetres(units: str) -> float:
-    """Length of a unit in mm; "" counts as mm.  Raises BadInputError for a unit that is not known."""
+    """Length of a unit in mm; "" counts as mm.  Raises BadInputError for any other name."""
     if not units:
         return 1.0
     if units.lower() not in MILLIMETRES:
@@ -29,11 +29,11 @@ def millimetres(units: str) -> float:
     return MILLIMETRES[units.lower()]
 
 
-def unit_told(told: str) -> str:
-    """The unit that a report tells, "" where it is not known."""
-    return "" if told == UNKNOWN else told
+def reported_unit(units: str) -> str:
+    """Unit as a report names it, "" if it is not known."""
+    return "" if units == UNKNOWN else units
 
 
 def lengths_in(units: str) -> str:
-    """What a file's header says of its lengths."""
-    return f"lengths in {units}" if units else "lengths in a unit that the run was not told"
+    """Words on the unit for a file's header."""
+    return f"lengths in {units}" if units else "lengths in an unknown unit"

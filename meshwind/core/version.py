@@ -1,10 +1,10 @@
-"""The version of meshwind that runs."""
+"""The version of meshwind that is running."""
 
 from importlib import metadata
 
 
 def version() -> str:
-    """The installed version, or "source" for a source tree that was not installed."""
+    """Installed version, or "source" for a source tree that was not installed."""
     try:
         return metadata.version("meshwind")
     except metadata.PackageNotFoundError:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from meshwind.appearance.view import NAMED
 from meshwind.core.errors import BadInputError
-from meshwind.core.units import unit_told
+from meshwind.core.units import reported_unit
 from meshwind.pictures import driver
 from meshwind.pictures.animation_scene import animation_scene
 from meshwind.pictures.gallery import placed, scenes_of, write_sheet
@@ -135,7 +135,7 @@ def _part(source: Path) -> tuple[str, str]:
     """Name and unit of the part from a redesign's report; without one, the folder's name."""
     try:
         part = read_report(source)["mesh"]
-        return str(part["name"]), unit_told(str(part["units"]))
+        return str(part["name"]), reported_unit(str(part["units"]))
     except (BadInputError, LookupError, TypeError):
         return source.name, ""
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from meshwind.core.cast import Bools, Floats, Ints, floats, frozen
 from meshwind.core.errors import BadInputError
-from meshwind.core.units import unit_told
+from meshwind.core.units import reported_unit
 from meshwind.layup.layup import Layup, assess
 from meshwind.path.paths import Counters, Paths, Status
 from meshwind.results import schema
@@ -59,7 +59,7 @@ class Results:
     @property
     def units(self) -> str:
         """Name of the unit of length, "" where it is not known."""
-        return unit_told(str(_under(self.report, "mesh", "units") or ""))
+        return reported_unit(str(_under(self.report, "mesh", "units") or ""))
 
     @property
     def diagonal(self) -> float:

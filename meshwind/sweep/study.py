@@ -12,7 +12,7 @@ from typing import Any
 
 from meshwind.core.errors import BadInputError
 from meshwind.core.option import options_of
-from meshwind.core.toml import nearest, read_toml
+from meshwind.core.parsing import nearest, read_toml
 from meshwind.core.version import version
 from meshwind.workflow.options import FILE_DEFAULTS, Options
 
