@@ -11,7 +11,7 @@ from mandrel_shapes import Part, assert_annulus, cone, pear
 from meshwind.chart import flatten
 from meshwind.core.errors import BadInputError
 from meshwind.mesh import annulus, mesh_from, read
-from meshwind.mesh.geometry.measure import areas, volume
+from meshwind.mesh.geometry.areas_and_volumes import areas, volume
 from meshwind.surface import fit
 
 REFUSED = {

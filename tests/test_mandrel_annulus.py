@@ -11,7 +11,7 @@ from mandrel_shapes import Part, assert_annulus, ball, box, cone, cup, joined, m
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.mesh import Annulus, annulus, mesh_from, read
-from meshwind.mesh.geometry.measure import areas, perimeter, volume
+from meshwind.mesh.geometry.areas_and_volumes import areas, perimeter, volume
 from meshwind.mesh.geometry.topology import loops
 
 DATA = Path(__file__).parents[1] / "data"

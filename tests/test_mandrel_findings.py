@@ -13,7 +13,7 @@ from mandrel_shapes import Part, cone, joined, pear
 
 from meshwind.core.errors import BadInputError
 from meshwind.mesh import Findings, annulus, inspect, mesh_from, read
-from meshwind.mesh.geometry.measure import areas, perimeter
+from meshwind.mesh.geometry.areas_and_volumes import areas, perimeter
 
 DATA = Path(__file__).parents[1] / "data"
 

@@ -10,7 +10,7 @@ from mandrel_shapes import Part, assert_annulus, ball, cone, joined, moved, pear
 
 from meshwind.core.errors import BadInputError
 from meshwind.mesh import Mesh, annulus, mesh_from, read
-from meshwind.mesh.geometry.measure import perimeter, volume
+from meshwind.mesh.geometry.areas_and_volumes import perimeter, volume
 from meshwind.mesh.geometry.topology import loops
 from meshwind.mesh.opening.ends import place
 

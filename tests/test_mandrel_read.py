@@ -13,7 +13,7 @@ from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
 
 from meshwind.core.errors import BadInputError
 from meshwind.mesh import SUFFIXES, Mesh, read
-from meshwind.mesh.geometry.measure import areas, volume
+from meshwind.mesh.geometry.areas_and_volumes import areas, volume
 from meshwind.mesh.geometry.topology import euler
 
 MODEL = """<?xml version="1.0"?>

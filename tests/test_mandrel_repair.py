@@ -7,7 +7,7 @@ from mandrel_shapes import Part, ball, box, cone, joined, moved, pear, rotation,
 from meshwind.core.cast import Ints
 from meshwind.core.errors import BadInputError
 from meshwind.mesh import Mesh, mesh_from
-from meshwind.mesh.geometry.measure import areas, volume
+from meshwind.mesh.geometry.areas_and_volumes import areas, volume
 from meshwind.mesh.geometry.topology import edges, euler, loops, patches
 
 

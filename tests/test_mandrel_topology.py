@@ -5,7 +5,7 @@ import pytest
 from mandrel_shapes import cone
 
 from meshwind.core.cast import Ints
-from meshwind.mesh.geometry.measure import area_vectors, edge_lengths, volume
+from meshwind.mesh.geometry.areas_and_volumes import area_vectors, edge_lengths, volume
 from meshwind.mesh.geometry.topology import boundary, components, edges, loops, patches
 
 

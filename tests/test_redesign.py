@@ -19,7 +19,7 @@ from meshwind.editing.redesign import redesign
 from meshwind.editing.result import Outcome
 from meshwind.editing.step import ELASTICITY, Program, assembled, energy
 from meshwind.mesh import mesh_from
-from meshwind.mesh.geometry.measure import volume
+from meshwind.mesh.geometry.areas_and_volumes import volume
 from meshwind.surface import Surface, shapes
 from meshwind.workflow.options import Options
 

@@ -1,4 +1,4 @@
-"""The annulus on the periodic rectangle."""
+"""Flattening: an annulus to the periodic rectangle, without flipped triangles."""
 
 from meshwind.chart.chart import Chart
 from meshwind.chart.flatten import flatten

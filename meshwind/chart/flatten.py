@@ -6,26 +6,25 @@ from typing import Any
 import igl
 import numpy as np
 from scipy import sparse
+from scipy.sparse.csgraph import dijkstra
 
-from meshwind.chart.chart import Chart
-from meshwind.chart.cut import far_side, seam
-from meshwind.chart.measure import signed_areas
-from meshwind.chart.phase import canonical
-from meshwind.chart.spacing import even_speed
-from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.chart.chart import Chart, signed_areas
+from meshwind.chart.reparametrise import canonical_u, even_speed
+from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.geometry.annulus import Annulus
+from meshwind.mesh.geometry.mesh import Annulus
 from meshwind.mesh.geometry.topology import edges
 
 EVEN = 1.15
-"""Mean stretch (1 at best) up to which a chart is left as it is: mandrel-like parts need no second solve."""
+"""Mean stretch (1 at best) up to which a chart is accepted at once: parts like a mandrel need no second solve."""
 GAIN = 0.98
-"""Another round of re-weighting must bring the mean stretch below this share of the last."""
+"""Re-weighting goes on while it brings the mean stretch below this share of the last one."""
 ROUNDS = 8
+"""Maximum number of times that the edges are re-weighted."""
 EXPONENT = 0.5
-"""Of the area stretch by which weights are divided: 0.25 needs twice the rounds, 1 overshoots."""
+"""Power of the area stretch by which weights are divided: 0.25 needs twice the rounds, 1 overshoots."""
 LEAST_WEIGHT = 1e-2
-"""Weights that must be positive are at least this share of the median."""
+"""Lower bound of positive weights, over the median."""
 
 
 def flatten(annulus: Annulus) -> Chart:
@@ -73,25 +72,52 @@ def flatten(annulus: Annulus) -> Chart:
     """
     if not isinstance(annulus, Annulus):
         raise BadInputError(f"flatten takes an Annulus, not {type(annulus).__name__}; make one with annulus(mesh)")
-    jump = far_side(annulus, seam(annulus)).astype(np.float64)
-    net = _Net.of(annulus, jump)
-    weights = net.cotangents
-    uv = _harmonic(annulus, net, weights)
+    jump = _far_side(annulus, _seam(annulus)).astype(np.float64)
+    graph = _EdgeGraph.of(annulus, jump)
+    weights = graph.cotangents
+    uv = _harmonic(annulus, graph, weights)
     corner = _corners(annulus, uv, jump)
     if (signed_areas(corner) <= 0).any():
-        weights = net.positive
-        uv = _harmonic(annulus, net, weights)
+        weights = graph.positive
+        uv = _harmonic(annulus, graph, weights)
         corner = _corners(annulus, uv, jump)
         count = int((signed_areas(corner) <= 0).sum())
         if count:
             raise BadInputError(f"{count} triangles flip in the flattening; remesh the part without slivers")
-    uv, corner = canonical(annulus, *_evened(annulus, net, weights, uv, corner, jump))
+    uv, corner = canonical_u(annulus, *_even_out_stretch(annulus, graph, weights, uv, corner, jump))
     area = signed_areas(corner)
     return Chart(annulus, frozen(uv), frozen(corner), int((area <= 0).sum()), frozen(_stretch(annulus, area)))
 
 
+def _seam(annulus: Annulus) -> Ints:
+    """Vertices of a shortest edge path from the start rim to the end rim that touches each rim once."""
+    ends, n = edges(annulus.faces).ends, len(annulus.vertices)
+    length = np.linalg.norm(annulus.vertices[ends[:, 0]] - annulus.vertices[ends[:, 1]], axis=1)
+    both = np.concatenate([ends, ends[:, ::-1]])
+    # rows sorted by column, so that the same one of equally short paths is found each time
+    graph = sparse.csr_array((np.tile(length, 2), (both[:, 0], both[:, 1])), shape=(n, n))
+    graph.sort_indices()
+    distance, previous, _ = dijkstra(graph, indices=annulus.rims[0], return_predecessors=True, min_only=True)
+    path = [int(annulus.rims[1][np.argmin(distance[annulus.rims[1]])])]
+    while previous[path[-1]] >= 0:
+        path.append(int(previous[path[-1]]))
+    return np.array(path[::-1], dtype=np.int64)
+
+
+def _far_side(annulus: Annulus, path: Ints) -> Bools:
+    """Corners (m, 3) at seam vertices whose triangle lies to the left of the seam, where u has gained a turn."""
+    faces = annulus.faces
+    first, second = faces, np.roll(faces, -1, axis=1)
+    step = np.full(len(annulus.vertices), -1, dtype=np.int64)
+    step[path[:-1]] = path[1:]
+    forward, backward = step[first] == second, step[second] == first
+    _, cut_faces, _ = igl.cut_mesh(annulus.vertices, faces, (forward | backward).astype(np.int64))
+    touches = forward | np.roll(forward, 1, axis=1)
+    return np.isin(cut_faces, cut_faces[touches])
+
+
 @dataclass(frozen=True)
-class _Net:
+class _EdgeGraph:
     """Undirected edges of the annulus: ends (e, 2), the turns that u gains along each, and cotangent weights."""
 
     ends: Ints
@@ -99,15 +125,15 @@ class _Net:
     cotangents: Floats
 
     @staticmethod
-    def of(annulus: Annulus, jump: Floats) -> "_Net":
+    def of(annulus: Annulus, jump: Floats) -> "_EdgeGraph":
         found = edges(annulus.faces)
-        # either of an edge's two half-edges tells the same turn, but for its sign
+        # both half-edges of an edge have the same gain, but for its sign
         half = found.halves[:, 0]
         gain = (np.roll(jump, -1, axis=1) - jump).ravel()[half]
         upwards = annulus.faces.ravel()[half] == found.ends[:, 0]
         # libigl's entry k is that of the edge across from corner k
         cotangent = np.roll(igl.cotmatrix_entries(annulus.vertices, annulus.faces), 1, axis=1)
-        return _Net(
+        return _EdgeGraph(
             found.ends,
             np.where(upwards, gain, -gain),
             np.asarray(np.bincount(found.of_face.ravel(), cotangent.ravel()), dtype=np.float64),
@@ -119,21 +145,21 @@ class _Net:
         return np.maximum(self.cotangents, LEAST_WEIGHT * np.median(np.abs(self.cotangents)))
 
 
-def _harmonic(annulus: Annulus, net: _Net, weights: Floats) -> Floats:
+def _harmonic(annulus: Annulus, graph: _EdgeGraph, weights: Floats) -> Floats:
     """Solve for u and v with the given edge weights, (n, 2)."""
     n = len(annulus.vertices)
-    (i, j), turned = net.ends.T, weights * net.gain
+    (i, j), turned = graph.ends.T, weights * graph.gain
     off = sparse.csc_array((np.r_[weights, weights], (np.r_[i, j], np.r_[j, i])), shape=(n, n))
     laplacian = (sparse.diags_array(np.asarray(off.sum(axis=1))) - off).tocsc()
     uv = np.zeros((n, 2))
     pull = np.bincount(i, turned, n) - np.bincount(j, turned, n)
-    uv[:, 0] = _solved(laplacian, pull, annulus.rims[0][:1], np.zeros(1))
+    uv[:, 0] = _solve_fixed(laplacian, pull, annulus.rims[0][:1], np.zeros(1))
     ends = [np.full(len(rim), float(v)) for v, rim in enumerate(annulus.rims)]
-    uv[:, 1] = _solved(laplacian, np.zeros(n), np.concatenate(annulus.rims), np.concatenate(ends))
+    uv[:, 1] = _solve_fixed(laplacian, np.zeros(n), np.concatenate(annulus.rims), np.concatenate(ends))
     return uv
 
 
-def _solved(laplacian: sparse.csc_array, right: Any, known: Ints, values: Floats) -> Floats:
+def _solve_fixed(laplacian: sparse.csc_array, right: Any, known: Ints, values: Floats) -> Floats:
     """Solve laplacian x = right with x given at some vertices, by libigl's sparse Cholesky.
 
     It takes about half the time of SuperLU's, which matters at a million faces.
@@ -145,10 +171,10 @@ def _solved(laplacian: sparse.csc_array, right: Any, known: Ints, values: Floats
     return np.asarray(x)[:, 0]
 
 
-def _evened(
-    annulus: Annulus, net: _Net, weights: Floats, uv: Floats, corner: Floats, jump: Floats
+def _even_out_stretch(
+    annulus: Annulus, graph: _EdgeGraph, weights: Floats, uv: Floats, corner: Floats, jump: Floats
 ) -> tuple[Floats, Floats]:
-    """Space v evenly, and divide the weights by the stretch at their ends until the mean stretch no longer falls."""
+    """Space v evenly, and divide the weights by the stretch at their ends until the mean stretch stops decreasing."""
     space = igl.doublearea(annulus.vertices, annulus.faces) / 2
     faces, n = annulus.faces.ravel(), len(annulus.vertices)
     around = np.bincount(faces, np.repeat(space, 3), n)
@@ -159,9 +185,9 @@ def _evened(
         if mean < EVEN:
             break
         at = (np.bincount(faces, np.repeat(stretch * space, 3), n) / around) ** EXPONENT
-        weights = np.maximum(weights, net.positive) if (weights <= 0).any() else weights
-        weights = weights / np.sqrt(at[net.ends[:, 0]] * at[net.ends[:, 1]])
-        trial = _harmonic(annulus, net, weights)
+        weights = np.maximum(weights, graph.positive) if (weights <= 0).any() else weights
+        weights = weights / np.sqrt(at[graph.ends[:, 0]] * at[graph.ends[:, 1]])
+        trial = _harmonic(annulus, graph, weights)
         trial_corner = _corners(annulus, trial, jump)
         if (signed_areas(trial_corner) <= 0).any():
             break
@@ -180,6 +206,6 @@ def _corners(annulus: Annulus, uv: Floats, jump: Floats) -> Floats:
 
 
 def _stretch(annulus: Annulus, area: Floats) -> Floats:
-    """Area scale of each triangle from the plane to the part, over its mean."""
+    """Area of each triangle on the part over that in the plane, divided by its mean."""
     space = igl.doublearea(annulus.vertices, annulus.faces) / 2
     return np.asarray(space / area * (area.sum() / space.sum()))

@@ -4,8 +4,8 @@
 class BadInputError(ValueError):
     """Input that cannot be used.
 
-    It is raised for everything that the caller can correct.  Its message is one line that says what is wrong and what to
-    do about it.
+    It is raised for everything that the caller can correct.  Its message is one line that says what is wrong and what
+    to do about it.
 
     Examples
     --------

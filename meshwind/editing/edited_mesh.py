@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 from meshwind.chart.chart import Chart
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.threads import parallel_for
-from meshwind.mesh.geometry.measure import area_vectors, perimeter, volume
+from meshwind.mesh.geometry.areas_and_volumes import area_vectors, perimeter, volume
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.surface.evaluate import Spline
 from meshwind.surface.foot import feet

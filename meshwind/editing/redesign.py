@@ -16,7 +16,7 @@ from meshwind.editing.proof import Proof, prove, prove_fitted
 from meshwind.editing.region import FrozenPart, frozen_part
 from meshwind.editing.result import Outcome, Round
 from meshwind.mesh import Mesh
-from meshwind.mesh.geometry.measure import volume
+from meshwind.mesh.geometry.areas_and_volumes import volume
 from meshwind.path import Paths, Status
 from meshwind.planning.revolutions import Revolutions
 from meshwind.workflow.clock import Clock, Progress

@@ -1,7 +1,6 @@
 """Any triangle mesh to a clean annulus: read, repair, choose the ends, trim."""
 
-from meshwind.mesh.geometry.annulus import Annulus
-from meshwind.mesh.geometry.mesh import Mesh
+from meshwind.mesh.geometry.mesh import Annulus, Mesh
 from meshwind.mesh.io.read import SUFFIXES, read
 from meshwind.mesh.opening.findings import Findings, inspect
 from meshwind.mesh.opening.trim import annulus

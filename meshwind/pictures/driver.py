@@ -16,7 +16,7 @@ from pathlib import Path
 from threading import Timer
 
 from meshwind.layup.layup import Layup
-from meshwind.mesh.geometry.annulus import Annulus
+from meshwind.mesh.geometry.mesh import Annulus
 from meshwind.pictures.fit_scene import fit_scene
 from meshwind.pictures.scenes import Drawing, pack
 from meshwind.pictures.subject import subject

@@ -5,8 +5,8 @@ import numpy as np
 from meshwind.appearance.view import around, merit_view
 from meshwind.appearance.words import quantity
 from meshwind.core.cast import Bools, Floats
-from meshwind.mesh.geometry.annulus import Annulus
-from meshwind.mesh.geometry.measure import edge_lengths
+from meshwind.mesh.geometry.areas_and_volumes import edge_lengths
+from meshwind.mesh.geometry.mesh import Annulus
 from meshwind.pictures.scenes import FitScene, Frame, MeasuredBody
 from meshwind.surface.fitting.deviation import Deviation, Mismatch, deviation
 from meshwind.surface.surface import Surface

@@ -3,7 +3,7 @@
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints
-from meshwind.mesh.geometry.measure import areas
+from meshwind.mesh.geometry.areas_and_volumes import areas
 
 _ALIKE = 0.05  # moments closer than this are equal
 _ROUND = 1e-4  # moments closer than this are equal to the accuracy of a mesh

@@ -7,8 +7,8 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints, floats
 from meshwind.core.errors import BadInputError
+from meshwind.mesh.geometry.areas_and_volumes import loop_area_vector, loop_centroid, perimeter
 from meshwind.mesh.geometry.axis import forward, longest_axis, rank
-from meshwind.mesh.geometry.measure import loop_area_vector, loop_centroid, perimeter
 from meshwind.mesh.opening.holes import loop_size
 from meshwind.mesh.opening.poles import Lip, extreme, nearest
 

@@ -8,9 +8,8 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.geometry.annulus import Annulus
-from meshwind.mesh.geometry.measure import loop_centroid, perimeter
-from meshwind.mesh.geometry.mesh import Mesh
+from meshwind.mesh.geometry.areas_and_volumes import loop_centroid, perimeter
+from meshwind.mesh.geometry.mesh import Annulus, Mesh
 from meshwind.mesh.geometry.topology import boundary, edges, euler, loops
 from meshwind.mesh.io.read import load
 from meshwind.mesh.opening.ends import numbered

@@ -3,7 +3,7 @@
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints
-from meshwind.mesh.geometry.measure import areas, loop_area_vector, loop_centroid, perimeter
+from meshwind.mesh.geometry.areas_and_volumes import areas, loop_area_vector, loop_centroid, perimeter
 
 _FEW_EDGES = 8
 _SMALL = 0.2  # perimeter over the root of the part's area

@@ -7,7 +7,7 @@ from typing import TypeAlias
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
-from meshwind.mesh.geometry.measure import areas, edge_lengths
+from meshwind.mesh.geometry.areas_and_volumes import areas, edge_lengths
 from meshwind.mesh.geometry.subdivide import crossing
 from meshwind.mesh.geometry.topology import boundary, compact, edges, euler, loops, patches
 from meshwind.mesh.opening.poles import Lip, nearest

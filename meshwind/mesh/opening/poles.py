@@ -6,7 +6,7 @@ import igl
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints
-from meshwind.mesh.geometry.measure import area_vectors, areas
+from meshwind.mesh.geometry.areas_and_volumes import area_vectors, areas
 from meshwind.mesh.geometry.subdivide import crossing, subdivide
 from meshwind.mesh.geometry.topology import euler, patches
 

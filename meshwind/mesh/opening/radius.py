@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.geometry.measure import areas, edge_lengths
+from meshwind.mesh.geometry.areas_and_volumes import areas, edge_lengths
 from meshwind.mesh.opening.ends import End
 from meshwind.mesh.opening.opening import opened, without_lining
 from meshwind.mesh.opening.poles import Lip

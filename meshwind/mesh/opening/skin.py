@@ -6,7 +6,7 @@ import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.vectors import unit
-from meshwind.mesh.geometry.measure import area_vectors, edge_lengths
+from meshwind.mesh.geometry.areas_and_volumes import area_vectors, edge_lengths
 from meshwind.mesh.geometry.subdivide import subdivide
 
 _SMOOTH_VERTEX = np.cos(np.radians(30.0))

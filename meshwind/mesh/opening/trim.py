@@ -4,9 +4,8 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.geometry.annulus import Annulus
-from meshwind.mesh.geometry.measure import areas, volume
-from meshwind.mesh.geometry.mesh import Mesh
+from meshwind.mesh.geometry.areas_and_volumes import areas, volume
+from meshwind.mesh.geometry.mesh import Annulus, Mesh
 from meshwind.mesh.geometry.topology import euler, loops, patches
 from meshwind.mesh.opening.chords import without_chords
 from meshwind.mesh.opening.ends import End, Wish, choose, numbered, parse

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.vectors import unit
-from meshwind.mesh.geometry.measure import edge_lengths
+from meshwind.mesh.geometry.areas_and_volumes import edge_lengths
 from meshwind.mesh.geometry.subdivide import subdivide
 from meshwind.mesh.geometry.topology import components, edges
 from meshwind.mesh.repair.weld import without_collapsed, without_duplicates

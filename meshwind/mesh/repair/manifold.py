@@ -5,7 +5,7 @@ import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.geometry.measure import areas, volume
+from meshwind.mesh.geometry.areas_and_volumes import areas, volume
 from meshwind.mesh.geometry.subdivide import subdivide
 from meshwind.mesh.geometry.topology import Edges, components, edges, patches
 

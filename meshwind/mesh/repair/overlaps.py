@@ -4,8 +4,8 @@ import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.vectors import unit
+from meshwind.mesh.geometry.areas_and_volumes import area_vectors
 from meshwind.mesh.geometry.facet_tree import FacetTree
-from meshwind.mesh.geometry.measure import area_vectors
 from meshwind.mesh.geometry.topology import edges
 
 _MOST = 300_000  # faces up to which the search tree takes less than 0.5 s

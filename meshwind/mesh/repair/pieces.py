@@ -6,7 +6,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.geometry.measure import areas
+from meshwind.mesh.geometry.areas_and_volumes import areas
 from meshwind.mesh.geometry.topology import patches
 
 _ALIKE = 1e9  # areas are equal, and so are places, that agree to this many parts

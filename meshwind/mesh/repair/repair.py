@@ -5,7 +5,7 @@ from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats, Ints, floats, frozen
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.geometry.measure import volume
+from meshwind.mesh.geometry.areas_and_volumes import volume
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.mesh.geometry.topology import compact, patches
 from meshwind.mesh.repair import cracks, manifold

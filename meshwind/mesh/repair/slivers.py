@@ -3,7 +3,7 @@
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
-from meshwind.mesh.geometry.measure import areas, edge_lengths
+from meshwind.mesh.geometry.areas_and_volumes import areas, edge_lengths
 from meshwind.mesh.geometry.topology import edges
 
 FLAT = 1e-6

@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.threads import parallel_for
-from meshwind.mesh.geometry.annulus import Annulus
+from meshwind.mesh.geometry.mesh import Annulus
 from meshwind.surface.grid import Grid, grid
 from meshwind.surface.surface import Surface
 from meshwind.surface.tree import Body, nearest_foot

@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
-from meshwind.chart.chart import Chart
-from meshwind.chart.measure import speeds
+from meshwind.chart.chart import Chart, speeds
 from meshwind.core.defaults import FIT_TOLERANCE
 from meshwind.core.errors import BadInputError
 from meshwind.surface.evaluate import DEGREE
