@@ -68,8 +68,8 @@ def test_angles_are_those_of_the_map(tmp_path: Path) -> None:
     elements = regular(results.surface, 300)
     laid = plies(results, elements)
     cell = np.round(elements.centre * [on.shape[0], on.shape[1] - 1]).astype(int)
-    told = winding_angle(results.paths, *on.shape)[cell[:, 0] % on.shape[0], cell[:, 1]]
-    assert np.abs(np.abs(laid.families[0].angle) - told).max() < np.radians(2.0)
+    mapped = winding_angle(results.paths, *on.shape)[cell[:, 0] % on.shape[0], cell[:, 1]]
+    assert np.abs(np.abs(laid.families[0].angle) - mapped).max() < np.radians(2.0)
 
 
 def test_a_family_that_is_not_there_has_no_field(tmp_path: Path) -> None:

@@ -132,8 +132,8 @@ def test_the_command_line(tmp_path: Path) -> None:
     done = run(tmp_path, "--to", "inp,fibers, frames", "--formats", "ply", "--out", out, "--shell", "quads")
     assert done.stderr == ""
     assert done.returncode == 0
-    told = [line.split(None, 1) for line in done.stdout.splitlines()]
-    assert {kind for kind, _ in told} == {"note", "file"}
+    lines = [line.split(None, 1) for line in done.stdout.splitlines()]
+    assert {kind for kind, _ in lines} == {"note", "file"}
     assert {"fibers.vtu", "fibers.vtk", "shell.inp", "shell_s4r.inp", "frames", "formats"} == {
         file.name for file in out.iterdir()
     }

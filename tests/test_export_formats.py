@@ -1,4 +1,4 @@
-"""Results in other formats: read back by meshio, and told what is lost."""
+"""Results in other formats: read back by meshio, with a note of what is lost."""
 
 from pathlib import Path
 
@@ -99,7 +99,7 @@ def test_obj_holds_lines_and_points(written: tuple[Path, list[str]]) -> None:
             assert len(cells) == len(points) > 0
 
 
-def test_what_is_lost_is_told_once(written: tuple[Path, list[str]]) -> None:
+def test_what_is_lost_is_reported_once(written: tuple[Path, list[str]]) -> None:
     notes = written[1]
     assert len(notes) == len(set(notes)) == 5
     assert any(note.startswith("gmsh: no entry for the unit") for note in notes)

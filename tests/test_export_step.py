@@ -177,7 +177,7 @@ def test_a_cut_face_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("name", "text", "says"), [("part.stl", "", "neither STEP nor IGES"),
                          ("none.step", None, "not found"), ("bad.step", "no step", "cannot read")])  # fmt: skip
-def test_bad_files_are_told(tmp_path: Path, name: str, text: str | None, says: str) -> None:
+def test_bad_files_are_reported(tmp_path: Path, name: str, text: str | None, says: str) -> None:
     if text is not None:
         (tmp_path / name).write_text(text)
     with pytest.raises(BadInputError, match=says):

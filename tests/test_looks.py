@@ -1,4 +1,4 @@
-"""Scales of colours: true to their values, even to the eye, told in words."""
+"""Scales of colours: true to their values, even to the eye, with legible marks."""
 
 import numpy as np
 import pytest
@@ -58,7 +58,7 @@ def test_scales_keep_their_order_for_the_colour_blind(name: str, cone: int) -> N
 
 
 @pytest.mark.parametrize("cone", [0, 1])
-def test_both_signs_and_both_families_are_told_apart_by_every_eye(cone: int) -> None:
+def test_both_signs_and_both_families_are_distinct_to_every_eye(cone: int) -> None:
     ends = colour_map(DIVERGING)(np.array([0.1, 0.9]))[:, :3]
     families = np.array([to_rgb(colour) for colour in FAMILY.values()])
     for pair in (ends, families):
@@ -76,10 +76,10 @@ def test_scales_hold_any_values(values: list[float], name: str) -> None:
     marks = [share for share, _ in scale.marks]
     assert marks and marks == sorted(marks)
     assert min(marks) >= 0.0 and max(marks) <= 1.0
-    assert not any(told.startswith("-0") and float(told) == 0.0 for _, told in scale.marks if told[0] not in "≤≥")
+    assert not any(text.startswith("-0") and float(text) == 0.0 for _, text in scale.marks if text[0] not in "≤≥")
 
 
-def test_a_scale_tells_of_values_beyond_it() -> None:
+def test_a_scale_marks_values_beyond_it() -> None:
     values = np.r_[np.linspace(0.0, 2.0, 1000), 50.0]
     scale = MAPS["coverage"].scale(values, "")
     assert scale.beyond and scale.high < 2.1
@@ -87,7 +87,7 @@ def test_a_scale_tells_of_values_beyond_it() -> None:
     assert not MAPS["coverage"].scale(values[:-1], "").beyond
 
 
-def test_units_are_told_where_a_map_has_one() -> None:
+def test_units_are_shown_if_a_map_has_one() -> None:
     ones = np.ones(3)
     assert MAPS["fit_error"].scale(ones, "mm").words[-1] == "in mm"
     assert MAPS["gaussian_curvature"].scale(ones, "in").words[-1] == "in 1/in²"

@@ -35,7 +35,7 @@ def row(turn: float, z: float) -> int:
 
 
 def bumped(bumps: dict[int, float]) -> tuple[mw.Surface, mw.Annulus]:
-    """A cylinder of radius 1, and a mesh of it whose numbered vertices stick out by as much as told."""
+    """A cylinder of radius 1, and a mesh of it whose numbered vertices stick out by the given amounts."""
     vertices, faces = tube(lambda z: 1.0 + 0.0 * z, HEIGHT, AROUND, ALONG)
     for vertex, out in bumps.items():
         vertices[vertex] += out * vertices[vertex] * [1.0, 1.0, 0.0]
@@ -78,7 +78,7 @@ def test_a_bulge_of_the_surface_between_vertices_is_found_too() -> None:
     assert found.regions[0].distance == pytest.approx(0.9 * (2 / 3) ** 2, rel=0.02)
 
 
-def test_what_trimming_made_is_no_place() -> None:
+def test_what_trimming_made_is_no_region() -> None:
     surface, opened = bumped({row(0.1, 1.0): 0.3, row(0.5, 2.0): 0.5})
     trusted = np.ones(len(opened.vertices), dtype=bool)
     trusted[row(0.5, 2.0)] = False
@@ -87,7 +87,7 @@ def test_what_trimming_made_is_no_place() -> None:
 
 
 def test_distances_do_not_stop_at_the_facets_of_a_sample() -> None:
-    """Vertices that lie on the surface are told so to round-off, on whatever grid it is drawn."""
+    """Vertices on the surface have distances of round-off, even if the grid is coarse."""
     surface, opened = bumped({})
     assert deviation(surface, opened).to_surface.max() < 2e-6
 
@@ -108,7 +108,7 @@ def test_the_worst_place_is_in_sight(turn: float) -> None:
     assert "0.4 mm" in seen.frame.subtitle and "tube" in seen.frame.title
 
 
-def test_a_place_on_the_far_side_is_told_as_out_of_sight() -> None:
+def test_a_place_on_the_far_side_is_reported_as_out_of_sight() -> None:
     surface, opened = bumped({row(0.25, 2.0): 0.5, row(0.75, 2.0): -0.45})
     seen = fit_scene(surface, opened, "tube")
     assert seen.seen.tolist() == [[True, True], [False, False]]
@@ -169,7 +169,7 @@ def test_one_process_draws_both_and_says_which_one_fails(tmp_path: Path) -> None
     assert note.startswith("no b.png: ") and "\n" not in note
 
 
-def test_the_title_tells_the_revolutions_that_were_asked_for() -> None:
+def test_the_title_names_the_given_revolutions() -> None:
     layup = assess(bridged())
     assert "0.8 revolutions" in winding_scene(subject(layup, "waist", revolutions=0.8)).frame.title
     mean = float(np.abs(layup.paths.uv[:, -1, 0] - layup.paths.uv[:, 0, 0]).mean())
@@ -214,7 +214,7 @@ def test_measures_have_the_shapes_that_they_say() -> None:
     assert not found.to_mesh.flags.writeable
 
 
-def test_without_a_driver_one_line_is_told_for_both_pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_driver_both_pictures_share_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     driver.stop()
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_DIRS", str(tmp_path))
     monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")

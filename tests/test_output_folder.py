@@ -56,7 +56,7 @@ def test_a_failure_in_the_middle_leaves_nothing(tmp_path: Path, error: type[Base
     assert (kept / "f").read_text() == "old"
 
 
-def test_a_full_disk_is_told_in_one_line(tmp_path: Path) -> None:
+def test_a_full_disk_is_reported_in_one_line(tmp_path: Path) -> None:
     with pytest.raises(BadInputError) as caught, writing(tmp_path / "a"):
         raise OSError(28, "No space left on device")
     assert str(caught.value) == f"cannot write to {tmp_path / 'a'}: No space left on device; give another folder"
@@ -72,13 +72,13 @@ def test_prepare_leaves_no_trace(tmp_path: Path) -> None:
 def test_a_file_in_the_way_is_refused(tmp_path: Path, below: str) -> None:
     (tmp_path / "file").write_text("x")
     out = tmp_path / "file" / below
-    for enter in (prepare, lambda place: writing(place).__enter__()):
+    for enter in (prepare, lambda out: writing(out).__enter__()):
         with pytest.raises(BadInputError, match="give a"):
             enter(out)
     assert everything(tmp_path) == ["file"]
 
 
-def test_a_place_that_cannot_be_written_is_refused() -> None:
+def test_a_folder_that_cannot_be_written_is_refused() -> None:
     with pytest.raises(BadInputError, match="give another folder"):
         prepare(Path("/proc/nowhere/at/all"))
 

@@ -10,7 +10,7 @@ import pytest
 DATA = Path(__file__).parents[1] / "data"
 WIND = f"{sys.executable} -m meshwind wind {DATA / 'tank.ply'} --paths 2 --particles 101 --no-render"
 APART = ["unshare", "--mount", *([] if os.geteuid() == 0 else ["--map-root-user"])]
-"""A place where a test may mount what nobody else sees; it goes with its process."""
+"""A folder on which a test may mount a file system that ends with its process."""
 
 
 def run(script: str, folder: Path, apart: bool = True) -> tuple[int, list[str], list[str]]:
@@ -30,8 +30,8 @@ def mounts() -> bool:
 def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder out with results and a file of someone else's, in a folder of its own."""
     folder = tmp_path_factory.mktemp("results")
-    status, *told = run(f"{WIND} --out out", folder, apart=False)
-    assert status == 0, told
+    status, *lines = run(f"{WIND} --out out", folder, apart=False)
+    assert status == 0, lines
     (folder / "out" / "notes.txt").write_text("mine")
     return folder
 
@@ -41,7 +41,7 @@ def held(folder: Path) -> dict[str, bytes]:
 
 
 @pytest.mark.parametrize("size", ["8k", "400k", "2200k"])
-def test_a_full_disk_is_told_in_one_line_and_left_as_it_was(size: str, tmp_path: Path) -> None:
+def test_a_full_disk_is_reported_in_one_line_and_left_as_it_was(size: str, tmp_path: Path) -> None:
     """On a small disk in memory or, where none can be mounted, with a limit on the size of files."""
     made = f"mount -t tmpfs -o size={size} tmpfs {tmp_path}" if mounts() else f"ulimit -f {int(size[:-1]) // 4}"
     script = f"{made} && cd {tmp_path} && {WIND} --out out; status=$?; find .; exit $status"
@@ -71,11 +71,11 @@ def test_a_read_only_folder_is_refused_before_any_work(tmp_path: Path) -> None:
         made, out = "mount -o bind out out && mount -o remount,ro,bind out", "out"
     else:
         made, out = "true", "/proc/self"
-    for place in (out, f"{out}/far/new"):
-        status, complaints, printed = run(f"{made} && {WIND} --out {place}", tmp_path, mounts())
+    for target in (out, f"{out}/far/new"):
+        status, complaints, printed = run(f"{made} && {WIND} --out {target}", tmp_path, mounts())
         assert (status, printed) == (2, [])
         assert len(complaints) == 1
-        assert complaints[0].startswith(f"meshwind: error: cannot write to {place}: ")
+        assert complaints[0].startswith(f"meshwind: error: cannot write to {target}: ")
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["notes.txt"]
 
 

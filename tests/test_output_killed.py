@@ -70,8 +70,8 @@ def test_killed_at_random_times_real_results_are_whole(tmp_path: Path) -> None:
     for sight in sights:
         assert not sight["hidden"]
         for files in (sight["first"], sight["then"]):
-            told = {name: content for name, content in files.items() if name != "report.json"}
-            assert told in whole if "report.json" in files else any(within(told, held) for held in whole)
+            data = {name: content for name, content in files.items() if name != "report.json"}
+            assert data in whole if "report.json" in files else any(within(data, held) for held in whole)
         assert not sight["then"] or "report.json" in sight["then"]
     assert sum(sight["killed"] for sight in sights) > MOMENTS // 2
     assert len({json.dumps(sight["then"]) for sight in sights}) > 1

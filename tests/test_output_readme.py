@@ -1,4 +1,4 @@
-"""The README tells of every file, field, code and option, and its figures hold."""
+"""The README describes every file, field, code and option, and its figures hold."""
 
 import re
 import shlex
@@ -33,7 +33,7 @@ def rows(heading: str) -> list[list[str]]:
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()[2:]]
 
 
-def test_every_field_is_told_and_no_other(tmp_path: Path) -> None:
+def test_every_field_is_described_and_no_other(tmp_path: Path) -> None:
     layup = assess(bridged())
     on = grid(layup.paths.surface)
     faces = np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]])
@@ -42,25 +42,25 @@ def test_every_field_is_told_and_no_other(tmp_path: Path) -> None:
     for file in (*tmp_path.glob("*.vtp"), *tmp_path.glob("*.vtu")):
         read = pv.read(file)
         held |= {(name, file.stem) for name in (*read.point_data.keys(), *read.cell_data.keys())}
-    told = {
+    listed = {
         (name, place.strip())
         for names, places, *_ in rows("field")
         for name in re.findall(r"`(\w+)`", names)
         for place in places.split(",")
     }
-    assert told == held
+    assert listed == held
 
 
-def test_every_status_is_told() -> None:
-    told = {
+def test_every_status_is_described() -> None:
+    listed = {
         (int(number), name)
         for numbers, names, _ in rows("`status` | name")
         for number, name in zip(numbers.split(","), re.findall(r"`(\w+)`", names), strict=True)
     }
-    assert told == {(int(status), status.name.lower()) for status in mw.Status}
+    assert listed == {(int(status), status.name.lower()) for status in mw.Status}
 
 
-def test_every_file_is_told() -> None:
+def test_every_file_is_described() -> None:
     assert {name for cells in rows("file") for name in re.findall(r"`([\w.]+)`", cells[0])} == RESULTS
 
 
@@ -79,12 +79,12 @@ def test_commands_run_as_they_stand(tmp_path: Path, monkeypatch: pytest.MonkeyPa
             assert not word.startswith("data/") or (ROOT / word).is_file()
 
 
-def test_every_option_is_told() -> None:
+def test_every_option_is_described() -> None:
     shown = subprocess.run(
         [sys.executable, "-m", "meshwind", "wind", "--help"], capture_output=True, text=True, check=True
     ).stdout
-    told = {re.findall(r"--[\w-]+", cells[0])[0] for cells in rows("option")}
-    assert told == set(re.findall(r"^  (?:--render / )?(--[a-z-]+)", shown, re.MULTILINE)) - {"--help", "--render"} | {
+    named = {re.findall(r"--[\w-]+", cells[0])[0] for cells in rows("option")}
+    assert named == set(re.findall(r"^  (?:--render / )?(--[a-z-]+)", shown, re.MULTILINE)) - {"--help", "--render"} | {
         "--no-render"
     }
 
@@ -112,9 +112,9 @@ def test_options_are_described_as_in_the_help() -> None:
     def plain(text: str) -> str:
         return re.sub(r"[`\"]", "", text).lower()
 
-    described = {re.findall(r"--[\w-]+", cells[0])[0]: plain(cells[1]) for cells in rows("option")}
+    listed = {re.findall(r"--[\w-]+", cells[0])[0]: plain(cells[1]) for cells in rows("option")}
     for name, option in options_of(Options).items():
-        assert plain(option.meaning) in described[f"--{name.replace('_', '-')}"]
+        assert plain(option.meaning) in listed[f"--{name.replace('_', '-')}"]
 
 
 @pytest.mark.parametrize("turns", [1, 4])

@@ -24,7 +24,7 @@ from meshwind.surface.grid import grid
 
 
 def share(image: np.ndarray, colour: tuple[int, int, int], reach: float) -> float:
-    """Share of pixels whose hue lies close to a colour's, whatever the light."""
+    """Share of pixels whose hue lies close to a colour's, in any light."""
     pixel = image / np.maximum(np.linalg.norm(image, axis=2, keepdims=True), 1.0)
     wanted = np.array(colour) / np.linalg.norm(colour)
     return float((pixel @ wanted > np.cos(reach)).mean())
@@ -57,7 +57,7 @@ def test_without_a_driver_the_run_goes_on(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 @pytest.mark.usefixtures("opengl")
-def test_a_picture_that_cannot_be_saved_is_told(tmp_path: Path) -> None:
+def test_a_picture_that_cannot_be_saved_is_reported(tmp_path: Path) -> None:
     note = driver.draw(tmp_path / "nowhere" / "winding.png", assess(helices(4, 0.5, 21, cylinder())), "cylinder")
     assert note.startswith("no winding.png: ")
     assert "\n" not in note
@@ -71,7 +71,7 @@ def test_a_renderer_that_is_not_needed_ends() -> None:
 
 
 def test_writing_alone_does_not_load_vtk() -> None:
-    told = subprocess.run(
+    done = subprocess.run(
         [
             sys.executable,
             "-c",
@@ -83,7 +83,7 @@ def test_writing_alone_does_not_load_vtk() -> None:
         check=True,
         cwd=Path(__file__).parents[1],
     )
-    assert told.stdout.strip() == "[]"
+    assert done.stdout.strip() == "[]"
 
 
 def test_the_view_is_square_on_and_holds_everything() -> None:
@@ -115,7 +115,7 @@ def test_the_view_turns_to_where_the_bridges_are() -> None:
 
 @pytest.mark.parametrize("inside", [1.0, -1.0])
 def test_a_bend_is_seen_from_its_side(inside: float) -> None:
-    """A quarter bend is looked at square onto its plane, whatever side of it the bridges are on."""
+    """A quarter bend is seen perpendicular to its plane, on either side of which the bridges may be."""
     on = grid(shapes.elbow(3.0, 1.0))
     axis = on.points.reshape(*on.shape, 3).mean(axis=0)
     plane = np.linalg.svd(axis - axis.mean(axis=0))[2][2]
@@ -150,13 +150,13 @@ def test_picture_and_report_have_the_same_figures(failed: list[int]) -> None:
     layup = assess(replace(paths, status=status))
     figures = report(layup, Mesh(np.eye(3), np.array([[0, 1, 2]])), None, RunFacts(0.5))
     seen = winding_scene(subject(layup, "waist", "in"))
-    told = figures["paths"]
-    assert f"bridged {100 * told['bridged_fraction']:.1f} %" in seen.frame.subtitle
-    assert f"length {quantity(told['length_total'], 'in')}" in seen.frame.subtitle
+    reported = figures["paths"]
+    assert f"bridged {100 * reported['bridged_fraction']:.1f} %" in seen.frame.subtitle
+    assert f"length {quantity(reported['length_total'], 'in')}" in seen.frame.subtitle
     assert f"{figures['crossings']['count']} crossings" in seen.frame.subtitle
-    assert (f"{told['converged']} of {len(paths)} at rest" in seen.frame.subtitle) == bool(failed)
-    assert seen.max_gap == told["max_gap"] == seen.bridges.gap.max()
-    assert len(seen.bridges.sizes) == told["bridges"]
+    assert (f"{reported['converged']} of {len(paths)} at rest" in seen.frame.subtitle) == bool(failed)
+    assert seen.max_gap == reported["max_gap"] == seen.bridges.gap.max()
+    assert len(seen.bridges.sizes) == reported["bridges"]
 
 
 @pytest.mark.usefixtures("opengl")

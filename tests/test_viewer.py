@@ -137,14 +137,14 @@ def test_maps_are_chosen_by_name(browser: webdriver.Chrome) -> None:
 def test_values_show_under_the_pointer(browser: webdriver.Chrome) -> None:
     settled(browser)
     plot, tip = browser.find_element(By.ID, "plot"), browser.find_element(By.ID, "tip")
-    told: set[str] = set()
+    shown: set[str] = set()
     for x in range(-48, 49, 8):
         ActionChains(browser, duration=0).move_to_element_with_offset(plot, x, 90).perform()
         browser.execute_async_script("setTimeout(arguments[0], 120)")
         if tip.is_displayed():
-            told.add(tip.text)
-    parts = [text for text in told if text.startswith("part")]
-    fibres = [text for text in told if text.startswith("fibre")]
+            shown.add(tip.text)
+    parts = [text for text in shown if text.startswith("part")]
+    fibres = [text for text in shown if text.startswith("fibre")]
     assert parts and all("coverage" in text and "winding angle" in text for text in parts)
     assert fibres and all("slip" in text and "length so far" in text for text in fibres)
 
