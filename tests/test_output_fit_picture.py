@@ -7,7 +7,7 @@ import pytest
 from layup_shapes import bridged
 from mandrel_shapes import tube
 from PIL import Image
-from test_notes import horned
+from test_workflow_notes import horned
 
 import meshwind as mw
 from meshwind.appearance.view import around, merit_view
