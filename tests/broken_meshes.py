@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
-from mandrel_shapes import Part, ball, box, cone, cup, joined, moved, pear, rotation, tube
+from mesh_shapes import Part, ball, box, cone, cup, joined, moved, pear, rotation, tube
 
 from meshwind.core.cast import Floats, Ints
 

@@ -13,8 +13,8 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import trimesh
-from mandrel_shapes import pear
-from test_mandrel_read import KINDS, MODEL, save
+from mesh_shapes import pear
+from test_mesh_read import KINDS, MODEL, save
 
 EACH = 14
 """Changed files of each kind in the corpus."""

@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Callable
 
 import numpy as np
-from mandrel_shapes import tube
+from mesh_shapes import tube
 
 import meshwind as mw
 from meshwind.layup.layup import assess

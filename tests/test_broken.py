@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from broken_meshes import FAULTS, MESHES, save_obj
-from mandrel_shapes import Part, assert_annulus, cone, pear
+from mesh_shapes import Part, assert_annulus, cone, pear
 
 from meshwind.chart import flatten
 from meshwind.core.errors import BadInputError

@@ -9,7 +9,7 @@ from broken_meshes import save_obj
 from hostile_files import EDITS, changed
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
-from mandrel_shapes import cone
+from mesh_shapes import cone
 
 import meshwind as mw
 from meshwind.cli import main

@@ -90,7 +90,7 @@ def test_names_in_a_file_are_not_followed_out_of_its_folder(name: str, tmp_path:
 
 def test_a_gltf_may_name_a_file_beside_it(tmp_path: Path) -> None:
     import trimesh
-    from mandrel_shapes import pear
+    from mesh_shapes import pear
 
     for name, content in trimesh.Trimesh(*pear(1), process=False).scene().export(file_type="gltf").items():
         (tmp_path / name).write_bytes(content)

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from layup_shapes import bridged
-from mandrel_shapes import tube
+from mesh_shapes import tube
 from PIL import Image
 from test_workflow_notes import horned
 

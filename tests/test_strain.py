@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mandrel_shapes import pear
+from mesh_shapes import pear
 from strain_cases import CASES, barrel, laid, waist
 
 import meshwind as mw

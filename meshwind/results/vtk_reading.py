@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.io.isolated import Arrays, isolated
+from meshwind.mesh.io.in_subprocess import Arrays, in_subprocess
 
 POINT, CELL = "point: ", "cell: "
 """Prefixes of the names of point data and cell data among the arrays of a file."""
@@ -72,7 +72,7 @@ def _held(work: Callable[[Path], Arrays], path: Path) -> Arrays:
     if not path.is_file():
         raise BadInputError(f"{path} is missing; run `meshwind wind` again")
     try:
-        held = isolated(work, path)
+        held = in_subprocess(work, path)
     except (OSError, ValueError) as error:
         raise BadInputError(f"{path} cannot be used (VTK cannot read it); run `meshwind wind` again") from error
     starts, corners = held["starts"], held["corners"]
@@ -84,7 +84,7 @@ def _held(work: Callable[[Path], Arrays], path: Path) -> Arrays:
 
 
 def lines_by_vtk(path: Path) -> Arrays:
-    """Points, polylines and data of a .vtp file, for `isolated`."""
+    """Points, polylines and data of a .vtp file, for `in_subprocess`."""
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
     poly = _read(vtkXMLPolyDataReader(), path)
@@ -92,7 +92,7 @@ def lines_by_vtk(path: Path) -> Arrays:
 
 
 def faces_by_vtk(path: Path) -> Arrays:
-    """Points, cells and data of a .vtu file, for `isolated`."""
+    """Points, cells and data of a .vtu file, for `in_subprocess`."""
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
     grid = _read(vtkXMLUnstructuredGridReader(), path)

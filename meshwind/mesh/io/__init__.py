@@ -1,1 +1,1 @@
-"""Mesh files to vertices and triangles, whatever their format."""
+"""Reading of mesh files: vertices and triangles from all formats, and scalars."""

@@ -1,4 +1,4 @@
-"""Read a triangle mesh from a file, whatever its format."""
+"""Reading of a triangle mesh from a file: chooses the reader of its format, and turns errors into one line."""
 
 import contextlib
 import difflib
@@ -15,45 +15,52 @@ from xml.etree.ElementTree import ParseError
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.geometry.mesh import Mesh
-from meshwind.mesh.io import formats, threemf
-from meshwind.mesh.io.isolated import DAMAGED, Arrays, isolated
+from meshwind.mesh.io.in_subprocess import DAMAGED, Arrays, in_subprocess
+from meshwind.mesh.io.msh_inp import read_msh_inp
+from meshwind.mesh.io.stl_ply_obj import read_stl_ply_obj
+from meshwind.mesh.io.threemf import read_3mf
+from meshwind.mesh.io.vtk_vtu_vtp import read_vtk
 from meshwind.mesh.repair.repair import mesh_from
 
-_Read = Callable[[Path], tuple[Floats, Ints]]
+_Reader = Callable[[Path], tuple[Floats, Ints]]
 
 
-def _apart(work: Callable[[Path], Arrays]) -> _Read:
+def _separate(work: Callable[[Path], Arrays]) -> _Reader:
+    """Reader that runs in a separate process, as it can end its own."""
+
     def read(path: Path) -> tuple[Floats, Ints]:
-        held = isolated(work, path)
-        return held["vertices"], held["faces"]
+        arrays = in_subprocess(work, path)
+        return arrays["vertices"], arrays["faces"]
 
     return read
 
 
-_READERS: dict[str, _Read] = {
-    ".stl": formats.by_trimesh,
-    ".ply": formats.by_trimesh,
-    ".obj": formats.by_trimesh,
-    ".off": formats.by_trimesh,
-    ".glb": formats.by_trimesh,
-    ".gltf": formats.by_trimesh,
-    ".3mf": threemf.read,
-    ".vtk": _apart(formats.by_vtk),
-    ".vtu": _apart(formats.by_vtk),
-    ".vtp": _apart(formats.by_vtk),
-    ".msh": _apart(formats.by_meshio),
-    ".inp": _apart(formats.by_meshio),
+_READERS: dict[str, _Reader] = {
+    ".stl": read_stl_ply_obj,
+    ".ply": read_stl_ply_obj,
+    ".obj": read_stl_ply_obj,
+    ".off": read_stl_ply_obj,
+    ".glb": read_stl_ply_obj,
+    ".gltf": read_stl_ply_obj,
+    ".3mf": read_3mf,
+    ".vtk": _separate(read_vtk),
+    ".vtu": _separate(read_vtk),
+    ".vtp": _separate(read_vtk),
+    ".msh": _separate(read_msh_inp),
+    ".inp": _separate(read_msh_inp),
 }
 SUFFIXES = tuple(_READERS)
 """File name endings that `read` understands."""
 
-# What trimesh was seen to raise on cut, overwritten and foreign files; RuntimeWarning
-# comes from a cast where the caller turns warnings into errors.
-_GARBAGE = (
+_READER_ERRORS = (
     ValueError, LookupError, NameError, ArithmeticError, TypeError, AttributeError, AssertionError, NotImplementedError,
     RuntimeError, RuntimeWarning, EOFError, MemoryError, OSError, struct.error, zlib.error, zipfile.BadZipFile,
     json.JSONDecodeError, ParseError, SystemExit,
 )  # fmt: skip
+"""Exceptions that trimesh was seen to raise on files that are cut short, overwritten or of another format.
+
+RuntimeWarning comes from a cast, if the caller turns warnings into errors.
+"""
 
 
 def read(path: str | PathLike[str], component: int = 0) -> Mesh:
@@ -90,18 +97,18 @@ def read(path: str | PathLike[str], component: int = 0) -> Mesh:
 
 
 def load(path: str | PathLike[str]) -> tuple[Floats, Ints]:
-    """Vertices (n, 3) and triangles (m, 3) of a file as they are; m is never 0.  Raises BadInputError."""
+    """Vertices (n, 3) and triangles (m, 3) of a file without repair; m > 0.  Raises BadInputError."""
     if not isinstance(path, str | PathLike):
         raise BadInputError(f"mesh is {_type(path)}: give the path of a triangle mesh (STL, OBJ, PLY, ...)")
     file = Path(path)
     reader = _reader(file)
     try:
-        # The libraries' chatter is no news to the user: the one line below is.
+        # what the libraries print is replaced by the one line below
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
             vertices, faces = reader(file)
     except BadInputError:
         raise
-    except _GARBAGE as error:
+    except _READER_ERRORS as error:
         kind = file.suffix[1:].upper()
         raise BadInputError(
             f"{file.name}: cannot be read as {kind} ({_first_line(error)}); export the mesh again, or convert it to STL"
@@ -112,12 +119,12 @@ def load(path: str | PathLike[str]) -> tuple[Floats, Ints]:
 
 
 def _type(value: object) -> str:
-    """A value's type in words."""
+    """Type of a value, in words."""
     return f"of type {type(value).__name__}"
 
 
-def _reader(file: Path) -> _Read:
-    """Choose the reader by the file's suffix, once the file is known to be there and to hold something."""
+def _reader(file: Path) -> _Reader:
+    """Reader for the file's suffix.  Raises BadInputError if the file is missing, empty or of an unknown format."""
     advice = "give the path of a triangle mesh (STL, OBJ, PLY, ...)"
     try:
         if file.is_dir():
@@ -137,17 +144,17 @@ def _reader(file: Path) -> _Read:
 
 
 def _near(file: Path) -> str:
-    """The mesh in the same folder that was meant, if one has such a name."""
+    """Advice on a file that is missing: a mesh in the same folder with a similar name, if there is one."""
     if not file.parent.is_dir():
         return f"there is no folder {file.parent}"
-    names = {there.name: there.name for there in file.parent.iterdir() if there.suffix.lower() in _READERS}
+    names = {other.name: other.name for other in file.parent.iterdir() if other.suffix.lower() in _READERS}
     names |= {Path(name).stem: name for name in names}
     near = difflib.get_close_matches(file.name, names, 1, 0.7)
     return f"did you mean {names[near[0]]}?" if near else ""
 
 
 def _first_line(error: BaseException) -> str:
-    """Say what went wrong in a few words, whatever the library put in its message."""
+    """First line of an error's message, shortened; a standard text if it has none."""
     lines = str(error).strip().splitlines()
     words = lines[0].strip() if lines else ""
     if isinstance(error, SystemExit | KeyError) or not words:

@@ -1,6 +1,6 @@
-"""Scalars of a mesh file, at its own vertices or at the middles of its cells, as the file holds them.
+"""Reading of scalar fields from mesh files, with the points that they belong to.
 
-Repair and trimming renumber vertices, so scalars keep the places they were given at.
+The points are the file's vertices or the centroids of its cells: repair and trimming renumber vertices.
 """
 
 from dataclasses import dataclass
@@ -11,8 +11,8 @@ import numpy as np
 
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.io.formats import vtk_output
-from meshwind.mesh.io.isolated import Arrays, isolated
+from meshwind.mesh.io.in_subprocess import Arrays, in_subprocess
+from meshwind.mesh.io.vtk_vtu_vtp import vtk_array, vtk_output
 
 _BY_VTK = (".vtk", ".vtp", ".vtu")
 _BY_MESHIO = (".ply", ".msh")
@@ -20,7 +20,7 @@ _BY_MESHIO = (".ply", ".msh")
 
 @dataclass(frozen=True)
 class Scalars:
-    """One number at each of n places: points (n, 3), values (n,)."""
+    """Scalar field: points (n, 3) and values (n,)."""
 
     points: Floats
     values: Floats
@@ -29,29 +29,31 @@ class Scalars:
 def read_scalars(path: str | Path, name: str) -> Scalars:
     """Read the scalar `name` from a VTK, VTP, VTU, PLY or MSH file, of its points or else of its cells.
 
-    Raises BadInputError where the format cannot hold scalars, the file cannot be read or has none of that name.
+    Raises BadInputError if the format cannot hold scalars, or the file cannot be read or has none of that name.
     """
     path = Path(path)
     kind = path.suffix.lower()
     if kind not in _BY_VTK + _BY_MESHIO:
         known = ", ".join(end[1:].upper() for end in _BY_VTK + _BY_MESHIO)
         raise BadInputError(f"{path.name}: this format holds no scalars; save the part with {name!r} as {known}")
-    read = _read(path)
-    names = read["names"].tolist()
+    arrays = _read(path)
+    names = arrays["names"].tolist()
     if name not in names:
-        there = ", ".join(sorted(names)) or "none"
-        raise BadInputError(f"{path.name}: has no scalar {name!r}; it holds: {there}")
+        available = ", ".join(sorted(names)) or "none"
+        raise BadInputError(f"{path.name}: has no scalar {name!r}; it holds: {available}")
     number = names.index(name)
-    values, places = read[f"values {number}"], read.get(f"places {number}", read["points"])
-    if len(values) != len(places) or not np.isfinite(values).all() or not np.isfinite(places).all():
-        raise BadInputError(f"{path.name}: scalar {name!r} is not one finite number a vertex or cell; mend it first")
-    return Scalars(frozen(places), frozen(values))
+    values, points = arrays[f"values {number}"], arrays.get(f"points {number}", arrays["points"])
+    if len(values) != len(points) or not np.isfinite(values).all() or not np.isfinite(points).all():
+        raise BadInputError(
+            f"{path.name}: scalar {name!r} is not one finite number per vertex or cell; correct it first"
+        )
+    return Scalars(frozen(points), frozen(values))
 
 
 def scalar_names(path: str | Path) -> tuple[str, ...]:
-    """Names of the scalars that `read_scalars` finds in a file; none where its format holds none.
+    """Names of the scalars that `read_scalars` finds in a file; none if its format cannot hold any.
 
-    Raises BadInputError where the file cannot be read.
+    Raises BadInputError if the file cannot be read.
     """
     path = Path(path)
     if path.suffix.lower() not in _BY_VTK + _BY_MESHIO:
@@ -62,7 +64,7 @@ def scalar_names(path: str | Path) -> tuple[str, ...]:
 def _read(path: Path) -> Arrays:
     kind = path.suffix.lower()
     try:
-        return isolated(by_vtk if kind in _BY_VTK else by_meshio, path)
+        return in_subprocess(by_vtk if kind in _BY_VTK else by_meshio, path)
     except (OSError, ValueError) as error:
         raise BadInputError(
             f"{path.name}: its scalars cannot be read; is it a whole {kind[1:].upper()} file?"
@@ -70,41 +72,40 @@ def _read(path: Path) -> Arrays:
 
 
 _Fields = dict[str, tuple[Floats | None, Floats]]
-"""Per name the cells' middles, None for scalars of the points, and the values."""
+"""By name the cells' centroids, or None for scalars of the vertices, and the values."""
 
 
 def by_vtk(path: Path) -> Arrays:
-    """Points and scalars of a file for `isolated`, by raw arrays only as in `formats`."""
-    from vtkmodules.util import numpy_support
+    """Points and scalars of a file, for `in_subprocess`; only raw arrays are used, as in `read_vtk`."""
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
-    path.stat()  # VTK says nothing of a file that is not there
+    path.stat()  # VTK does not report a missing file
     data = vtk_output(path)
-    points = numpy_support.vtk_to_numpy(data.GetPoints().GetData()).astype(np.float64)  # type: ignore[no-untyped-call]
+    points = vtk_array(data.GetPoints().GetData(), np.float64)
     cells = data.GetPolys() if isinstance(data, vtkPolyData) else data.GetCells()
-    offsets = numpy_support.vtk_to_numpy(cells.GetOffsetsArray()).astype(np.int64)  # type: ignore[no-untyped-call]
-    nodes = numpy_support.vtk_to_numpy(cells.GetConnectivityArray()).astype(np.int64)  # type: ignore[no-untyped-call]
+    offsets = vtk_array(cells.GetOffsetsArray(), np.int64)
+    nodes = vtk_array(cells.GetConnectivityArray(), np.int64)
     sizes = np.diff(offsets)
     fields: _Fields = {}
     if len(sizes) and (sizes > 0).all() and offsets[0] == 0 and offsets[-1] == len(nodes):
-        middles = np.add.reduceat(points[nodes], offsets[:-1], axis=0) / sizes[:, None]
-        _keep_all(fields, data.GetCellData(), middles)
-    _keep_all(fields, data.GetPointData(), None)
+        centroids = np.add.reduceat(points[nodes], offsets[:-1], axis=0) / sizes[:, None]
+        _add_arrays(fields, data.GetCellData(), centroids)
+    _add_arrays(fields, data.GetPointData(), None)
     return _packed(points, fields)
 
 
-def _keep_all(fields: _Fields, data: Any, places: Floats | None) -> None:
-    """Note the single numbers among VTK's arrays."""
+def _add_arrays(fields: _Fields, data: Any, points: Floats | None) -> None:
+    """Add the scalars among VTK's arrays."""
     from vtkmodules.util import numpy_support
 
     for k in range(data.GetNumberOfArrays()):
         array = data.GetArray(k)
         if array is not None and array.GetName():
-            _keep(fields, array.GetName(), numpy_support.vtk_to_numpy(array), places)  # type: ignore[no-untyped-call]
+            _add(fields, array.GetName(), numpy_support.vtk_to_numpy(array), points)  # type: ignore[no-untyped-call]
 
 
 def by_meshio(path: Path) -> Arrays:
-    """Points and scalars of a file for `isolated`."""
+    """Points and scalars of a file, for `in_subprocess`."""
     import meshio
 
     mesh = meshio.read(path)
@@ -113,27 +114,27 @@ def by_meshio(path: Path) -> Arrays:
         points = np.column_stack([points, np.zeros(len(points))])
     fields: _Fields = {}
     if mesh.cells and all(isinstance(block.data, np.ndarray) and block.data.ndim == 2 for block in mesh.cells):
-        middles = np.concatenate([points[block.data].mean(axis=1) for block in mesh.cells])
+        centroids = np.concatenate([points[block.data].mean(axis=1) for block in mesh.cells])
         for name, blocks in mesh.cell_data.items():
             if all(np.ndim(values) == 1 for values in blocks):
-                _keep(fields, name, np.concatenate(blocks), middles)
+                _add(fields, name, np.concatenate(blocks), centroids)
     for name, values in mesh.point_data.items():
-        _keep(fields, name, values, None)
+        _add(fields, name, values, None)
     return _packed(points, fields)
 
 
 def _packed(points: Floats, fields: _Fields) -> Arrays:
-    """As arrays by name: the cells' middles only where the scalar is theirs."""
+    """Arrays by name, with centroids only for the scalars of cells."""
     packed: Arrays = {"points": points, "names": np.array(list(fields), dtype=np.str_)}
-    for number, (places, values) in enumerate(fields.values()):
+    for number, (centroids, values) in enumerate(fields.values()):
         packed[f"values {number}"] = values
-        if places is not None:
-            packed[f"places {number}"] = places
+        if centroids is not None:
+            packed[f"points {number}"] = centroids
     return packed
 
 
-def _keep(fields: _Fields, name: str, values: object, places: Floats | None) -> None:
-    """Note a field if it is of single numbers."""
+def _add(fields: _Fields, name: str, values: object, points: Floats | None) -> None:
+    """Add a field if it is a scalar."""
     array = np.asarray(values)
     if array.ndim == 1 and array.dtype.kind in "fiub":
-        fields[str(name)] = places, array.astype(np.float64)
+        fields[str(name)] = points, array.astype(np.float64)

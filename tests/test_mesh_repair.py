@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mandrel_shapes import Part, ball, box, cone, joined, moved, pear, rotation, shuffled
+from mesh_shapes import Part, ball, box, cone, joined, moved, pear, rotation, shuffled
 
 from meshwind.core.cast import Ints
 from meshwind.core.errors import BadInputError

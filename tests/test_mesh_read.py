@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import pyvista
 import trimesh
-from mandrel_shapes import Part, pear
+from mesh_shapes import Part, pear
 from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
 
 from meshwind.core.errors import BadInputError

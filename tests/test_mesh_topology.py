@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mandrel_shapes import cone
+from mesh_shapes import cone
 
 from meshwind.core.cast import Ints
 from meshwind.mesh.geometry.areas_and_volumes import area_vectors, edge_lengths, volume

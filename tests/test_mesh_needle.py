@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 import trimesh
-from mandrel_shapes import moved, pear, rotation
-from test_mandrel_annulus import rim_points, trim
+from mesh_shapes import moved, pear, rotation
+from test_mesh_annulus import rim_points, trim
 
 import meshwind as mw
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mandrel_shapes import Part, moved, rotation, shuffled, tube
+from mesh_shapes import Part, moved, rotation, shuffled, tube
 
 from meshwind.core.cast import Floats
 from meshwind.mesh import annulus, mesh_from, read

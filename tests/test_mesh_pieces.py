@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from broken_meshes import MESHES, branch, double_skin, save_obj
-from mandrel_shapes import Part, assert_annulus, ball, cone, joined, moved, pear, rotation, shuffled, tube
+from mesh_shapes import Part, assert_annulus, ball, cone, joined, moved, pear, rotation, shuffled, tube
 
 from meshwind.core.errors import BadInputError
 from meshwind.mesh import Mesh, annulus, mesh_from, read
@@ -158,8 +158,9 @@ def test_a_truncated_text_stl_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("face", "words"), [
-    ("f 1 2 9", "names vertex 9, but there are 4"), ("f 0 1 2", "names vertex 0: OBJ counts from 1"),
-    ("f 1/1 2/2 0/3", "names vertex 0: OBJ counts from 1"), ("f -1 -2 -9", "names vertex -9: OBJ counts from 1"),
+    ("f 1 2 9", "refers to vertex 9, but there are 4"), ("f 0 1 2", "refers to vertex 0: OBJ counts from 1"),
+    ("f 1/1 2/2 0/3", "refers to vertex 0: OBJ counts from 1"),
+    ("f -1 -2 -9", "refers to vertex -9: OBJ counts from 1"),
 ])  # fmt: skip
 def test_an_obj_face_with_a_wrong_index_is_named(face: str, words: str, tmp_path: Path) -> None:
     points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"

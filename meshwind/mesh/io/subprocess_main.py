@@ -1,7 +1,7 @@
-"""The process that `isolated` starts: reads files with libraries that may end it.
+"""Main program of the process that `in_subprocess` starts: it reads files with libraries that may end it.
 
 Each line of standard input is a module, a function of it and a path.  The answer is a line of JSON, with the size of
-an .npz that follows or with what went wrong; there is no answer where the process ends.
+an .npz that follows, or with the reason why there is none.  A process that ends gives no answer.
 """
 
 import io
@@ -16,16 +16,16 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.io.isolated import Arrays
+from meshwind.mesh.io.in_subprocess import Arrays
 
-MEMORY, A_BYTE = 4 << 30, 100
-"""Bytes that reading may take, and how many more for each byte of the file."""
+MAX_MEMORY, MEMORY_PER_BYTE = 4 << 30, 100
+"""Limit of memory in bytes, and by how much each byte of the file raises it."""
 
 
 def main() -> None:
     """Answer until standard input ends."""
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what libraries print is no answer
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # libraries must not print into the answers
     for line in sys.stdin:
         module, name, path = json.loads(line)
         _limit_memory(Path(path).stat().st_size)
@@ -34,7 +34,7 @@ def main() -> None:
 
 
 def _answer(answers: BinaryIO, read: Callable[[Path], Arrays], path: Path) -> None:
-    """Any other error ends the process, which says as much."""
+    """Read a file and write the answer.  Any other error than those named here ends the process."""
     packed = b""
     head: dict[str, Any]
     try:
@@ -52,13 +52,13 @@ def _answer(answers: BinaryIO, read: Callable[[Path], Arrays], path: Path) -> No
 
 
 def _limit_memory(size: int) -> None:
-    """Bound what a file of so many bytes may take."""
+    """Limit the memory for a file of so many bytes."""
     if sys.platform == "win32":
         return
     import resource
 
     _, hard = resource.getrlimit(resource.RLIMIT_AS)
-    most = MEMORY + A_BYTE * size
+    most = MAX_MEMORY + MEMORY_PER_BYTE * size
     resource.setrlimit(resource.RLIMIT_AS, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from mandrel_shapes import ball, box, cone, joined
+from mesh_shapes import ball, box, cone, joined
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.mesh.geometry.facet_tree import FacetTree

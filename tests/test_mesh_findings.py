@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from broken_meshes import MESHES, branch, double_skin, fin, flipped, klein, save_obj, torus
-from mandrel_shapes import Part, cone, joined, pear
+from mesh_shapes import Part, cone, joined, pear
 
 from meshwind.core.errors import BadInputError
 from meshwind.mesh import Findings, annulus, inspect, mesh_from, read
@@ -119,7 +119,7 @@ def test_the_command_refuses_in_one_line(tmp_path: Path) -> None:
     for arguments, says in (
         ([tmp_path / "part.obj"], "genus 1"),
         ([tmp_path / "none.stl"], "file not found"),
-        ([DATA / "tank.ply", "--opening", "-1"], "opening -1"),
+        ([DATA / "tank.ply", "--opening", "-1"], "opening is -1"),
         ([DATA / "tank.ply", "--component", "1"], "1 piece; give 0"),
     ):
         done = check(*arguments)

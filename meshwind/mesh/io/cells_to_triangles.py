@@ -1,4 +1,4 @@
-"""Triangles from cells of every kind: polygons are cut, volumes give their skin."""
+"""Triangles from cells of every kind: polygons are cut, and of volume cells the outer faces are taken."""
 
 from typing import TypeAlias
 
@@ -7,11 +7,10 @@ import numpy as np
 from meshwind.core.cast import Ints
 
 CellBlock: TypeAlias = tuple[str, tuple[Ints, Ints]]
-"""Kind of the cells, their sizes (c,) and their nodes, one cell after the other."""
+"""Kind of the cells, their sizes (c,), and the nodes of one cell after the other."""
 
-# Corners of a kind; its further nodes lie on edges, faces or inside.
 _CORNERS = {"triangle": 3, "quad": 4, "tetra": 4, "hexahedron": 8, "wedge": 6, "vtk-wedge": 6, "pyramid": 5}
-# Faces of a volume cell, outward; a triangle is a quadrangle without its last corner, -1.
+"""Number of corners of each kind of cell; its other nodes lie on edges, on faces or inside."""
 _SIDES = {
     "tetra": [[0, 2, 1, -1], [0, 1, 3, -1], [1, 2, 3, -1], [0, 3, 2, -1]],
     "hexahedron": [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]],
@@ -19,16 +18,17 @@ _SIDES = {
     "vtk-wedge": [[0, 1, 2, -1], [3, 5, 4, -1], [0, 3, 4, 1], [1, 4, 5, 2], [2, 5, 3, 0]],  # VTK mirrors it
     "pyramid": [[0, 3, 2, 1], [0, 1, 4, -1], [1, 2, 4, -1], [2, 3, 4, -1], [3, 0, 4, -1]],
 }
+"""Faces of a volume cell, outward; the last corner of a triangle is -1."""
 
 
 def triangles(blocks: list[CellBlock], points: int) -> Ints:
-    """Triangles (m, 3) of the blocks: the skin of the volume cells, or the surface cells where there are none.
+    """Triangles (m, 3) of the blocks: the outer faces of the volume cells, or the surface cells if there are none.
 
-    Raises ValueError where a cell names a node that is not there.
+    Raises ValueError if a cell refers to a node that does not exist.
     """
     for _, (_, nodes) in blocks:
         if len(nodes) and (nodes.min() < 0 or nodes.max() >= points):
-            raise ValueError("a cell names a vertex that is not in the file")
+            raise ValueError("a cell refers to a vertex that is not in the file")
     sides = [_sides(kind, cells) for kind, cells in blocks if _base(kind) in _SIDES]
     if sides:
         return _cut_quads(_skin(np.concatenate(sides)))
@@ -37,12 +37,12 @@ def triangles(blocks: list[CellBlock], points: int) -> Ints:
 
 
 def _base(kind: str) -> str:
-    """Name of the linear cell behind a kind such as 'tetra10'."""
+    """Name of the linear cell of a kind such as 'tetra10'."""
     return kind.rstrip("0123456789")
 
 
 def _table(kind: str, cells: tuple[Ints, Ints]) -> Ints:
-    """Corners of cells of one kind (c, corners), without the nodes on edges and inside."""
+    """Corners (c, corners) of cells of one kind, without the nodes on edges and inside."""
     sizes, nodes = cells
     corners = _CORNERS[_base(kind)]
     if len(sizes) and (sizes.min() != sizes.max() or sizes[0] < corners):
@@ -58,7 +58,7 @@ def _sides(kind: str, cells: tuple[Ints, Ints]) -> Ints:
 
 
 def _skin(sides: Ints) -> Ints:
-    """Sides that belong to one cell only."""
+    """Sides that belong to only one cell."""
     order = np.sort(sides, axis=1)
     _, first, count = np.unique(order, axis=0, return_index=True, return_counts=True)
     return np.asarray(sides[np.sort(first[count == 1])])

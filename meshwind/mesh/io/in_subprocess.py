@@ -1,6 +1,7 @@
-"""Reading in a process of its own: VTK ends its process on damaged files, and some need all the memory there is.
+"""Reading of files in a separate process, bounded in time and memory.
 
-The process is started with the first file and waits for more; it ends with this one, or with a file it cannot bear.
+VTK ends its process on some damaged files, and some files need all the memory there is.  The process is started with
+the first file and waits for more.  It ends with this process, or when a file ends it.
 """
 
 import atexit
@@ -21,8 +22,8 @@ from numpy.typing import NDArray
 from meshwind.core.errors import BadInputError
 
 DAMAGED = "damaged, cut short or of another format"
-PATIENCE, PACE = 30.0, 1e5
-"""Seconds that a file is given, and bytes that are read in a second at least."""
+MAX_SECONDS, BYTES_PER_SECOND = 30.0, 1e5
+"""Time limit of a file, and how many of its bytes extend the limit by a second."""
 Arrays = dict[str, NDArray[Any]]
 
 _lock = Lock()
@@ -30,21 +31,21 @@ _running: "list[_Reader]" = []
 
 
 class _Reader:
-    """A process that reads file after file."""
+    """Process that reads one file after the other."""
 
     def __init__(self) -> None:
         self.owner = os.getpid()
         # -P keeps this folder off the process's import path, where its module names could shadow others
         self.process = subprocess.Popen(
-            [sys.executable, "-P", str(Path(__file__).with_name("reader_process.py"))],
+            [sys.executable, "-P", str(Path(__file__).with_name("subprocess_main.py"))],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
         )  # fmt: skip
 
     def read(self, work: Callable[[Path], Arrays], path: Path) -> tuple[dict[str, Any], bytes]:
-        """The process's answer; raises ValueError where it ended without one."""
+        """Answer of the process.  Raises ValueError if it ended without one."""
         stdin, stdout = self.process.stdin, self.process.stdout
         assert stdin is not None and stdout is not None
-        watch = Timer(PATIENCE + path.stat().st_size / PACE, self.process.kill)
+        watch = Timer(MAX_SECONDS + path.stat().st_size / BYTES_PER_SECOND, self.process.kill)
         watch.start()
         try:
             stdin.write(json.dumps([work.__module__, work.__name__, str(path.absolute())]).encode() + b"\n")
@@ -66,17 +67,18 @@ class _Reader:
             self.process.communicate()
 
 
-def isolated(work: Callable[[Path], Arrays], path: Path) -> Arrays:
-    """What a function of a module reads from a file: arrays by name, none of objects.
+def in_subprocess(work: Callable[[Path], Arrays], path: Path) -> Arrays:
+    """Call a module's function on a file in a separate process, and return its arrays by name.
 
-    Raises BadInputError for what it refuses, and ValueError where it cannot read the file, takes for ever or ends.
+    Raises BadInputError if the function does, and ValueError if it cannot read the file, takes too long or ends the
+    process.
     """
     with _lock:
         if _running and (_running[0].owner != os.getpid() or _running[0].process.poll() is not None):
             stop()
         if not _running:
             _running.append(_Reader())
-        with ExitStack() as failed:  # a process that was left half way knows no next file
+        with ExitStack() as failed:  # a process that was interrupted cannot read another file
             failed.callback(stop)
             head, packed = _running[0].read(work, path)
             failed.pop_all()
@@ -89,7 +91,7 @@ def isolated(work: Callable[[Path], Arrays], path: Path) -> Arrays:
 
 
 def stop() -> None:
-    """End the process that reads, if there is one."""
+    """End the process, if there is one."""
     while _running:
         _running.pop().close()
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from mandrel_shapes import Part, assert_annulus, ball, box, cone, cup, joined, moved, pear, rotation, shuffled, tube
+from mesh_shapes import Part, assert_annulus, ball, box, cone, cup, joined, moved, pear, rotation, shuffled, tube
 
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError

@@ -1,0 +1,127 @@
+"""Reading of VTK, VTU and VTP files by VTK; legacy files are checked first, as damaged ones end VTK's process."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from meshwind.core.cast import Ints
+from meshwind.core.errors import BadInputError
+from meshwind.mesh.io.cells_to_triangles import CellBlock, triangles
+from meshwind.mesh.io.in_subprocess import DAMAGED, Arrays
+
+_VTK_KINDS = {
+    5: "triangle", 7: "polygon", 9: "quad", 10: "tetra", 12: "hexahedron", 13: "vtk-wedge", 14: "pyramid",
+    22: "triangle6", 23: "quad8", 24: "tetra10", 25: "hexahedron20", 26: "vtk-wedge15", 27: "pyramid13",
+    28: "quad9", 29: "hexahedron27", 69: "triangle", 70: "quad", 71: "tetra", 72: "hexahedron",
+}  # fmt: skip
+"""Kinds of cells by VTK's number."""
+_LISTS = rb"^(?:VERTICES|LINES|POLYGONS|TRIANGLE_STRIPS|CELLS)\s+(\d{1,10})\s+(\d{1,10})[ \t\r]*\n"
+
+
+def read_vtk(path: Path) -> Arrays:
+    """Vertices and triangles of a file of polygons or of an unstructured grid, for `in_subprocess`.
+
+    Only VTK's raw arrays are used, because its filters end the process on damaged connectivity.
+    """
+    from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
+
+    data = vtk_output(path)
+    if isinstance(data, vtkPolyData):
+        cells, kinds = data.GetPolys(), None
+    elif isinstance(data, vtkUnstructuredGrid):
+        cells, kinds = data.GetCells(), _kinds(data)
+    else:
+        raise BadInputError(f"{path.name}: holds no polygons or cells; save the part's surface as VTP, PLY or STL")
+    if data.GetPoints() is None or cells is None or cells.GetNumberOfCells() == 0:
+        return {"vertices": np.empty((0, 3)), "faces": np.empty((0, 3), dtype=np.int64)}
+    points = vtk_array(data.GetPoints().GetData(), np.float64)
+    offsets = vtk_array(cells.GetOffsetsArray(), np.int64)
+    nodes = vtk_array(cells.GetConnectivityArray(), np.int64)
+    sizes = np.diff(offsets)
+    if offsets[0] != 0 or (sizes < 0).any() or offsets[-1] != len(nodes):
+        raise ValueError("its cells are damaged")
+    kind = np.full(len(sizes), 7) if kinds is None else kinds
+    if len(kind) != len(sizes):
+        raise ValueError("its cell types are damaged")
+    of_node = np.repeat(kind, sizes)
+    blocks: list[CellBlock] = [
+        (name, (sizes[kind == code], nodes[of_node == code]))
+        for code, name in _VTK_KINDS.items()
+        if (kind == code).any()
+    ]
+    return {"vertices": points, "faces": triangles(blocks, len(points))}
+
+
+def _kinds(grid: Any) -> Ints:
+    """VTK's number of each cell's kind; the method for it differs between versions of VTK."""
+    import pyvista
+
+    return np.asarray(pyvista.wrap(grid).celltypes, dtype=np.int64)
+
+
+def vtk_output(path: Path) -> Any:
+    """Run VTK's reader for the file, silently."""
+    from vtkmodules.vtkCommonCore import vtkObject
+    from vtkmodules.vtkIOLegacy import vtkGenericDataObjectReader
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
+
+    readers: dict[str, Any] = {".vtp": vtkXMLPolyDataReader, ".vtu": vtkXMLUnstructuredGridReader}
+    if path.suffix.lower() not in readers:
+        _check_legacy(path.read_bytes())
+    reader = readers.get(path.suffix.lower(), vtkGenericDataObjectReader)()
+    reader.SetFileName(str(path))
+    loud = vtkObject.GetGlobalWarningDisplay()
+    vtkObject.SetGlobalWarningDisplay(0)
+    try:
+        reader.Update()
+    finally:
+        vtkObject.SetGlobalWarningDisplay(loud)
+    if reader.GetErrorCode() != 0 or reader.GetOutput() is None:
+        raise ValueError(DAMAGED)
+    return reader.GetOutput()
+
+
+def vtk_array(values: Any, dtype: type) -> Any:
+    """Copy of a VTK array."""
+    from vtkmodules.util import numpy_support
+
+    return numpy_support.vtk_to_numpy(values).astype(dtype)  # type: ignore[no-untyped-call]
+
+
+def _check_legacy(content: bytes) -> None:
+    """Raise ValueError if version and cells disagree, or if a list of cells has the wrong size."""
+    version = re.match(rb"# vtk DataFile Version (\d)\.\d\s*\n[^\n]*\n\s*(ASCII|BINARY)", content)
+    if version is None:
+        raise ValueError(DAMAGED)
+    lists = list(re.finditer(_LISTS, content, re.MULTILINE))
+    split = re.search(rb"^OFFSETS ", content, re.MULTILINE) is not None  # since version 5
+    if lists and split != (int(version[1]) >= 5):
+        raise ValueError(DAMAGED)
+    if split or version[2] == b"ASCII":
+        return
+    for found in lists:
+        count, size = int(found[1]), int(found[2])
+        if found.end() + 4 * size > len(content):
+            raise ValueError(DAMAGED)
+        numbers = np.frombuffer(content, ">i4", size, found.end()).astype(np.int64)
+        if not _adds_up(numbers, count):
+            raise ValueError(DAMAGED)
+
+
+def _adds_up(numbers: Ints, count: int) -> bool:
+    """Whether `count` cells, each its size followed by its nodes, fill the numbers exactly.
+
+    The chain from cell to cell is followed by repeated doubling, without a loop over cells.
+    """
+    size = len(numbers)
+    step = np.minimum(np.arange(size) + 1 + np.maximum(numbers, 0), size + 1)
+    step = np.concatenate([step, [size + 1, size + 1]])  # the end, and beyond it
+    position = 0
+    while count:
+        if count & 1:
+            position = int(step[position])
+        step = step[step]
+        count >>= 1
+    return position == size
