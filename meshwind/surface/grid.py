@@ -65,7 +65,7 @@ def grid_quads(nu: int, nv: int, closed: bool) -> Ints:
 def mean_speeds(surface: Surface, count: int) -> tuple[float, float]:
     """Mean lengths of s_u and of s_v over the middles of count x count cells: extents around and along the part."""
     frames = surface.frames(parameter_grid(midpoints(count), midpoints(count)))
-    around, along = np.linalg.norm(frames[:, [SU, SV]], axis=2).mean(axis=0)
+    around, along = np.linalg.norm(frames[:, SU : SV + 1], axis=2).mean(axis=0)
     return float(around), float(along)
 
 
