@@ -17,7 +17,7 @@ from meshwind.core.option import options_of
 from meshwind.core.units import MILLIMETRES
 from meshwind.export.formats import FORMATS
 from meshwind.export.targets import GRID, QUADS, TARGETS
-from meshwind.mesh.opening.ends import parse
+from meshwind.mesh.opening.choose_ends import parse_ends
 from meshwind.workflow.options import Options
 
 OPTIONS = options_of(Options)
@@ -91,4 +91,4 @@ def test_the_names_are_those_of_the_library() -> None:
     assert (GRID, QUADS) == export.SHELLS
     assert ("auto", *NAMED) == render.VIEWS
     for name in OPTIONS["ends"].words:
-        parse(f"{name} 0 1" if name == "loops" else name)
+        parse_ends(f"{name} 0 1" if name == "loops" else name)

@@ -283,7 +283,7 @@ REFUSED: dict[str, tuple[Callable[[], Part], str, float | None, str]] = {
     "four numbers": (pear, "0,0,0,1 0,0,1,1", None, "give auto, x, y, z or two points"),
     "nan": (pear, "0,0,0 0,nan,1", None, "give auto, x, y, z or two points"),
     "same point": (pear, "0,0,1 0,0,1", None, "the two points are the same; give one at each end"),
-    "one place": (pear, "0,0,30 0,0,40", None, "both ends fall on one place, .*; give ends further apart"),
+    "one place": (pear, "0,0,30 0,0,40", None, "both ends are at the same point, .*; give ends further apart"),
     "no radius": (pear, "auto", 0.0, "opening 0.0: give the radius"),
     "negative": (pear, "auto", -1.0, "opening -1.0: give the radius"),
     "nan radius": (pear, "auto", float("nan"), "opening nan: give the radius"),

@@ -12,7 +12,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.mesh import Mesh, annulus, mesh_from, read
 from meshwind.mesh.geometry.areas_and_volumes import perimeter, volume
 from meshwind.mesh.geometry.topology import loops
-from meshwind.mesh.opening.ends import place
+from meshwind.mesh.opening.choose_ends import position_text
 
 
 def three() -> Part:
@@ -179,7 +179,7 @@ def test_obj_faces_counted_from_the_end_or_before_their_vertices_are_read(tmp_pa
 
 
 def test_places_are_told_to_the_size_of_the_part() -> None:
-    assert place(np.array([1e-17, -1e-17, 3.0]), 3.6) == "(0, 0, 3)"
-    assert place(np.array([0.123456789, -2.0, 1e8]), 5.0) == "(0.1235, -2, 100000000)"
-    assert place(np.array([1.23456e-40, 0, 0]), 1e-39) == "(1.2346e-40, 0, 0)"
-    assert place(np.array([123456.7, 0, 0]), 2e5) == "(123460, 0, 0)"
+    assert position_text(np.array([1e-17, -1e-17, 3.0]), 3.6) == "(0, 0, 3)"
+    assert position_text(np.array([0.123456789, -2.0, 1e8]), 5.0) == "(0.1235, -2, 100000000)"
+    assert position_text(np.array([1.23456e-40, 0, 0]), 1e-39) == "(1.2346e-40, 0, 0)"
+    assert position_text(np.array([123456.7, 0, 0]), 2e5) == "(123460, 0, 0)"

@@ -15,7 +15,7 @@ from meshwind.cli.summary import run_lines
 from meshwind.core.cast import Floats, frozen
 from meshwind.layup.layup import assess
 from meshwind.mesh import mesh_from
-from meshwind.mesh.opening.ends import place
+from meshwind.mesh.opening.choose_ends import position_text
 from meshwind.pictures import driver
 from meshwind.pictures.fit_scene import fit_scene
 from meshwind.pictures.scenes import Drawing
@@ -193,7 +193,7 @@ def test_a_run_that_warns_of_the_fit_draws_it_and_says_so(tmp_path: Path) -> Non
     assert line.endswith("; see fit_error.png") == drawn
     assert ("see fit_error.png" in (tmp_path / "report.json").read_text()) == drawn
     worst = deviation(result.surface, result.chart.annulus).regions[0]
-    assert place(worst.on_surface, result.mesh.diagonal) in line
+    assert position_text(worst.on_surface, result.mesh.diagonal) in line
     again = result.write(tmp_path, render=False, overwrite=True)
     assert not (tmp_path / FIT_PICTURE).exists()  # a picture of an earlier run does not stay
     assert not any("fit_error" in note.text for note in again.notes)

@@ -10,7 +10,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.workflow.options import Options
 
 if TYPE_CHECKING:
-    from meshwind.mesh.opening.findings import Findings, Piece, Rim
+    from meshwind.mesh.inspection import Findings, Piece, Rim
 
 EXAMPLES = """
     # can this be wound, and where would it be opened?
@@ -89,10 +89,10 @@ def _piece(piece: "Piece", chosen: int) -> str:
 
 
 def _rim(rim: "Rim", diagonal: float) -> str:
-    from meshwind.mesh.opening.ends import place
+    from meshwind.mesh.opening.choose_ends import position_text
 
     use = f", {rim.use}" if rim.use else ""
-    return f"{rim.number}: at {place(rim.place, diagonal)}, {rim.length:.4g} long, {rim.vertices} vertices{use}"
+    return f"{rim.number}: at {position_text(rim.place, diagonal)}, {rim.length:.4g} long, {rim.vertices} vertices{use}"
 
 
 def _listed(label: str, rows: list[str], count: int) -> list[str]:

@@ -1,8 +1,8 @@
 """Any triangle mesh to a clean annulus: read, repair, choose the ends, trim."""
 
 from meshwind.mesh.geometry.mesh import Annulus, Mesh
+from meshwind.mesh.inspection import Findings, inspect
 from meshwind.mesh.io.read import SUFFIXES, read
-from meshwind.mesh.opening.findings import Findings, inspect
 from meshwind.mesh.opening.trim import annulus
 from meshwind.mesh.repair.repair import mesh_from
 

@@ -8,7 +8,7 @@ from meshwind.appearance.words import power, quantity, ratio
 from meshwind.chart import Chart
 from meshwind.core.errors import BadInputError
 from meshwind.layup.layup import Layup
-from meshwind.mesh.opening.ends import place
+from meshwind.mesh.opening.choose_ends import position_text
 from meshwind.path.paths import EDGE, Paths, Status
 from meshwind.planning.alternatives import FRICTION, WIDER
 from meshwind.planning.revolutions import Revolutions
@@ -149,7 +149,7 @@ def _places(surface: Surface, chart: Chart) -> str:
     """Where the surface and the mesh lie furthest apart, seen from both, region by region."""
     found = deviation(surface, chart.annulus).regions
     diagonal = chart.annulus.mesh.diagonal
-    first, *others = [place(where.on_surface, diagonal) for where in found]
+    first, *others = [position_text(where.on_surface, diagonal) for where in found]
     listed, left = others[: _MAX_LISTED - 1], len(found) - _MAX_LISTED
     listed += [f"{left} more {'place' if left == 1 else 'places'}"] if left > 0 else []
     return f"near {first}" + (f", then near {' and '.join(listed)}" if listed else "")

@@ -131,7 +131,7 @@ class Options:
     )
 
     def __post_init__(self) -> None:
-        from meshwind.mesh.opening.ends import parse  # late: help shows these fields without loading NumPy
+        from meshwind.mesh.opening.choose_ends import parse_ends  # late: help shows these fields without loading NumPy
 
         set_ = object.__setattr__
         set_(self, "paths", _whole(self.paths, "paths", 1))
@@ -142,7 +142,7 @@ class Options:
         _check_resolution(self.revolutions, self.particles or _MOST_CHOSEN)
         set_(self, "friction", _friction(self.friction))
         set_(self, "component", _whole(self.component, "component", 0))
-        parse(self.ends)
+        parse_ends(self.ends)
         set_(self, "tolerance", _number(self.tolerance, "tolerance", 1e-12, 1.0))
         set_(self, "worst_fit", _number(self.worst_fit, "worst_fit", 0.0, above=True))
         check_units(self.units)

@@ -1,4 +1,4 @@
-"""Trim a mesh to an annulus: refuse what has no two ends, fill what is no end, open the poles."""
+"""Trimming of a mesh to an annulus: ends are chosen, other rims filled, and poles opened."""
 
 import numpy as np
 
@@ -7,14 +7,14 @@ from meshwind.core.errors import BadInputError
 from meshwind.mesh.geometry.areas_and_volumes import areas, volume
 from meshwind.mesh.geometry.mesh import Annulus, Mesh
 from meshwind.mesh.geometry.topology import euler, loops, patches
-from meshwind.mesh.opening.chords import without_chords
-from meshwind.mesh.opening.ends import End, Wish, choose, numbered, parse
-from meshwind.mesh.opening.holes import filled, is_defect
-from meshwind.mesh.opening.opening import pinched
-from meshwind.mesh.opening.radius import with_openings
-from meshwind.mesh.opening.skin import Skin, skin
+from meshwind.mesh.opening.choose_ends import End, EndsRequest, choose_ends, parse_ends, rims_by_number
+from meshwind.mesh.opening.curved_facets import CurvedFacets, curved_facets, split_chords
+from meshwind.mesh.opening.cut_opening import pinched
+from meshwind.mesh.opening.fill_holes import fill_defects, fill_hole
+from meshwind.mesh.opening.opening_radius import open_ends
 
-_FLAT = 1e-6  # volume over area^(3/2): 0.094 for a ball, 6e-3 for a rod a thousand times as long as thick
+_FLAT = 1e-6
+"""Largest volume over area^(3/2) of a flat part: 0.094 for a ball, 6e-3 for a rod a thousand times as long as thick."""
 
 
 def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Annulus:
@@ -55,23 +55,22 @@ def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Ann
     """
     if not isinstance(mesh, Mesh):
         raise BadInputError(f"mesh is of type {type(mesh).__name__}: give a Mesh, as read('part.stl') returns it")
-    wish = parse(ends)
+    request = parse_ends(ends)
     _check_opening(opening)
-    rims = numbered(mesh.vertices, loops(mesh.faces))
+    rims = rims_by_number(mesh.vertices, loops(mesh.faces))
     _check_part(mesh, rims)
-    wanted = _wanted(rims, wish, mesh.name)
-    vertices, faces, kept, notes = _without_defects(mesh, rims, wanted)
-    pair, words = choose(vertices, faces, wanted or kept, wish)
+    requested = _requested(rims, request, mesh.name)
+    vertices, faces, others, notes = fill_defects(mesh, rims, requested)
+    pair, words = choose_ends(vertices, faces, requested or others, request)
     chosen = {int(end.loop[0]) for end in pair if end.loop is not None}
-    spare = [loop for loop in kept if int(loop[0]) not in chosen]
+    spare = [loop for loop in others if int(loop[0]) not in chosen]
     if spare:
         notes.append(f"filled {len(spare)} other open {'rim' if len(spare) == 1 else 'rims'}")
     for loop in spare:
-        vertices, faces = filled(vertices, faces, loop)
+        vertices, faces = fill_hole(vertices, faces, loop)
     trusted = np.arange(len(vertices)) < len(mesh.vertices)
-    surface = skin(vertices, faces, trusted)
-    surface, radii = with_openings(surface, pair, opening, mesh.name)
-    return _assembled(mesh, without_chords(surface), pair, [_told(words, pair, radii, opening), *notes])
+    surface, radii = open_ends(curved_facets(vertices, faces, trusted), pair, opening, mesh.name)
+    return _assembled(mesh, split_chords(surface), pair, [_ends_in_words(words, pair, radii, opening), *notes])
 
 
 def _check_opening(opening: float | None) -> None:
@@ -81,7 +80,7 @@ def _check_opening(opening: float | None) -> None:
 
 
 def _check_part(mesh: Mesh, rims: list[Ints]) -> None:
-    """Refuse a surface that has no inside or that has handles."""
+    """Refuse a surface without an inside or with handles."""
     area = float(areas(mesh.vertices, mesh.faces).sum())
     if abs(volume(mesh.vertices, mesh.faces)) < _FLAT * area**1.5:
         count = f"{len(mesh.faces)} {'triangle' if len(mesh.faces) == 1 else 'triangles'}"
@@ -97,30 +96,18 @@ def _check_part(mesh: Mesh, rims: list[Ints]) -> None:
         )
 
 
-def _wanted(rims: list[Ints], wish: Wish, name: str) -> list[Ints]:
-    """The two loops that the wish names by number, none where it names none."""
-    if wish.loops is None:
+def _requested(rims: list[Ints], request: EndsRequest, name: str) -> list[Ints]:
+    """The two loops that are requested by number, if any."""
+    if request.loops is None:
         return []
-    if max(wish.loops) >= len(rims):
-        there = {0: "no open rims", 1: "1 open rim"}.get(len(rims), f"{len(rims)} open rims, 0 to {len(rims) - 1}")
-        raise BadInputError(f"{name}: ends {wish.text!r}: the part has {there}; `meshwind check` lists them")
-    return [rims[k] for k in wish.loops]
+    if max(request.loops) >= len(rims):
+        count = {0: "no open rims", 1: "1 open rim"}.get(len(rims), f"{len(rims)} open rims, 0 to {len(rims) - 1}")
+        raise BadInputError(f"{name}: ends {request.text!r}: the part has {count}; `meshwind check` lists them")
+    return [rims[k] for k in request.loops]
 
 
-def _without_defects(mesh: Mesh, rims: list[Ints], wanted: list[Ints]) -> tuple[Floats, Ints, list[Ints], list[str]]:
-    """Fill loops that are faults of the mesh; gives vertices, faces, the other loops and notes."""
-    vertices, faces = mesh.vertices, mesh.faces
-    spared = {int(loop[0]) for loop in wanted}
-    defects = [int(loop[0]) not in spared and is_defect(vertices, faces, loop) for loop in rims]
-    for loop in [loop for loop, defect in zip(rims, defects, strict=True) if defect]:
-        vertices, faces = filled(vertices, faces, loop)
-    count = sum(defects)
-    notes = [f"filled {count} {'hole' if count == 1 else 'holes'} of missing faces or open seams"] if count else []
-    return vertices, faces, [loop for loop, defect in zip(rims, defects, strict=True) if not defect], notes
-
-
-def _assembled(mesh: Mesh, surface: Skin, pair: list[End], words: list[str]) -> Annulus:
-    """The annulus, once it is proved to be one."""
+def _assembled(mesh: Mesh, surface: CurvedFacets, pair: list[End], words: list[str]) -> Annulus:
+    """The annulus, after a check that it is one."""
     rims = [] if pinched(surface.faces) else loops(surface.faces)
     if len(rims) != 2 or euler(surface.faces) != 0 or patches(surface.faces).any():
         raise BadInputError(
@@ -130,7 +117,7 @@ def _assembled(mesh: Mesh, surface: Skin, pair: list[End], words: list[str]) -> 
         raise BadInputError(f"{mesh.name}: trimming left a face without area; remesh the part or choose other ends")
     start = int(np.argmin([_offset(surface.vertices[rim], pair) for rim in rims]))
     first, second = rims[start], rims[1 - start]
-    # The faces' own sense has the surface on its left: growing u at the start, falling u at the end.
+    # along the orientation of the faces the surface is on the left: u increases at the start and decreases at the end
     ordered = frozen(first), frozen(np.roll(second[::-1], 1))
     vertices, faces, trusted = frozen(surface.vertices), frozen(surface.faces), frozen(surface.trusted)
     return Annulus(mesh, vertices, faces, ordered, trusted, "; ".join(words))
@@ -142,13 +129,13 @@ def _offset(rim: Floats, pair: list[End]) -> float:
     return near[0] - near[1]
 
 
-def _told(words: str, pair: list[End], radii: list[float], opening: float | None) -> str:
+def _ends_in_words(words: str, pair: list[End], radii: list[float], opening: float | None) -> str:
     """How the ends were chosen, in a sentence."""
-    places = " and ".join(end.place for end in pair)
+    positions = " and ".join(end.position for end in pair)
     if any(end.lip is not None for end in pair):
         words += ", the lip where one is hollow"
     if not radii:
         unused = "" if opening is None else ", no opening cut as both are open"
-        return f"{words}, at {places}{unused}"
+        return f"{words}, at {positions}{unused}"
     sizes = " and ".join(dict.fromkeys(f"{radius:.4g}" for radius in radii))
-    return f"{words}, at {places}, opened to radius {sizes}"
+    return f"{words}, at {positions}, opened to radius {sizes}"

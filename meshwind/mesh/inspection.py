@@ -1,4 +1,4 @@
-"""Look at a mesh as winding it would, change nothing, and tell all that was found."""
+"""Inspection of a mesh: its pieces, rims and faults, and how it would be wound."""
 
 from dataclasses import dataclass, replace
 from os import PathLike
@@ -12,15 +12,17 @@ from meshwind.mesh.geometry.areas_and_volumes import loop_centroid, perimeter
 from meshwind.mesh.geometry.mesh import Annulus, Mesh
 from meshwind.mesh.geometry.topology import boundary, edges, euler, loops
 from meshwind.mesh.io.read import load
-from meshwind.mesh.opening.ends import numbered
+from meshwind.mesh.opening.choose_ends import rims_by_number
 from meshwind.mesh.opening.trim import annulus
 from meshwind.mesh.repair.manifold import disagreements
 from meshwind.mesh.repair.pieces import Pieces
 from meshwind.mesh.repair.repair import kept, made_manifold
 from meshwind.mesh.repair.weld import weld, without_collapsed, without_duplicates
 
-_MOST_PIECES = 100
-_SAME = 1e-6  # of the diagonal, between the centres of a rim before and after trimming
+_MAX_PIECES = 100
+"""Number of pieces that are listed."""
+_SAME_CENTRE = 1e-6
+"""Largest distance between the centres of a rim before and after trimming, over the diagonal."""
 
 Point = tuple[float, float, float]
 
@@ -39,7 +41,7 @@ class Piece:
 class Rim:
     """An open rim of the chosen piece: the number that 'loops i j' names it by, its centre, length and vertices.
 
-    use: 'start', 'end', 'filled', or '' where the piece cannot be wound.
+    use: 'start', 'end', 'filled', or '' if the piece cannot be wound.
     """
 
     number: int
@@ -51,14 +53,14 @@ class Rim:
 
 @dataclass(frozen=True)
 class Findings:
-    """What a mesh is and what winding would do with it; lengths in the mesh's units.
+    """What a mesh is, and how it would be wound; lengths in the mesh's units.
 
     vertices and faces are those of the file, size its extents along x, y and z; crowded_edges have more than two
     faces, turned_edges two that face opposite ways; pieces lists the 100 largest.  component is the chosen piece,
-    one_sided, closed, genus (None where it could not be told) and rims are its own; repairs says what is changed
+    one_sided, closed, genus (None if it is unknown) and rims are its own; repairs says what is changed
     and what was noticed, ends how the ends are chosen, what is filled and how wide the openings are.
     annulus_vertices, annulus_faces and rim_lengths are those of the mesh that is wound; problem is why it cannot
-    be wound, empty where it can.
+    be wound, empty if it can.
     """
 
     name: str
@@ -101,10 +103,9 @@ def inspect(
     used = vertices[np.unique(faces)]
     extent = np.ptp(used, axis=0)
     crowded, turned = _faults(used, np.unique(faces, return_inverse=True)[1].reshape(-1, 3))
-    told = _told(pieces)
     findings = Findings(
         name, kind, len(vertices), len(faces), _point(extent), float(np.linalg.norm(extent)), crowded, turned,
-        len(pieces.areas), told,
+        len(pieces.areas), _listed(pieces),
         component, repairs=tuple(notes),
     )  # fmt: skip
     try:
@@ -132,14 +133,14 @@ def _faults(vertices: Floats, faces: Ints) -> tuple[int, int]:
     return int((edges(welded).count > 2).sum()), disagreements(welded)
 
 
-def _told(pieces: Pieces) -> tuple[Piece, ...]:
+def _listed(pieces: Pieces) -> tuple[Piece, ...]:
     """The largest pieces."""
     found = edges(pieces.faces)
     rim = (found.count[found.of_face] == 1).any(axis=1)
     count, rims = np.bincount(pieces.rank), np.bincount(pieces.rank, rim)
     return tuple(
         Piece(number, float(pieces.areas[number]), int(count[number]), not rims[number])
-        for number in range(min(len(count), _MOST_PIECES))
+        for number in range(min(len(count), _MAX_PIECES))
     )
 
 
@@ -148,7 +149,7 @@ def _genus(part: Mesh) -> int:
 
 
 def _rims(part: Mesh, found: Annulus | None) -> tuple[Rim, ...]:
-    rims = numbered(part.vertices, loops(part.faces))
+    rims = rims_by_number(part.vertices, loops(part.faces))
     centres = [loop_centroid(part.vertices, loop) for loop in rims]
     ends = [] if found is None else [loop_centroid(found.vertices, rim) for rim in found.rims]
     return tuple(
@@ -158,11 +159,11 @@ def _rims(part: Mesh, found: Annulus | None) -> tuple[Rim, ...]:
 
 
 def _use(centre: Floats, ends: list[Floats], diagonal: float) -> str:
-    """What becomes of the rim with this centre, by the centres of the rims that are wound."""
+    """Use of the rim with this centre, from the centres of the rims of the annulus."""
     if not ends:
         return ""
     away = [float(np.linalg.norm(end - centre)) for end in ends]
-    return ("start", "end")[int(np.argmin(away))] if min(away) < _SAME * diagonal else "filled"
+    return ("start", "end")[int(np.argmin(away))] if min(away) < _SAME_CENTRE * diagonal else "filled"
 
 
 def _point(values: Floats) -> Point:
