@@ -56,7 +56,7 @@ def run(  # noqa: PLR0913
     stabilisation: float = 0.2,
     history: bool = False,
 ) -> Motion:
-    """Let one path move from rest until it comes to rest, the steps run out, or it diverges.
+    """Step one path through time until it is in equilibrium, the steps run out, or it diverges.
 
     Each particle has a mass m and each spring the constant K of (4.1) and no rest length, so that only K/m counts: the
     step size is a time, and the highest natural frequency is 2 sqrt(K/m), whatever the size of the part; see

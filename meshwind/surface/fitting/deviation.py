@@ -20,11 +20,11 @@ from meshwind.surface.tree import Body, nearest_foot
 _FINE = 8, 320
 """Samples of the surface per span and, at most, in each direction."""
 _REGION = 1.0 / 3.0
-"""What deviates by more than this part of the worst is a region to be reported, ..."""
+"""Least distance of a region that is reported, over the largest distance of all."""
 _CLOSE = 0.05
-"""... unless it lies this close, over the diagonal, to a worse one; ..."""
+"""Least distance over the diagonal between two regions; the better one of closer regions is left out."""
 _MOST = 5
-"""... and no more of them than one can look at."""
+"""Maximum number of regions, as many as a picture can show."""
 
 
 @dataclass(frozen=True)
