@@ -113,8 +113,8 @@ def branch() -> Part:
     return without_patch(cone(around=48, along=36), [0.85, 0, 1.5], 0.4)
 
 
-def without_patch(part: Part, place: list[float], radius: float) -> Part:
-    near = np.linalg.norm(part[0][part[1]].mean(axis=1) - place, axis=1) < radius
+def without_patch(part: Part, centre: list[float], radius: float) -> Part:
+    near = np.linalg.norm(part[0][part[1]].mean(axis=1) - centre, axis=1) < radius
     return part[0], part[1][~near]
 
 
@@ -146,7 +146,7 @@ def soup(part: Part) -> Part:
 
 
 def loose(scale: float) -> Fault:
-    """Unwelded, and vertices that were one lie apart by this part of the diagonal."""
+    """Unwelded, with copies of a vertex apart by this share of the diagonal."""
 
     def apply(part: Part) -> Part:
         vertices, faces = soup(part)
@@ -157,7 +157,7 @@ def loose(scale: float) -> Fault:
 
 
 def degenerate(part: Part) -> Part:
-    """Faces that name a vertex twice, and faces of three vertices in a line."""
+    """Faces with a repeated vertex, and faces with three collinear vertices."""
     vertices, faces = part
     few = faces[some(part, 0.05)]
     middle = vertices[few[:, :2]].mean(axis=1)
@@ -178,7 +178,7 @@ def needles(part: Part) -> Part:
 
 
 def t_junctions(part: Part) -> Part:
-    """Faces halved at the middle of an edge that the neighbour does not know."""
+    """Faces halved at the midpoint of an edge that the neighbouring face does not split."""
     vertices, faces = part
     few = some(part, 0.05)
     a, b, c = faces[few].T
@@ -209,8 +209,8 @@ def small_hole(part: Part) -> Part:
 
 def large_hole(part: Part) -> Part:
     low, high = part[0].min(axis=0), part[0].max(axis=0)
-    place = [high[0], 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2])]
-    return without_patch(part, list(map(float, place)), 0.25 * float(np.ptp(part[0])))
+    centre = [high[0], 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2])]
+    return without_patch(part, list(map(float, centre)), 0.25 * float(np.ptp(part[0])))
 
 
 def many_holes(part: Part) -> Part:
@@ -223,7 +223,7 @@ def fin(part: Part) -> Part:
 
 
 def bow_tie(part: Part) -> Part:
-    """Two far vertices made one."""
+    """Two distant vertices joined."""
     near, far = int(np.argmax(part[0][:, 0])), int(np.argmin(part[0][:, 0]))
     return part[0], np.where(part[1] == far, near, part[1])
 
@@ -243,7 +243,7 @@ def double_skin(part: Part) -> Part:
 
 
 def double_coincident(part: Part) -> Part:
-    """The part twice at one place, with other diagonals where they can be chosen."""
+    """The part twice in the same position, with quadrangles cut along the other diagonal if possible."""
     return joined(part, (part[0] + 1e-5 * np.ptp(part[0]), part[1]))
 
 
@@ -283,7 +283,7 @@ def with_index(value: int) -> Fault:
 
 
 def uneven(part: Part) -> Part:
-    """Refined five times about one place."""
+    """Refined five times around one point."""
     vertices, faces = part
     for _ in range(5):
         near = np.argsort(np.linalg.norm(vertices[faces].mean(axis=1) - vertices[faces[0, 0]], axis=1))[:60]
@@ -303,7 +303,7 @@ def touching_rims() -> Part:
 
 
 def pinched_rim() -> Part:
-    """A tube one end of which runs into a point."""
+    """A tube with one end that ends in a point."""
     return tube(lambda z: 1.0 - z / 3.0)
 
 
@@ -344,7 +344,7 @@ SHAPES: dict[str, Callable[[], Part]] = {
     "self-intersecting": elbow, "stairs": stairs, "touching balls": lambda: two_balls(0.0),
     "overlapping balls": lambda: two_balls(-0.7), "cubes on an edge": lambda: joined(box(), box((1, 1, 0))),
     "cubes on a face": lambda: joined(box(), box((1, 0, 0))), "line": line,
-    "one place": lambda: (np.ones((30, 3)), np.arange(30).reshape(-1, 3)),
+    "one point": lambda: (np.ones((30, 3)), np.arange(30).reshape(-1, 3)),
     "empty": lambda: (np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)),
     "no faces": lambda: (pear()[0], np.empty((0, 3), dtype=np.int64)),
     "NaN": lambda: with_value(np.nan)(pear()), "inf": lambda: with_value(np.inf)(pear()),
@@ -381,7 +381,7 @@ MESHES = dict(meshes())
 
 
 def save_obj(path: Path, part: Part) -> None:
-    """Write OBJ with all digits and whatever indices there are."""
+    """Write OBJ with all digits and the indices as they are, valid or not."""
     points = "".join(f"v {float(x)!r} {float(y)!r} {float(z)!r}\n" for x, y, z in part[0])
     path.write_text(points + "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in part[1]))
 

@@ -25,7 +25,7 @@ _NUMBERS = (
 ).split() + [b""]
 _BYTES = [4 * b"\xff", 4 * b"\0", b"\x7f" + 3 * b"\xff", 3 * b"\xff" + b"\x7f", b"\0\0\0\x80", 8 * b"\xff", 8 * b"\0"]
 Edit = tuple[str, float, float]
-"""What to do, where in the file from 0 to 1, and a number from 0 to 1 that says with what."""
+"""Kind of edit, position in the file from 0 to 1, and a number from 0 to 1 that determines the new content."""
 
 
 def _cut(data: bytes, at: int, _: float) -> bytes:
@@ -66,7 +66,7 @@ EDITS = {"cut": _cut, "drop": _drop, "overwrite": _overwrite, "set": _set, "numb
 
 
 def changed(data: bytes, edits: list[Edit]) -> bytes:
-    """A file after some edits; every other place is near its start, where formats keep what matters."""
+    """A file after some edits; every other one is near its start, where most formats have their header."""
     for k, (what, where, by) in enumerate(edits):
         if data:
             data = EDITS[what](data, int(where * (len(data) if k % 2 else min(len(data), 1000))), by)
@@ -118,7 +118,7 @@ def _archive(model: str, name: str = "3D/3dmodel.model") -> bytes:
 
 
 def _nested(fan: int, depth: int) -> str:
-    """Objects that each hold the next one many times: the last is asked for fan ** depth times."""
+    """Objects that each contain the next one many times: the last one is used fan ** depth times."""
     use = '<component objectid="{}"/>'
     objects = "".join(
         f'<object id="{k}"><components>{fan * use.format(k + 1)}</components></object>' for k in range(depth)
@@ -134,7 +134,7 @@ def _vtk_xml(counts: str, kind: str = "PolyData") -> bytes:
 _LAUGHS = "".join(f'<!ENTITY a{k + 1} "{10 * f"&a{k};"}">' for k in range(9))
 _CUBE = MODEL.format(vertices='<vertex x="0" y="0" z="0"/>', faces='<triangle v1="0" v2="0" v3="9"/>')
 OUTSIDE = "../secret"
-"""What some files name; a test puts it there and sees that nobody opens it."""
+"""A file that some files refer to; a test creates it and checks that it is not opened."""
 MALICIOUS: dict[str, tuple[str, bytes]] = {
     "STL of four billion triangles": (".stl", bytes(80) + struct.pack("<I", 2**32 - 1) + bytes(50)),
     "STL without an end": (".stl", b"solid x\n" + b"facet normal 0 0 1\n" * 2000),
@@ -184,4 +184,4 @@ MALICIOUS: dict[str, tuple[str, bytes]] = {
     "VTU of another kind": (".vtu", _vtk_xml('NumberOfPoints="1"', "ImageData")),
     "VTP of deep elements": (".vtp", 100_000 * b"<VTKFile>"),
 }  # fmt: skip
-"""Files that announce more than there is, hold themselves, unpack to much or name others."""
+"""Files that announce more than they hold, contain themselves, unpack to a large size, or refer to other files."""

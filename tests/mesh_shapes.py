@@ -57,9 +57,9 @@ def shuffled(part: Part, seed: int = 0) -> Part:
     rng = np.random.default_rng(seed)
     vertices, faces = part
     order = rng.permutation(len(vertices))
-    place = np.argsort(order)
+    position = np.argsort(order)
     turn = (rng.integers(3, size=len(faces))[:, None] + np.arange(3)) % 3
-    return vertices[order], np.take_along_axis(place[faces], turn, 1)[rng.permutation(len(faces))]
+    return vertices[order], np.take_along_axis(position[faces], turn, 1)[rng.permutation(len(faces))]
 
 
 def rotation(seed: int = 0) -> Floats:

@@ -16,11 +16,11 @@ from meshwind.surface import fit
 
 REFUSED = {
     "torus", "torus with a hole", "genus 2", "Klein bottle", "Moebius strip", "triangle", "flat tube", "line",
-    "one place", "empty", "no faces", "NaN", "inf", "one at 1e300", "one at 1e30", "all 1e300", "all 1e-300",
+    "one point", "empty", "no faces", "NaN", "inf", "one at 1e300", "one at 1e30", "all 1e300", "all 1e-300",
     "denormal", "very far away", "index too high", "index negative", "random soup", "random web", "tube, loose by 1e-2",
     "pear, loose by 1e-2",
 }  # fmt: skip
-"""What no repair can make a part of."""
+"""Faults that no repair can turn into a part."""
 HEALED = [
     "duplicated faces", "flipped faces", "one face flipped", "inside out", "unwelded", "loose by 1e-9", "loose by 1e-6",
     "loose by 1e-4", "degenerate faces", "needles", "T-junctions", "hanging nodes", "crack", "inner wall",
@@ -30,7 +30,7 @@ HEALED = [
 
 
 @pytest.mark.parametrize("name", MESHES)
-def test_a_broken_mesh_is_mended_or_refused_in_one_line(name: str, tmp_path: Path) -> None:
+def test_a_broken_mesh_is_repaired_or_refused_in_one_line(name: str, tmp_path: Path) -> None:
     save_obj(tmp_path / "part.obj", MESHES[name]())
     try:
         found = annulus(read(tmp_path / "part.obj"))
@@ -54,13 +54,13 @@ SOUND = {f"{part}, {fault}" for part in ("tube", "pear") for fault in HEALED}
 @pytest.mark.parametrize("fault", HEALED)
 @pytest.mark.parametrize("part", [cone, pear])
 def test_repairs_undo_the_fault(part: Callable[[], Part], fault: str) -> None:
-    whole, mended = mesh_from(*part()), mesh_from(*FAULTS[fault](part()))
+    whole, repaired = mesh_from(*part()), mesh_from(*FAULTS[fault](part()))
     for measure in (areas, volume):
         size = float(np.sum(measure(whole.vertices, whole.faces)))
-        assert np.sum(measure(mended.vertices, mended.faces)) == pytest.approx(size, rel=3e-3)
+        assert np.sum(measure(repaired.vertices, repaired.faces)) == pytest.approx(size, rel=3e-3)
 
 
-def test_the_corpus_is_large_and_every_mesh_its_own() -> None:
+def test_the_corpus_is_large_and_its_meshes_differ() -> None:
     parts = [make() for make in MESHES.values()]
     assert len(parts) > 100
     assert len({(vertices.tobytes(), faces.tobytes()) for vertices, faces in parts}) == len(parts)

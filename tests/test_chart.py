@@ -1,4 +1,4 @@
-"""The chart: no flipped triangle, no trace of the seam, the twist right by itself."""
+"""The chart: no flipped triangle, no trace of the seam, no artificial twist."""
 
 from pathlib import Path
 
@@ -75,11 +75,11 @@ def test_the_seam_leaves_no_trace() -> None:
     part = annulus(barrel, 1000, 0.4)
     n, by = len(part.vertices), 371
     order = np.roll(np.arange(n), by)  # new index k holds old vertex order[k]
-    place = np.empty(n, dtype=np.int64)
-    place[order] = np.arange(n)
-    rims = tuple(np.roll(place[rim], 17) for rim in part.rims)
-    rolled = Annulus(part.mesh, part.vertices[order], place[part.faces], (rims[0], rims[1]), part.trusted, "rolled")
-    apart = flatten(rolled).uv[place] - flatten(part).uv
+    position = np.empty(n, dtype=np.int64)
+    position[order] = np.arange(n)
+    rims = tuple(np.roll(position[rim], 17) for rim in part.rims)
+    rolled = Annulus(part.mesh, part.vertices[order], position[part.faces], (rims[0], rims[1]), part.trusted, "rolled")
+    apart = flatten(rolled).uv[position] - flatten(part).uv
     apart[:, 0] -= apart[0, 0]
     apart[:, 0] -= np.round(apart[:, 0])
     assert np.abs(apart).max() < 1e-10
@@ -96,8 +96,8 @@ def test_obtuse_meshes_fall_back_on_positive_weights() -> None:
     assert chart.flipped == 0
 
 
-def test_stages_say_what_they_take() -> None:
-    """Each stage by itself, given the wrong thing: one line that names the stage before."""
+def test_stages_name_what_they_take() -> None:
+    """Each stage with input of the wrong type: one line that names the stage before it."""
     mesh = mw.read(DATA[0])
     for call, before in (
         (lambda: mw.flatten(mesh), "annulus"),  # type: ignore[arg-type]

@@ -53,9 +53,7 @@ def test_every_file_of_the_corpus_is_read_or_refused(tmp_path: Path, capfd: pyte
 @given(st.sampled_from(FORMATS), st.lists(st.tuples(st.sampled_from(list(EDITS)), UNIT, UNIT), min_size=1, max_size=5))
 @settings(max_examples=150, deadline=None, database=None, derandomize=True,
           suppress_health_check=[HealthCheck.function_scoped_fixture])  # fmt: skip
-def test_whatever_is_changed_a_file_is_read_or_refused(
-    tmp_path: Path, kind: str, edits: list[tuple[str, float, float]]
-) -> None:
+def test_a_changed_file_is_read_or_refused(tmp_path: Path, kind: str, edits: list[tuple[str, float, float]]) -> None:
     suffix, data = sound(kind)
     (tmp_path / f"part{suffix}").write_bytes(changed(data, edits))
     tried(tmp_path / f"part{suffix}")
@@ -76,8 +74,8 @@ def test_scalars_of_a_changed_file_are_refused(
 
 
 @pytest.mark.parametrize("name", [name for name, (_, content) in MALICIOUS.items() if OUTSIDE.encode() in content])
-def test_names_in_a_file_are_not_followed_out_of_its_folder(name: str, tmp_path: Path) -> None:
-    """A pipe lies where they lead: whoever opened it would wait for ever."""
+def test_references_in_a_file_are_not_followed_out_of_its_folder(name: str, tmp_path: Path) -> None:
+    """They refer to a pipe, which would block a reader that opens it."""
     (tmp_path / "parts").mkdir()
     os.mkfifo(tmp_path / "parts" / OUTSIDE)
     suffix, content = MALICIOUS[name]
@@ -88,7 +86,7 @@ def test_names_in_a_file_are_not_followed_out_of_its_folder(name: str, tmp_path:
     assert len(done.stderr.splitlines()) == 1 and done.stderr.startswith("meshwind: error: ")
 
 
-def test_a_gltf_may_name_a_file_beside_it(tmp_path: Path) -> None:
+def test_a_gltf_may_refer_to_a_file_beside_it(tmp_path: Path) -> None:
     import trimesh
     from mesh_shapes import pear
 

@@ -44,9 +44,9 @@ def punctured(part: Part, *faces: int) -> Part:
     return part[0], np.delete(part[1], faces, axis=0)
 
 
-def without_patch(part: Part, place: list[float], radius: float) -> Part:
+def without_patch(part: Part, centre: list[float], radius: float) -> Part:
     """The part with a hole of about the given radius."""
-    near = np.linalg.norm(part[0][part[1]].mean(axis=1) - place, axis=1) < radius
+    near = np.linalg.norm(part[0][part[1]].mean(axis=1) - centre, axis=1) < radius
     return part[0], part[1][~near]
 
 
@@ -214,7 +214,7 @@ def test_cup_ends_at_its_lip_without_its_lining() -> None:
     assert "lip" in found.ends
 
 
-def test_holes_that_are_no_ends_are_filled_and_told() -> None:
+def test_holes_that_are_not_ends_are_filled_and_reported() -> None:
     whole = trim(cone())
     pinholes = trim(punctured(cone(), 200, 150, 438))
     assert "filled 1 hole of missing faces" in pinholes.ends and "filled 1 other open rim" in pinholes.ends
@@ -232,7 +232,7 @@ def test_points_choose_among_three_rims() -> None:
     assert start[:, 0].min() > 0.4 and end[:, 2].min() == 3.0
 
 
-def test_missing_face_of_a_closed_part_is_no_end() -> None:
+def test_missing_face_of_a_closed_part_is_not_an_end() -> None:
     found = trim(punctured(pear(), 640))
     assert "filled 1 hole" in found.ends and "poles on" in found.ends
 
@@ -283,7 +283,7 @@ REFUSED: dict[str, tuple[Callable[[], Part], str, float | None, str]] = {
     "four numbers": (pear, "0,0,0,1 0,0,1,1", None, "give auto, x, y, z or two points"),
     "nan": (pear, "0,0,0 0,nan,1", None, "give auto, x, y, z or two points"),
     "same point": (pear, "0,0,1 0,0,1", None, "the two points are the same; give one at each end"),
-    "one place": (pear, "0,0,30 0,0,40", None, "both ends are at the same point, .*; give ends further apart"),
+    "one nearest point": (pear, "0,0,30 0,0,40", None, "both ends are at the same point, .*; give ends further apart"),
     "no radius": (pear, "auto", 0.0, "opening 0.0: give the radius"),
     "negative": (pear, "auto", -1.0, "opening -1.0: give the radius"),
     "nan radius": (pear, "auto", float("nan"), "opening nan: give the radius"),
@@ -303,7 +303,7 @@ def test_what_cannot_be_trimmed_is_refused_in_one_line(case: str) -> None:
     assert "\n" not in str(caught.value)
 
 
-def test_the_range_that_a_refusal_names_is_allowed() -> None:
+def test_the_range_in_a_refusal_is_allowed() -> None:
     part = pear()
     with pytest.raises(BadInputError) as caught:
         trim(part, opening=9.0)
@@ -335,7 +335,7 @@ NEARLY: dict[str, Callable[[], Part]] = {
 
 
 @pytest.mark.parametrize("name", NEARLY)
-def test_a_slight_clue_in_the_part_outweighs_its_pose(name: str) -> None:
+def test_a_slight_asymmetry_of_the_part_outweighs_its_pose(name: str) -> None:
     part = NEARLY[name]()
     if name == "nearly round":  # a ball of one axis has no fuller end
         part = part[0] * (1 + 0.002 * part[0][:, [2]]), part[1]

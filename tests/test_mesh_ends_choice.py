@@ -1,4 +1,4 @@
-"""The choice of the two ends and of their order: no scale, pose or order of the file changes what the part tells."""
+"""The choice of the two ends and of their order does not depend on scale, pose or the order in the file."""
 
 from pathlib import Path
 
@@ -100,7 +100,7 @@ def beads(heights: list[int]) -> Part:
     return vertices, np.arange(len(vertices)).reshape(-1, 3)
 
 
-def test_where_skewness_says_nothing_the_fifth_moment_tells() -> None:
+def test_without_skewness_the_fifth_moment_decides() -> None:
     """Heights whose sum and sum of cubes are 0, but not that of their fifth powers."""
     heights = [-9, -5, -1, 7, 8]
     assert sum(heights) == sum(height**3 for height in heights) == 0

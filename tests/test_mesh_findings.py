@@ -1,4 +1,4 @@
-"""`inspect` and `meshwind check`: what is found is true, and it agrees with what winding does."""
+"""`inspect` and `meshwind check`: findings are right and agree with what winding does."""
 
 import json
 import subprocess
@@ -39,7 +39,7 @@ def test_a_tube_with_a_hole_in_its_side(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["vase.stl", "tank.ply", "elbow.obj"])
-def test_it_tells_what_winding_does(name: str) -> None:
+def test_it_agrees_with_what_winding_does(name: str) -> None:
     result, trimmed = inspect(DATA / name), annulus(read(DATA / name))
     assert result.problem == "" and result.ends == trimmed.ends and result.repairs == trimmed.mesh.repairs
     assert (result.annulus_vertices, result.annulus_faces) == (len(trimmed.vertices), len(trimmed.faces))
@@ -59,7 +59,7 @@ def test_faults_and_pieces_are_counted(tmp_path: Path) -> None:
     assert found(mixed, tmp_path, component=1).ends.startswith("poles")
 
 
-def test_what_cannot_be_wound_is_told_with_all_that_is_known(tmp_path: Path) -> None:
+def test_a_part_that_cannot_be_wound_is_described_as_far_as_possible(tmp_path: Path) -> None:
     ring = found(torus(), tmp_path)
     assert (ring.genus, ring.closed) == (1, True) and ring.problem.startswith("part.obj: genus 1 ")
     bottle = found(klein(), tmp_path)
@@ -68,13 +68,13 @@ def test_what_cannot_be_wound_is_told_with_all_that_is_known(tmp_path: Path) -> 
     assert crumbs.piece_count == 1280 and len(crumbs.pieces) == 100 and "falls apart" in crumbs.problem
     assert "open rims, 0 to 2" in found(branch(), tmp_path, "loops 0 9").problem
     assert "has 1 piece; give 0" in found(pear(), tmp_path, component=4).problem
-    for name in ("NaN", "empty", "one place", "all 1e300"):
+    for name in ("NaN", "empty", "one point", "all 1e300"):
         with pytest.raises(BadInputError):
             found(MESHES[name](), tmp_path)
 
 
 @pytest.mark.parametrize("name", [name for name in MESHES if "and" not in name])
-def test_every_broken_mesh_is_told_of_as_it_is_wound(name: str, tmp_path: Path) -> None:
+def test_every_broken_mesh_has_the_problem_that_winding_raises(name: str, tmp_path: Path) -> None:
     save_obj(tmp_path / "part.obj", MESHES[name]())
     try:
         problem = inspect(tmp_path / "part.obj").problem

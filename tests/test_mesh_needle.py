@@ -12,7 +12,7 @@ import meshwind as mw
 @pytest.mark.parametrize("length", [100.0, 800.0, 1000.0, 3000.0])
 @pytest.mark.parametrize("subdivisions", [2, 3])
 def test_a_closed_needle_is_opened_at_its_tips(length: float, subdivisions: int) -> None:
-    """Up to 2500 times as long as wide: the poles are its tips, not places on its flanks."""
+    """Up to 2500 times as long as wide: the poles are its tips, not points on its flanks."""
     vertices, faces = pear(subdivisions)
     slim = vertices * [1.0, 1.0, length / 2.5], faces
     tips = slim[0][[np.argmin(vertices[:, 2]), np.argmax(vertices[:, 2])]]

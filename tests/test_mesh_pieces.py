@@ -1,4 +1,4 @@
-"""Pieces, rims by number, and what is noticed but left: overlaps, double walls, damaged files."""
+"""Pieces, rims by number, faults that are reported but not repaired, damaged files."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -42,19 +42,19 @@ def test_a_large_dropped_piece_is_a_warning_and_a_small_one_is_not() -> None:
     assert "warning: a dropped piece, within its bounds, has 96 %" in mesh_from(*double_skin(pear())).repairs[1]
 
 
-def test_pieces_of_one_area_are_in_the_order_of_their_places() -> None:
+def test_pieces_of_equal_area_are_in_the_order_of_their_centroids() -> None:
     twins = joined(moved(pear(), np.eye(3), np.array([5.0, 0, 0]), 1.0), pear())
     for part in (twins, shuffled(twins, 1), shuffled(twins, 2)):
         assert mesh_from(*part).vertices[:, 0].max() < 3 < mesh_from(*part, component=1).vertices[:, 0].min()
 
 
 @pytest.mark.parametrize("component", [3, -1, 1.0, True, "1", None])
-def test_a_component_that_is_not_there_is_refused(component: object) -> None:
+def test_a_component_that_does_not_exist_is_refused(component: object) -> None:
     with pytest.raises(BadInputError, match=r"the mesh has 3 pieces; give a number from 0 to 2$"):
         mesh_from(*three(), component=component)  # type: ignore[arg-type]
 
 
-def test_crumbs_are_no_part() -> None:
+def test_many_small_pieces_are_refused() -> None:
     with pytest.raises(BadInputError, match="falls apart into 1280 pieces, for its triangles do not meet; weld"):
         mesh_from(*MESHES["pear, loose by 1e-2"]())
 
@@ -71,7 +71,7 @@ def test_ends_by_the_numbers_of_the_rims(ends: str, start: int, end: int) -> Non
         assert found.ends.startswith(f"the open rims number {start} and {end}, at ")
 
 
-def test_a_missing_face_is_an_end_if_it_is_asked_for() -> None:
+def test_a_missing_face_is_an_end_if_requested() -> None:
     mesh = mesh_from(cone()[0], np.delete(cone()[1], 200, axis=0))
     assert len(annulus(mesh, "loops 0 2").rims[1]) == 3
     assert "filled 1 hole" in annulus(mesh).ends
@@ -82,7 +82,7 @@ def test_a_missing_face_is_an_end_if_it_is_asked_for() -> None:
     ("loops 1 1", "both are the same rim; give two numbers"), ("loops 1", "give auto, x, y, z or two points"),
     ("loops 0 -1", "give auto"), ("loops a b", "give auto"), ("loops 0 1 2", "or two open rims as in 'loops 0 1'"),
 ])  # fmt: skip
-def test_numbers_that_name_no_two_rims_are_refused(ends: str, words: str) -> None:
+def test_numbers_of_rims_that_do_not_exist_are_refused(ends: str, words: str) -> None:
     with pytest.raises(BadInputError, match=words):
         annulus(mesh_from(*branch()), ends)
 
@@ -178,7 +178,7 @@ def test_obj_faces_counted_from_the_end_or_before_their_vertices_are_read(tmp_pa
     assert np.array_equal(read(tmp_path / "part.obj").faces, forward.faces)
 
 
-def test_places_are_told_to_the_size_of_the_part() -> None:
+def test_positions_are_written_to_the_precision_of_the_part() -> None:
     assert position_text(np.array([1e-17, -1e-17, 3.0]), 3.6) == "(0, 0, 3)"
     assert position_text(np.array([0.123456789, -2.0, 1e8]), 5.0) == "(0.1235, -2, 100000000)"
     assert position_text(np.array([1.23456e-40, 0, 0]), 1e-39) == "(1.2346e-40, 0, 0)"

@@ -1,4 +1,4 @@
-"""Reading: every format gives the same part, and what is no mesh is refused in one line, silently."""
+"""Reading: every format gives the same part, and other files are refused in one line, silently."""
 
 import zipfile
 from pathlib import Path
@@ -92,7 +92,7 @@ def test_coordinates_of_text_keep_all_digits(tmp_path: Path) -> None:
     assert np.array_equal(read(tmp_path / "part.vtu").vertices, pear(2)[0])
 
 
-def test_3mf_places_its_objects(tmp_path: Path) -> None:
+def test_3mf_objects_are_transformed(tmp_path: Path) -> None:
     part = pear(1)
     save_3mf(tmp_path / "part.3mf", part)
     x, y, z = part[0].T
@@ -182,7 +182,7 @@ def test_empty_file(suffix: str, tmp_path: Path) -> None:
 
 
 def damaged(content: bytes, rng: np.random.Generator) -> bytes:
-    """The file cut short, overwritten in places, or with a piece left out."""
+    """The file cut short, overwritten at some positions, or with a piece left out."""
     data = bytearray(content)
     at = int(rng.integers(1, len(data)))
     way = rng.integers(4)
@@ -190,8 +190,8 @@ def damaged(content: bytes, rng: np.random.Generator) -> bytes:
         return bytes(data[:at])
     if way == 1:
         del data[at : at + int(rng.integers(1, 50))]
-    for place in rng.integers(len(data) if way == 2 else min(300, len(data)), size=8):
-        data[place] = rng.integers(256) if rng.random() < 0.5 else rng.choice(list(b"09 -eE\n"))
+    for position in rng.integers(len(data) if way == 2 else min(300, len(data)), size=8):
+        data[position] = rng.integers(256) if rng.random() < 0.5 else rng.choice(list(b"09 -eE\n"))
     return bytes(data)
 
 

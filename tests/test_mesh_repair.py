@@ -1,4 +1,4 @@
-"""Repairs: each fault is mended, counted and told; a clean mesh is left alone; hopeless ones are refused."""
+"""Repairs: each fault is repaired, counted and reported; a clean mesh is unchanged; hopeless ones are refused."""
 
 import numpy as np
 import pytest
@@ -140,7 +140,7 @@ def test_part_that_touches_itself_is_split_along_the_edge() -> None:
     assert volume(mesh.vertices, mesh.faces) == pytest.approx(len(cells), rel=1e-12)
 
 
-def test_edge_whose_wedges_hang_together_at_both_ends_is_halved() -> None:
+def test_edge_whose_wedges_are_connected_at_both_ends_is_halved() -> None:
     # two rows on the diagonal, bridged at both ends: they touch along the middle edge of three
     cells = [(x, y, y) for x in range(3) for y in range(2)] + [(0, 1, 0), (2, 1, 0)]
     mesh = mesh_from(*voxels(cells))
@@ -221,10 +221,10 @@ BAD: dict[str, tuple[object, Ints | list[object], str]] = {
     "flat array": ([0.0, 1.0, 2.0], FACES, r"vertices has shape \(3,\); give"),
     "quads": (np.zeros((4, 3)), np.array([[0, 1, 2, 3]]), r"faces has shape \(1, 4\); give"),
     "no faces": (np.zeros((4, 3)), [], "holds no triangles; export"),
-    "index": (np.eye(3), np.array([[0, 1, 3]]), "name vertices that are not there; give indices from 0 to 2"),
-    "negative": (np.eye(3), np.array([[0, 1, -1]]), "name vertices that are not there; give"),
-    "half": (np.eye(3), np.array([[0, 1, 1.5]]), "name vertices that are not there; give"),
-    "one place": (np.ones((3, 3)), FACES, "all are collapsed; check"),
+    "index": (np.eye(3), np.array([[0, 1, 3]]), "refer to vertices that do not exist; give indices from 0 to 2"),
+    "negative": (np.eye(3), np.array([[0, 1, -1]]), "refer to vertices that do not exist; give"),
+    "half": (np.eye(3), np.array([[0, 1, 1.5]]), "refer to vertices that do not exist; give"),
+    "one point": (np.ones((3, 3)), FACES, "all are collapsed; check"),
     "one line": (np.arange(9).reshape(3, 3), FACES, "no face is left, none has an area; export"),
     "huge": (np.eye(3) * 1e200, FACES, "out of range; scale"),
     "tiny": (np.eye(3) * 1e-200, FACES, "out of range; scale"),

@@ -72,13 +72,13 @@ end_header
 
 @pytest.mark.parametrize("on_cells", [False, True], ids=["points", "cells"])
 @pytest.mark.parametrize("kind", FORMATS)
-def test_scalars_come_back_where_they_are(kind: str, on_cells: bool, tmp_path: Path) -> None:
+def test_scalars_are_read_with_their_points(kind: str, on_cells: bool, tmp_path: Path) -> None:
     file = save(tmp_path, kind, on_cells)
     scalars = read_scalars(file, "mu")
     points, faces = tube()
-    places = points[faces].mean(axis=1) if on_cells else points
-    assert scalars.points == pytest.approx(places, abs=1e-6)
-    assert scalars.values == pytest.approx(rough(places), abs=1e-6)
+    positions = points[faces].mean(axis=1) if on_cells else points
+    assert scalars.points == pytest.approx(positions, abs=1e-6)
+    assert scalars.values == pytest.approx(rough(positions), abs=1e-6)
     assert not scalars.values.flags.writeable
     assert not scalars.points.flags.writeable
 
@@ -102,7 +102,7 @@ def test_formats_without_scalars_say_where_to_put_them(name: str, tmp_path: Path
     assert "\n" not in str(refusal.value)
 
 
-def test_vectors_are_no_scalars(tmp_path: Path) -> None:
+def test_vectors_are_not_scalars(tmp_path: Path) -> None:
     with pytest.raises(BadInputError, match="has no scalar 'velocity'; it holds: mu"):
         read_scalars(save(tmp_path, "vtp", False), "velocity")
 

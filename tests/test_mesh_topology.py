@@ -29,7 +29,7 @@ def test_edges_are_those_of_a_dictionary(faces: Ints) -> None:
 
 
 @pytest.mark.parametrize("links", [0, 30, 100, 400])
-def test_components_are_what_spreading_labels_leaves(links: int) -> None:
+def test_components_agree_with_propagated_labels(links: int) -> None:
     first, second = np.random.default_rng(links).integers(0, 100, (2, links))
     lowest = np.arange(100)
     for _ in range(100):

@@ -1,4 +1,4 @@
-"""Any triangle mesh to a clean annulus: read, repair, choose the ends, trim."""
+"""From a mesh file to an annulus: reading, repair, choice of the ends, trimming."""
 
 from meshwind.mesh.geometry.mesh import Annulus, Mesh
 from meshwind.mesh.inspection import Findings, inspect

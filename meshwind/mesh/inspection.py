@@ -16,7 +16,7 @@ from meshwind.mesh.opening.choose_ends import rims_by_number
 from meshwind.mesh.opening.trim import annulus
 from meshwind.mesh.repair.manifold import disagreements
 from meshwind.mesh.repair.pieces import Pieces
-from meshwind.mesh.repair.repair import kept, made_manifold
+from meshwind.mesh.repair.repair import chosen_piece, made_manifold
 from meshwind.mesh.repair.weld import weld, without_collapsed, without_duplicates
 
 _MAX_PIECES = 100
@@ -89,10 +89,10 @@ class Findings:
 def inspect(
     mesh: str | PathLike[str] | Mesh, ends: str = "auto", opening: float | None = None, component: int = 0
 ) -> Findings:
-    """Find out what the mesh in a file, or one at hand, is and what winding would do with it.
+    """Inspect a mesh in a file or in memory: what it is, and how it would be wound.
 
-    ends, opening and component as in `annulus` and `read`.  Raises BadInputError only where there is no surface
-    to tell of; why else a mesh cannot be wound is in `Findings.problem`.
+    ends, opening and component are as in `annulus` and `read`.  Raises BadInputError only if there is no surface; any
+    other reason why the mesh cannot be wound is in `Findings.problem`.
     """
     if isinstance(mesh, Mesh):
         name, kind, vertices, faces = mesh.name, "", mesh.vertices, mesh.faces
@@ -111,7 +111,7 @@ def inspect(
     try:
         chosen, _ = pieces.chosen(component, name)
         findings = replace(findings, one_sided=disagreements(chosen) > 0, closed=len(boundary(chosen)) == 0)
-        part = kept(pieces, notes, component, name, (len(vertices), len(faces)))
+        part = chosen_piece(pieces, notes, component, name, (len(vertices), len(faces)))
         findings = replace(findings, repairs=part.repairs)
         findings = replace(findings, genus=_genus(part), rims=_rims(part, None))
         found = annulus(part, ends, opening)

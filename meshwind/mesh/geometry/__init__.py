@@ -1,1 +1,1 @@
-"""The triangle mesh and its annulus, their edges, measures and search tree."""
+"""The triangle mesh and the annulus: topology, areas and volumes, axis, subdivision, search tree."""

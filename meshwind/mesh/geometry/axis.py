@@ -5,10 +5,14 @@ import numpy as np
 from meshwind.core.cast import Floats, Ints
 from meshwind.mesh.geometry.areas_and_volumes import areas
 
-_ALIKE = 0.05  # moments closer than this are equal
-_ROUND = 1e-4  # moments closer than this are equal to the accuracy of a mesh
-_LEVEL = 1e-6  # a skewness below this is round-off, of single precision too
+_SIMILAR_MOMENTS = 0.05
+"""Relative difference below which two principal moments are similar: the part is nearly one of revolution."""
+_EQUAL_MOMENTS = 1e-4
+"""Relative difference below which two principal moments are equal to the accuracy of a mesh."""
+_ROUND_OFF = 1e-6
+"""A higher moment below this is round-off, even of single precision."""
 _ORDER = np.array([1.0, np.sqrt(2.0), np.sqrt(3.0)])
+"""Weights of x, y and z in `rank`: only the origin has rank 0 among points with whole or equal coordinates."""
 
 
 def moments(vertices: Floats, faces: Ints) -> tuple[Floats, Floats]:
@@ -23,29 +27,29 @@ def moments(vertices: Floats, faces: Ints) -> tuple[Floats, Floats]:
 
 
 def longest_axis(vertices: Floats, faces: Ints) -> tuple[Floats, str]:
-    """Unit vector (3,) of the axis of a closed part, and what it is in words.
+    """Unit vector (3,) of the axis of a closed part, and which axis it is, in words.
 
-    The longest principal axis, or the shortest where the other two are alike, as for a disc.  Of a part almost as
-    round as a ball it is the one that stands out from the others more, and z where none does.
+    This is the longest principal axis, or the shortest if the other two are similar, as for a disc.  For a part that
+    is nearly a ball it is the one that differs more from the other two, or z if all are equal.
     """
     size, frame = np.linalg.eigh(moments(vertices, faces)[1])
     short, long = (float(size[k + 1] - size[k]) / float(size[2]) for k in (0, 1))
-    if short + long < _ALIKE:
-        if max(short, long) < _ROUND:
+    if short + long < _SIMILAR_MOMENTS:
+        if max(short, long) < _EQUAL_MOMENTS:
             return np.array([0.0, 0.0, 1.0]), "the z axis, for the part is as round as a ball"
         which = "longest" if long >= short else "shortest"
         return frame[:, 2 if long >= short else 0], f"its {which} axis, though it is almost round"
-    if long < _ALIKE:
+    if long < _SIMILAR_MOMENTS:
         return frame[:, 0], "its axis of revolution"
     return frame[:, 2], "its longest axis"
 
 
 def forward(vertices: Floats, faces: Ints, direction: Floats) -> Floats:
-    """The unit vector along or against `direction` that leads from the fuller end of the part to the slimmer.
+    """Unit vector along or against `direction`, from the fuller end of the part to the slimmer one.
 
-    Fuller is the end with more of the surface near it, or else the one with the surface further from the axis, or
-    else what higher moments tell.  A part with none of these is told from its mirror image by its coordinates:
-    towards the larger ones.
+    The fuller end has more of the surface near it.  If both ends are equal in this, higher moments decide: first how
+    far the surface is from the axis.  A part that is symmetric in all of them is ordered by its coordinates, towards
+    the larger ones.
     """
     unit = direction / np.linalg.norm(direction)
     centroid, second = moments(vertices, faces)
@@ -56,16 +60,16 @@ def forward(vertices: Floats, faces: Ints, direction: Floats) -> Floats:
     share = share / share.sum()
     along = along - share @ along
     along = along / (float(np.sqrt(share @ along**2)) + 1e-300)
-    # odd in `along`, so that they change sign with the part turned end for end; the skewness first
-    told = (along**3, -along * away**2, along**5, -(along**3) * away**2, -along * away**4)
-    clues = (float(share @ clue) for clue in told)
-    clue = next((value for value in clues if abs(value) > _LEVEL), float(rank(unit)))
-    return np.asarray(unit if clue > 0 else -unit)
+    # odd in `along`, so that they change sign if the ends are exchanged; the skewness first
+    odd = (along**3, -along * away**2, along**5, -(along**3) * away**2, -along * away**4)
+    values = (float(share @ moment) for moment in odd)
+    sign = next((value for value in values if abs(value) > _ROUND_OFF), float(rank(unit)))
+    return np.asarray(unit if sign > 0 else -unit)
 
 
-def rank(places: Floats) -> Floats:
-    """Numbers (...) by which places (..., 3) about the origin are ordered where nothing else tells them apart.
+def rank(points: Floats) -> Floats:
+    """Numbers (...) that order points (..., 3) about the origin if they do not differ in anything else.
 
-    No place with whole or equal coordinates but the origin has 0, so that round-off decides nothing.
+    Round-off does not decide the order: of points with whole or equal coordinates only the origin has rank 0.
     """
-    return np.asarray(places @ _ORDER)
+    return np.asarray(points @ _ORDER)

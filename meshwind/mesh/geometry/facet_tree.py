@@ -1,7 +1,7 @@
-"""A search tree over triangles: how far points lie from the nearest one, and which one a segment meets first.
+"""Search tree over triangles: distances of points to the nearest one, and the first one that a segment meets.
 
-libigl's tree takes twice the time on each thread and uses but one, and its rays miss triangles that measure less than
-about 1e-3 in the mesh's own units.
+libigl's tree takes twice the time on each thread and uses only one, and its rays miss triangles smaller than about
+1e-3 in the mesh's units.
 """
 
 from dataclasses import dataclass
@@ -13,18 +13,18 @@ from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.threads import parallel_for
 
 LEAF = 2
-"""Triangles a leaf."""
+"""Triangles per leaf."""
 RUN = 64
-"""Points in a row that are searched by one another's answers, whatever the threads."""
+"""Consecutive points that start from each other's nearest triangle, independent of the number of threads."""
 GRAZE = 1e-9
-"""A segment that leaves a triangle's plane by a smaller sine than this runs along it."""
+"""Sine of the angle between a segment and a triangle's plane below which the segment is parallel to it."""
 
 
 @dataclass(frozen=True)
 class FacetTree:
-    """Triangles' corners (m, 3, 3) along a space-filling curve, their numbers (m,), and a heap of boxes (k, 6).
+    """Corners of triangles (m, 3, 3) in the order of the tree, their numbers (m,), and a heap of boxes (k, 6).
 
-    Box 1 is the root, boxes 2 k and 2 k + 1 are the halves of box k, and the last half of the boxes are leaves.
+    Box 1 is the root, boxes 2 k and 2 k + 1 are the halves of box k, and the second half of the boxes are leaves.
     """
 
     corners: Floats
@@ -33,7 +33,7 @@ class FacetTree:
 
     @staticmethod
     def of(vertices: Floats, faces: Ints) -> "FacetTree":
-        """The tree of faces (m, 3) between vertices (n, 3)."""
+        """Build the tree of faces (m, 3) with vertices (n, 3)."""
         corners = vertices[faces]
         order = _order(frozen(corners.sum(axis=1)))
         corners = frozen(corners[order])
@@ -47,7 +47,7 @@ class FacetTree:
         return out
 
     def first_hits(self, start: Floats, ray: Floats) -> Ints:
-        """The face that each of the segments from `start` along `ray` (k, 3) meets first, -1 where there is none."""
+        """First face (k,) that each segment from `start` along `ray` (k, 3) meets, -1 if there is none."""
         out = np.empty(len(start), dtype=np.int64)
         parallel_for(
             _first_hits, len(start), 1000, self.corners, self.numbers, self.boxes, frozen(start), frozen(ray), out
@@ -56,9 +56,9 @@ class FacetTree:
 
 
 @njit(nogil=True, cache=True)
-def _order(places: Floats) -> Ints:
-    """Numbers of places (m, 3) so that every node's lower half lies before its upper half along its longest axis."""
-    count = len(places)
+def _order(points: Floats) -> Ints:
+    """Order (m,) of points (m, 3) in which each node's lower half along its longest axis precedes its upper half."""
+    count = len(points)
     order = np.arange(count)
     leaves = 1
     while leaves * LEAF < count:
@@ -68,29 +68,29 @@ def _order(places: Floats) -> Ints:
         for first in range(0, count, span):
             last, middle = min(first + span, count), first + span // 2
             if middle < last:
-                _halve(places, order, first, middle, last)
+                _halve(points, order, first, middle, last)
         span //= 2
     return order
 
 
 @njit(nogil=True, cache=True)
-def _halve(places: Floats, order: Ints, first: int, middle: int, last: int) -> None:
-    """Sort order[first:last] so far that what comes before `middle` lies lower along the longest axis (Hoare 1961)."""
+def _halve(points: Floats, order: Ints, first: int, middle: int, last: int) -> None:
+    """Partition order[first:last] at `middle` by the coordinate along the longest axis (quickselect, Hoare 1961)."""
     axis, longest = 0, -1.0
     for d in range(3):
         low, high = np.inf, -np.inf
         for k in range(first, last):
-            low, high = min(low, places[order[k], d]), max(high, places[order[k], d])
+            low, high = min(low, points[order[k], d]), max(high, points[order[k], d])
         if high - low > longest:
             axis, longest = d, high - low
     low, high = first, last - 1
     while low < high:
-        pivot = places[order[(low + high) // 2], axis]
+        pivot = points[order[(low + high) // 2], axis]
         i, j = low, high
         while i <= j:
-            while places[order[i], axis] < pivot:
+            while points[order[i], axis] < pivot:
                 i += 1
-            while places[order[j], axis] > pivot:
+            while points[order[j], axis] > pivot:
                 j -= 1
             if i <= j:
                 order[i], order[j] = order[j], order[i]
@@ -105,7 +105,7 @@ def _halve(places: Floats, order: Ints, first: int, middle: int, last: int) -> N
 
 @njit(nogil=True, cache=True)
 def _boxes(corners: Floats) -> Floats:
-    """Lower and upper corners of the boxes of all nodes; a node without triangles is nowhere."""
+    """Lower and upper corners of the boxes of all nodes; the box of a node without triangles is empty."""
     leaves = 1
     while leaves * LEAF < len(corners):
         leaves *= 2
@@ -135,7 +135,7 @@ def _to_box(boxes: Floats, box: int, x: float, y: float, z: float) -> float:
 
 @njit(nogil=True, cache=True)
 def _to_triangle(corners: Floats, m: int, x: float, y: float, z: float) -> float:
-    """Squared distance of a point to triangle m, by the region it lies over (Ericson 2005, 5.1.5)."""
+    """Squared distance of a point to triangle m, by Voronoi regions (Ericson 2005, 5.1.5)."""
     px, py, pz = x - corners[m, 0, 0], y - corners[m, 0, 1], z - corners[m, 0, 2]
     ax, ay, az = (
         corners[m, 1, 0] - corners[m, 0, 0], corners[m, 1, 1] - corners[m, 0, 1], corners[m, 1, 2] - corners[m, 0, 2],
@@ -170,7 +170,7 @@ def _to_triangle(corners: Floats, m: int, x: float, y: float, z: float) -> float
 
 @njit(nogil=True, cache=True)
 def _distances(first: int, last: int, corners: Floats, boxes: Floats, points: Floats, out: Floats) -> None:
-    """Distances of the runs of points first to last: each point starts from the triangle nearest to the one before."""
+    """Distances for runs of points first to last; each point starts from the triangle nearest to the point before."""
     leaves = len(boxes) // 2
     stack, far = np.empty(64, np.int64), np.empty(64)
     for run in range(first, last):
@@ -191,7 +191,7 @@ def _distances(first: int, last: int, corners: Floats, boxes: Floats, points: Fl
                             least, near = square, m
                     continue
                 one, two = _to_box(boxes, 2 * box, x, y, z), _to_box(boxes, 2 * box + 1, x, y, z)
-                # the nearer half last, so that it is looked at first
+                # the nearer half is pushed last, so that it is searched first
                 swap = 1 if one < two else 0
                 if max(one, two) < least:
                     stack[size], far[size] = 2 * box + swap, max(one, two)
@@ -204,7 +204,7 @@ def _distances(first: int, last: int, corners: Floats, boxes: Floats, points: Fl
 
 @njit(nogil=True, cache=True)
 def _meets(corners: Floats, m: int, x: float, y: float, z: float, dx: float, dy: float, dz: float) -> float:
-    """Share of the ray d from a point after which it meets triangle m, or 2 (Moeller and Trumbore 1997)."""
+    """Share of the ray d at which it meets triangle m, or 2 if it does not (Moeller and Trumbore 1997)."""
     ax, ay, az = (
         corners[m, 1, 0] - corners[m, 0, 0], corners[m, 1, 1] - corners[m, 0, 1], corners[m, 1, 2] - corners[m, 0, 2],
     )  # fmt: skip
@@ -228,7 +228,7 @@ def _meets(corners: Floats, m: int, x: float, y: float, z: float, dx: float, dy:
 def _first_hits(
     first: int, last: int, corners: Floats, numbers: Ints, boxes: Floats, start: Floats, ray: Floats, out: Ints
 ) -> None:
-    """The faces that the segments first to last meet first; segments are short, so boxes are compared with boxes."""
+    """First faces that segments first to last meet; segments are short, so their boxes are compared with the tree's."""
     leaves = len(boxes) // 2
     stack = np.empty(64, np.int64)
     for i in range(first, last):

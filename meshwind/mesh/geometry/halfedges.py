@@ -1,7 +1,7 @@
 """Compiled loops over half-edges: sorting, linking and walking them in linear time.
 
-Half-edge 3 f + k runs from corner k of face f to the next.  NumPy's sorts cost five to ten times as much, and
-every step of the repair asks for the edges.
+Half-edge 3 f + k runs from corner k of face f to the next.  NumPy's sorts take five to ten times as long, and every
+step of the repair needs the edges.
 """
 
 import numpy as np
@@ -12,10 +12,11 @@ from meshwind.core.cast import Ints
 
 @njit(nogil=True, cache=True)
 def edge_table(faces: Ints, size: int) -> tuple[Ints, Ints, Ints, Ints]:
-    """Edges of faces (m, 3) with indices below `size`, in the order of their lower, then their higher vertex.
+    """Edges of faces (m, 3) with indices below `size`, ordered by their lower, then by their higher vertex.
 
-    Gives ends (e, 2), the edge (3 m,) of each half-edge, the number (e,) of its half-edges, and the first two of
-    these (e, 2), -1 where there is but one.  Two stable counting sorts: many faces at one vertex cost no more.
+    Returns ends (e, 2), the edge (3 m,) of each half-edge, the number (e,) of half-edges at each edge, and the first
+    two of these (e, 2), -1 if there is only one.  Two stable counting sorts take the same time if many faces share a
+    vertex.
     """
     count = 3 * len(faces)
     low, high = np.empty(count, np.int64), np.empty(count, np.int64)
@@ -64,7 +65,7 @@ def linked(count: int, first: Ints, second: Ints) -> Ints:
         while parent[b] != b:
             parent[b] = parent[parent[b]]
             b = parent[b]
-        # the lower node is the root, so that one sweep upwards labels all
+        # the lower node is the root, so that one pass in ascending order labels all
         if a < b:
             parent[b] = a
         else:
@@ -81,9 +82,9 @@ def linked(count: int, first: Ints, second: Ints) -> Ints:
 
 @njit(nogil=True, cache=True)
 def rings(following: Ints) -> tuple[Ints, Ints]:
-    """Cycles of the nodes i with following[i] >= 0, each from its lowest node: all nodes, and where a cycle starts.
+    """Cycles of the nodes i with following[i] >= 0, each from its lowest node: all nodes, and the starts of cycles.
 
-    Every node must be followed by one that no other is followed by.
+    Every node must have a successor of its own.
     """
     seen = following < 0
     nodes, starts = np.empty(len(seen) - seen.sum(), np.int64), np.zeros(len(seen) + 1, np.int64)

@@ -1,4 +1,4 @@
-"""Split faces at new vertices on their edges, without hanging nodes."""
+"""Subdivision of faces at new vertices on their edges, without hanging nodes."""
 
 import numpy as np
 
@@ -7,15 +7,15 @@ from meshwind.mesh.geometry.topology import edges
 
 
 def crossing(faces: Ints, side: Ints) -> Ints:
-    """Edges (k, 2) whose ends lie on different sides; side (n,) is -1, 0 on the level itself, or +1."""
+    """Edges (k, 2) that cross a level; side (n,) of each vertex is -1, 0 on the level itself, or +1."""
     ends = edges(faces).ends
     return np.asarray(ends[side[ends[:, 0]] * side[ends[:, 1]] < 0])
 
 
 def subdivide(vertices: Floats, faces: Ints, cut: Ints, first: int) -> Ints:
-    """Faces after edge cut[i] (k, 2, the lower index first) got the new vertex first + i.
+    """Faces after edge cut[i] (k, 2), the lower index first, has been split at the new vertex first + i.
 
-    `vertices` holds the new ones already; a quadrangle is cut along its shorter diagonal.
+    `vertices` includes the new ones; a quadrangle is cut along its shorter diagonal.
     """
     fresh = _new_vertex(faces, cut, first)
     marked = fresh >= 0
@@ -27,35 +27,35 @@ def subdivide(vertices: Floats, faces: Ints, cut: Ints, first: int) -> Ints:
 
 
 def _new_vertex(faces: Ints, cut: Ints, first: int) -> Ints:
-    """New vertex (m, 3) on the edge from each corner to the next, -1 where it is not cut."""
+    """New vertex (m, 3) on the edge from each corner to the next, -1 if it is not cut."""
     following = np.roll(faces, -1, axis=1)
     span = int(faces.max(initial=0)) + 1
     keys = np.minimum(faces, following) * span + np.maximum(faces, following)
     wanted = cut[:, 0] * span + cut[:, 1]
     order = np.argsort(wanted)
-    place = np.searchsorted(wanted[order], keys)
-    inside = place < len(order)
-    place = np.where(inside, place, 0)
+    position = np.searchsorted(wanted[order], keys)
+    inside = position < len(order)
+    position = np.where(inside, position, 0)
     if len(order) == 0:
         return np.full(faces.shape, -1, dtype=np.int64)
-    hit = inside & (wanted[order][place] == keys)
-    return np.where(hit, first + order[place], -1)
+    hit = inside & (wanted[order][position] == keys)
+    return np.where(hit, first + order[position], -1)
 
 
 def _turned(faces: Ints, fresh: Ints, chosen: np.ndarray, start: Ints) -> tuple[Ints, Ints]:
-    """The chosen faces and their new vertices, turned so that corner `start` comes first."""
+    """The chosen faces and their new vertices, rotated so that corner `start` comes first."""
     turn = (start[chosen][:, None] + np.arange(3)) % 3
     return np.take_along_axis(faces[chosen], turn, 1), np.take_along_axis(fresh[chosen], turn, 1)
 
 
 def _halves(faces: Ints, fresh: Ints) -> Ints:
-    """Two faces where the first edge is cut."""
+    """Two faces for each face whose first edge is cut."""
     (a, b, c), x = faces.T, fresh[:, 0]
     return np.concatenate([np.column_stack([a, x, c]), np.column_stack([x, b, c])])
 
 
 def _thirds(vertices: Floats, faces: Ints, fresh: Ints) -> Ints:
-    """Three faces where all but the first edge is cut: a corner and a quadrangle."""
+    """Three faces for each face of which all edges but the first are cut: a corner and a quadrangle."""
     (a, b, c), (_, x, y) = faces.T, fresh.T
     straight = np.linalg.norm(vertices[a] - vertices[x], axis=1) <= np.linalg.norm(vertices[b] - vertices[y], axis=1)
     return np.concatenate([
@@ -66,6 +66,6 @@ def _thirds(vertices: Floats, faces: Ints, fresh: Ints) -> Ints:
 
 
 def _quarters(faces: Ints, fresh: Ints) -> Ints:
-    """Four faces where every edge is cut."""
+    """Four faces for each face whose edges are all cut."""
     (a, b, c), (x, y, z) = faces.T, fresh.T
     return np.concatenate([np.column_stack(rows) for rows in ((a, x, z), (x, b, y), (z, y, c), (x, y, z))])

@@ -1,4 +1,4 @@
-"""Edges, patches and boundary loops of a triangle mesh: what does not depend on where its vertices lie."""
+"""Topology of a triangle mesh: edges, connected patches, boundary loops, Euler characteristic."""
 
 from dataclasses import dataclass
 
@@ -13,9 +13,9 @@ from meshwind.mesh.geometry import halfedges
 class Edges:
     """Undirected edges of a mesh.
 
-    ends (e, 2), the lower index first; of_face (m, 3) the edge from each corner to the next; count (e,) the
-    faces at each edge; halves (e, 2) the first two half-edges at each, -1 where there is but one: half-edge
-    3 f + k runs from corner k of face f to the next.
+    ends (e, 2), the lower index first; of_face (m, 3) the edge from each corner to the next; count (e,) of the faces
+    at each edge; halves (e, 2) the first two half-edges at each edge, -1 if there is only one.  Half-edge 3 f + k runs
+    from corner k of face f to the next.
     """
 
     ends: Ints
@@ -24,12 +24,12 @@ class Edges:
     halves: Ints
 
     def pairs(self) -> tuple[Ints, Ints]:
-        """Half-edges that meet at the edges with just two faces."""
+        """The two half-edges of each edge with exactly two faces."""
         first, second = self.halves[self.count == 2].T
         return first, second
 
     def open(self) -> Ints:
-        """Half-edges (b,) that have an edge for themselves, in the order of their faces."""
+        """Half-edges (b,) on the boundary, in the order of their faces."""
         return np.sort(self.halves[self.count == 1, 0])
 
 
@@ -40,32 +40,32 @@ def edges(faces: Ints) -> Edges:
 
 
 def _plain(indices: Ints) -> Ints:
-    """The one kind of array that the kernels are compiled for: read-only, 64 bits."""
+    """The type of array that the kernels are compiled for: read-only, 64 bits."""
     return frozen(np.asarray(indices, dtype=np.int64))
 
 
 def components(count: int, first: Ints, second: Ints) -> Ints:
-    """Label (count,) of the connected component of each node in the graph of the links first-second."""
+    """Label (count,) of the connected component of each node in the graph with links first-second."""
     return halfedges.linked(count, _plain(first), _plain(second))
 
 
 def patches(faces: Ints, found: Edges | None = None) -> Ints:
-    """Label (m,) of the patch of each face: faces are linked across edges that just two of them share."""
+    """Label (m,) of the patch of each face; patches are connected across edges with exactly two faces."""
     found = edges(faces) if found is None else found
     first, second = found.pairs()
     return components(len(faces), first // 3, second // 3)
 
 
 def boundary(faces: Ints) -> Ints:
-    """Directed boundary edges (b, 2) of a manifold mesh, in the sense of their faces."""
+    """Directed boundary edges (b, 2) of a manifold mesh, in the orientation of their faces."""
     half = edges(faces).open()
     return np.column_stack([faces.ravel()[half], np.roll(faces, -1, axis=1).ravel()[half]])
 
 
 def loops(faces: Ints) -> list[Ints]:
-    """Boundary loops of a manifold, oriented mesh as rings of vertices, in the sense of their faces.
+    """Boundary loops of a manifold, oriented mesh as arrays of vertices, in the orientation of their faces.
 
-    Each starts at its lowest index, and so do the loops among themselves.
+    Each starts with its lowest index, and the loops are ordered by it.
     """
     open_edges = boundary(faces)
     if len(open_edges) == 0:
@@ -80,7 +80,7 @@ def loops(faces: Ints) -> list[Ints]:
 
 
 def _touching(faces: Ints, following: Ints) -> list[Ints]:
-    """Boundary loops where some touch at a vertex."""
+    """Boundary loops of which some touch at a vertex."""
     rings = []
     for ring in igl.boundary_loop_all(faces):
         loop = np.asarray(ring, dtype=np.int64)
@@ -91,13 +91,13 @@ def _touching(faces: Ints, following: Ints) -> list[Ints]:
 
 
 def euler(faces: Ints) -> int:
-    """Euler characteristic: vertices in use, less edges, plus faces."""
+    """Euler characteristic: vertices in use - edges + faces."""
     used = int(np.count_nonzero(np.bincount(faces.ravel())))
     return used - len(edges(faces).ends) + len(faces)
 
 
 def compact(used: Ints, size: int) -> tuple[Ints, Ints]:
-    """Sorted indices in use, and the new index (size,) of each old one, -1 where it is not in use."""
+    """Sorted indices in use, and the new index (size,) of each old one, -1 if it is not in use."""
     mark = np.zeros(size, dtype=bool)
     mark[used] = True
     keep = np.flatnonzero(mark)

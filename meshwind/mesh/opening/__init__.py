@@ -1,1 +1,1 @@
-"""A mesh to an annulus: choose its two ends, open them, fill what is no end."""
+"""From a mesh to an annulus: the two ends are chosen and opened, all other holes filled."""

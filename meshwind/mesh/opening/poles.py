@@ -1,4 +1,4 @@
-"""The extreme ends of a closed part along an axis: the pole of a dome or a flat end, the lip of a hollow one."""
+"""Ends of a closed part along an axis: the pole of a dome or of a flat end, the lip of a hollow end."""
 
 from dataclasses import dataclass
 
@@ -10,14 +10,17 @@ from meshwind.mesh.geometry.areas_and_volumes import area_vectors, areas
 from meshwind.mesh.geometry.subdivide import crossing, subdivide
 from meshwind.mesh.geometry.topology import euler, patches
 
-_CAPS = (0.01, 0.03)  # heights of the cap over the part's extent along the axis
-_SLIM = 2.0  # height of a cap over its width from which on it is a needle's
-_LOWEST = 1e-5  # lowest cap over the part's extent
+_CAP_HEIGHTS = (0.01, 0.03)
+"""Heights of the cap over the part's extent along the axis: the usual one, and the one of a hollow or ragged end."""
+_NEEDLE = 2.0
+"""Height of a cap over its width above which the end is that of a needle."""
+_LOWEST_CAP = 1e-5
+"""Least height of a cap over the part's extent."""
 
 
 @dataclass(frozen=True)
 class Lip:
-    """The rim of a cup: where the plane of the points x with x . direction = height cuts its wall."""
+    """The rim of a cup: the intersection of its wall with the plane x . direction = height."""
 
     direction: Floats
     height: float
@@ -25,24 +28,24 @@ class Lip:
 
 @dataclass(frozen=True)
 class _Cap:
-    """The piece of a part above a level: its faces (m, 3) of points (n, 3), and the middle (3,) of its surface."""
+    """The piece of a part above a level: faces (m, 3) with points (n, 3), and the centroid (3,) of its surface."""
 
     level: float
     points: Floats
     faces: Ints
     centre: Floats
     width: float
-    """How far its surface lies from its middle, square to the direction, root mean square."""
+    """Root-mean-square distance of the surface from its centroid, perpendicular to the direction."""
 
 
 def extreme(vertices: Floats, faces: Ints, direction: Floats) -> tuple[Floats, Lip | None]:
-    """Middle (3,) of the part's end in `direction`, on the surface, and its lip if it is the mouth of a cup.
+    """Pole (3,) of the part's end in `direction`, on the surface, and its lip if the end is hollow like a cup.
 
-    The centroid of the cap goes back onto the surface along the direction, so that a dome gives its apex, a
-    flat end its centre and a dished one its bottom.  Deeper than wide is a cup: its lining is no place to wind.
+    The centroid of the cap is projected onto the surface along the direction, which gives the apex of a dome, the
+    centre of a flat end and the bottom of a dished one.  An end that is deeper than wide is a cup.
     """
     usual = _blunt(vertices, faces, direction)
-    for share in (usual, usual * _CAPS[1] / _CAPS[0]):
+    for share in (usual, usual * _CAP_HEIGHTS[1] / _CAP_HEIGHTS[0]):
         cap = _cap(vertices, faces, direction, share)
         ring = euler(cap.faces) == 0
         hit = _shoot(vertices, faces, cap.centre, direction) if ring or share > usual else None
@@ -52,23 +55,23 @@ def extreme(vertices: Floats, faces: Ints, direction: Floats) -> tuple[Floats, L
 
 
 def _blunt(vertices: Floats, faces: Ints, direction: Floats) -> float:
-    """Height of the lower cap over the part's extent: less than usual on an end like a needle's.
+    """Height of the lower cap over the part's extent; it is reduced for a needle.
 
-    The middle of a cap that is far higher than wide would go back onto the needle's flank, well below its tip.
+    The centroid of a cap that is far higher than wide would be projected onto the needle's flank, below its tip.
     """
-    share, extent = _CAPS[0], float(np.ptp(vertices @ direction))
-    while share > _LOWEST and share * extent > _SLIM * _cap(vertices, faces, direction, share).width:
+    share, extent = _CAP_HEIGHTS[0], float(np.ptp(vertices @ direction))
+    while share > _LOWEST_CAP and share * extent > _NEEDLE * _cap(vertices, faces, direction, share).width:
         share *= 0.25
     return share
 
 
 def nearest(vertices: Floats, faces: Ints, point: Floats) -> Floats:
-    """Point (3,) of the surface nearest to `point`."""
+    """Nearest point (3,) of the surface to `point`."""
     return np.asarray(igl.point_mesh_squared_distance(point[None], vertices, faces)[2][0], dtype=np.float64)
 
 
 def _cap(vertices: Floats, faces: Ints, direction: Floats, share: float) -> _Cap:
-    """The largest patch above the level at a share of the part's extent below its top, cut exactly there."""
+    """The largest patch above a level, which is the share of the part's extent below its top; faces are cut there."""
     height = vertices @ direction
     level = float(height.max() - share * np.ptp(height))
     side = np.sign(height - level).astype(np.int64)
@@ -90,12 +93,12 @@ def _cap(vertices: Floats, faces: Ints, direction: Floats, share: float) -> _Cap
 
 
 def _shoot(vertices: Floats, faces: Ints, point: Floats, direction: Floats) -> Floats | None:
-    """Where the line through `point` meets the surface closest to it, None where it misses."""
+    """Intersection of the line through `point` with the surface that is closest to it, or None."""
     normals = area_vectors(vertices, faces)
     facing = normals @ direction
     across = np.abs(facing) > 1e-9 * np.linalg.norm(normals, axis=1)
     a, b, c = (vertices[faces[across, k]] - point for k in range(3))
-    # Twice the areas that the line makes with two corners each: their shares are barycentric coordinates.
+    # twice the areas spanned by the line and two corners each: their shares are barycentric coordinates
     share = np.column_stack([np.cross(p, q) @ direction for p, q in ((b, c), (c, a), (a, b))])
     share /= 2.0 * facing[across][:, None]
     hits = np.flatnonzero(share.min(axis=1, initial=np.inf) > -1e-9)

@@ -1,1 +1,1 @@
-"""Make a triangle mesh clean: weld, close cracks, make manifold, drop what says nothing."""
+"""Repair of a triangle mesh: weld, drop degenerate faces, close cracks, make manifold, orient."""

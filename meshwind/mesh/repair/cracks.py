@@ -1,6 +1,6 @@
-"""Close cracks: edges that a neighbour's vertex halves on one side only, and boundaries a hair's breadth apart.
+"""Closing of cracks: edges that a vertex of a neighbour splits on one side only, and boundaries that nearly touch.
 
-Only boundaries are touched, and only where the two sides face each other: the rims of a thin wall do not.
+Only boundaries that face each other are joined, which the two rims of a thin wall do not.
 """
 
 from itertools import chain
@@ -16,21 +16,27 @@ from meshwind.mesh.geometry.topology import components, edges
 from meshwind.mesh.repair.weld import without_collapsed, without_duplicates
 
 WIDEST = 1e-3
-"""A crack is at most this part of the diagonal wide, ..."""
-_BY_EDGE = 0.1  # ... and this part of the edges at it
-_ALONG = 1e-6  # of the diagonal, how far a vertex may lie on the wrong side of an edge that it halves
-_SAME_WAY = 0.9  # cosine from which two boundaries point the same way, as the rims of a wall's two sides do
-_NEIGHBOURS = 16  # copies of a vertex that are looked at: twice as many as faces meet at most vertices
-_LOOSE = 2  # boundary edges a face from which the mesh is a heap of triangles, in which a search has no end
-_ROUNDS = 12
+"""Largest width of a crack over the diagonal."""
+_WIDEST_BY_EDGE = 0.1
+"""Largest width of a crack over the edges at it."""
+_OVERLAP = 1e-6
+"""Largest distance of a vertex on the wrong side of the edge that it splits, over the diagonal."""
+_SAME_DIRECTION = 0.9
+"""Cosine above which two boundaries have the same direction, as the two rims of a wall have."""
+_NEIGHBOURS = 16
+"""Number of nearby vertices that are compared: twice as many as faces meet at most vertices."""
+_LOOSE = 2
+"""Boundary edges per face from which on the triangles are not connected, so that a search would take forever."""
+_MAX_ROUNDS = 12
+"""Maximum number of times that edges are split at hanging vertices."""
 
 
-def closed(vertices: Floats, faces: Ints) -> tuple[Floats, Ints, int, float]:
-    """Join boundaries that face each other across a crack; also gives how many vertices, and the widest gap."""
+def close_cracks(vertices: Floats, faces: Ints) -> tuple[Floats, Ints, int, float]:
+    """Join boundaries that face each other across a crack; also returns the number of vertices and the widest gap."""
     reach = WIDEST * float(np.linalg.norm(np.ptp(vertices, axis=0)))
     vertices, faces, joined, widest = _joined(vertices, faces, reach)
     count = joined
-    for _ in range(_ROUNDS):
+    for _ in range(_MAX_ROUNDS):
         edge, vertex, gap = _hanging(vertices, faces, reach)
         if len(edge) == 0:
             break
@@ -51,7 +57,7 @@ def _open_edges(faces: Ints) -> tuple[Ints, Ints, Ints]:
 
 
 def _outward(vertices: Floats, low: Ints, high: Ints, apex: Ints) -> Floats:
-    """Unit vectors (b, 3) across boundary edges, in the plane of the face and away from it."""
+    """Unit vectors (b, 3) perpendicular to boundary edges, in the plane of the face and away from it."""
     along = vertices[high] - vertices[low]
     out = vertices[low] - vertices[apex]
     out = out - along * (np.einsum("ij,ij->i", out, along) / np.einsum("ij,ij->i", along, along))[:, None]
@@ -66,7 +72,7 @@ def _at_vertices(count: int, low: Ints, high: Ints, out: Floats) -> Floats:
 
 
 def _joined(vertices: Floats, faces: Ints, reach: float) -> tuple[Floats, Ints, int, float]:
-    """Make one of boundary vertices that are close beside their edges, at their common centre."""
+    """Join boundary vertices that are close compared with their edges, at their mean."""
     low, high, apex = _open_edges(faces)
     rim = np.unique(np.concatenate([low, high]))
     if len(rim) == 0:
@@ -83,8 +89,8 @@ def _joined(vertices: Floats, faces: Ints, reach: float) -> tuple[Floats, Ints, 
     gap, near = cKDTree(vertices[rim]).query(vertices[rim], k=min(_NEIGHBOURS, len(rim)), distance_upper_bound=reach)
     first, column = np.nonzero(np.isfinite(gap) & (near != np.arange(len(rim))[:, None]))
     a, b, gap = rim[first], rim[near[first, column]], gap[first, column]
-    good = gap < _BY_EDGE * np.minimum(shortest[a], shortest[b])
-    good &= np.einsum("ij,ij->i", away[a], away[b]) < _SAME_WAY
+    good = gap < _WIDEST_BY_EDGE * np.minimum(shortest[a], shortest[b])
+    good &= np.einsum("ij,ij->i", away[a], away[b]) < _SAME_DIRECTION
     a, b, gap = a[good], b[good], gap[good]
     if len(a) == 0:
         return vertices, faces, 0, 0.0
@@ -99,7 +105,7 @@ def _joined(vertices: Floats, faces: Ints, reach: float) -> tuple[Floats, Ints, 
 
 
 def _hanging(vertices: Floats, faces: Ints, reach: float) -> tuple[Ints, Ints, Floats]:
-    """Boundary edges (k, 2) that a vertex of another boundary halves, that vertex (k,) and how far off it lies."""
+    """Boundary edges (k, 2) that a vertex of another boundary splits, that vertex (k,), and its distance."""
     low, high, apex = _open_edges(faces)
     rim = np.unique(np.concatenate([low, high]))
     if not 0 < len(low) < _LOOSE * len(faces):
@@ -116,9 +122,9 @@ def _hanging(vertices: Floats, faces: Ints, reach: float) -> tuple[Ints, Ints, F
     to = vertices[vertex] - vertices[low[edge]]
     t = np.einsum("ij,ij->i", to, along[edge]) / length[edge] ** 2
     gap = np.linalg.norm(to - t[:, None] * along[edge], axis=1)
-    good = (t > _BY_EDGE) & (t < 1 - _BY_EDGE) & (gap < np.minimum(reach, _BY_EDGE * length[edge]))
-    good &= np.einsum("ij,ij->i", to, out[edge]) > -_ALONG / WIDEST * reach
-    good &= np.einsum("ij,ij->i", away[vertex], out[edge]) < _SAME_WAY
+    good = (t > _WIDEST_BY_EDGE) & (t < 1 - _WIDEST_BY_EDGE) & (gap < np.minimum(reach, _WIDEST_BY_EDGE * length[edge]))
+    good &= np.einsum("ij,ij->i", to, out[edge]) > -_OVERLAP / WIDEST * reach
+    good &= np.einsum("ij,ij->i", away[vertex], out[edge]) < _SAME_DIRECTION
     edge, vertex, gap, t = edge[good], vertex[good], gap[good], t[good]
     order = np.lexsort((vertex, np.abs(t - 0.5), edge))
     one = order[np.unique(edge[order], return_index=True)[1]]

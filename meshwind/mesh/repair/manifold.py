@@ -1,4 +1,4 @@
-"""Make a mesh manifold: no edge with more than two faces, no vertex where separate fans meet."""
+"""Making a mesh manifold: no edge with more than two faces, no vertex shared by separate fans of faces."""
 
 import igl
 import numpy as np
@@ -18,14 +18,14 @@ def without_small_patches(vertices: Floats, faces: Ints) -> Ints:
             return faces
         label = patches(faces, found)
         size: Floats = np.bincount(label, areas(vertices, faces)).astype(np.float64)
-        loser = _smallest_at_edges(found, label, size)
-        if len(loser) == 0:
+        smallest = _smallest_at_edges(found, label, size)
+        if len(smallest) == 0:
             return faces
-        faces = faces[~np.isin(label, loser)]
+        faces = faces[~np.isin(label, smallest)]
 
 
 def _smallest_at_edges(found: Edges, label: Ints, size: Floats) -> Ints:
-    """Patches that are the smaller ones at every edge where they meet another in a crowd of faces."""
+    """Patches that are the smallest at every edge with more than two faces where they meet another patch."""
     at = found.of_face.ravel()
     crowded = np.flatnonzero(found.count[at] > 2)
     edge, patch = at[crowded], label[crowded // 3]
@@ -36,13 +36,13 @@ def _smallest_at_edges(found: Edges, label: Ints, size: Floats) -> Ints:
     np.minimum.at(lowest, edge, rank[patch])
     np.maximum.at(highest, edge, rank[patch])
     contested = lowest[edge] < highest[edge]
-    wins = np.bincount(patch[contested & (rank[patch] != lowest[edge])], minlength=len(size))
-    losses = np.bincount(patch[contested & (rank[patch] == lowest[edge])], minlength=len(size))
-    return np.flatnonzero((losses > 0) & (wins == 0))
+    larger = np.bincount(patch[contested & (rank[patch] != lowest[edge])], minlength=len(size))
+    smaller = np.bincount(patch[contested & (rank[patch] == lowest[edge])], minlength=len(size))
+    return np.flatnonzero((smaller > 0) & (larger == 0))
 
 
 def without_odd_faces(vertices: Floats, faces: Ints) -> Ints:
-    """Drop the smallest face at each edge where one patch meets itself with an odd number of faces over two."""
+    """Drop the smallest face at each edge where one patch meets itself with an odd number of faces above two."""
     while True:
         count = edges(faces).count
         odd = (count > 2) & (count % 2 == 1)
@@ -68,22 +68,22 @@ def oriented(faces: Ints) -> Ints:
 
 
 def disagreements(faces: Ints) -> int:
-    """Number of edges across which the two faces are turned opposite ways."""
+    """Number of edges whose two faces have opposite orientations."""
     first, second = edges(faces).pairs()
     return int((faces.ravel()[first] == faces.ravel()[second]).sum())
 
 
 def check_orientable(faces: Ints, name: str) -> None:
-    """Refuse a manifold mesh, oriented as well as can be, that has only one side."""
+    """Refuse an oriented manifold mesh that is not orientable."""
     if disagreements(faces):
         raise BadInputError(f"{name}: has only one side, like a Moebius strip; give a part with an inside")
 
 
 def separated(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
-    """Split edges where four and more oriented faces meet, and vertices where separate fans meet.
+    """Split edges with four or more oriented faces, and vertices shared by separate fans.
 
-    At an edge the faces are paired about the solid wedges between them, so that bodies that touch come apart.
-    Where the wedges hang together at both ends of the edge, it is halved, so that its middle can be split.
+    At an edge, faces that bound the same solid wedge are paired, which separates bodies that touch.  An edge whose
+    wedges are connected at both ends is halved, so that its midpoint can be split.
     """
     points, split = _separated(vertices, faces)
     found = edges(split)
@@ -92,26 +92,26 @@ def separated(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
         return points, split
     points = np.concatenate([points, points[double].mean(axis=1)])
     points, split = _separated(points, subdivide(points, split, double, len(points) - len(double)))
-    while edges(split).count.max() > 2:  # faces that bound no wedge, whichever way they are paired
+    while edges(split).count.max() > 2:  # faces that bound no wedge in any pairing
         split = without_odd_faces(points, _without_smallest(points, split, edges(split).count > 2))
         points, split = _separated(points, split)
     return points, split
 
 
 def _separated(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
-    """One vertex for each fan of faces that are paired across edges."""
+    """Give each fan of faces that are paired across edges a vertex of its own."""
     found = edges(faces)
     first, second = found.pairs()
     if (found.count > 2).any():
         crowded = _wedges(vertices, faces, found)
         first, second = (np.concatenate(both) for both in zip((first, second), crowded, strict=True))
-    # Two corners are one vertex where their faces meet across an edge that holds it.
+    # two corners are one vertex if their faces are paired across an edge with this vertex
     tail, head = first, _next(first)
     same = faces.ravel()[first] == faces.ravel()[second]
     other_tail, other_head = np.where(same, second, _next(second)), np.where(same, _next(second), second)
     label = components(3 * len(faces), np.concatenate([tail, head]), np.concatenate([other_tail, other_head]))
     corner = np.empty(label.max(initial=-1) + 1, dtype=np.int64)
-    corner[label[::-1]] = np.arange(len(label))[::-1]  # the first of each fan, which is written last
+    corner[label[::-1]] = np.arange(len(label))[::-1]  # the first of each fan is written last
     order = np.argsort(faces.ravel()[corner], kind="stable")
     renumber = np.empty(len(corner), dtype=np.int64)
     renumber[order] = np.arange(len(corner))
@@ -119,12 +119,12 @@ def _separated(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
 
 
 def _next(half_edges: Ints) -> Ints:
-    """The half-edge that follows within its face; its index is also that of the corner where it starts."""
+    """The next half-edge of the same face; its index is also that of the corner at which it starts."""
     return np.where(half_edges % 3 == 2, half_edges - 2, half_edges + 1)
 
 
 def _wedges(vertices: Floats, faces: Ints, found: Edges) -> tuple[Ints, Ints]:
-    """Pairs of half-edges that bound a solid wedge at each edge of four and more faces."""
+    """Pairs of half-edges that bound a solid wedge at each edge with four or more faces."""
     half = np.flatnonzero(found.count[found.of_face.ravel()] > 2)
     edge = found.of_face.ravel()[half]
     low, high = (vertices[found.ends[edge, k]] for k in range(2))
@@ -140,12 +140,12 @@ def _wedges(vertices: Floats, faces: Ints, found: Edges) -> tuple[Ints, Ints]:
     starts = np.flatnonzero(np.r_[True, edge[1:] != edge[:-1]]) if len(edge) else np.empty(0, dtype=np.int64)
     size = np.diff(np.r_[starts, len(edge)])
     first, many = np.repeat(starts, size), np.repeat(size, size)
-    place = np.arange(len(edge)) - first
-    following = first + (place + 1) % many
-    # Faces that bound a wedge run against each other; where that leaves the choice, an outward face along the
-    # edge has the solid before it, one against the edge behind it.
-    alike = np.where(place % 2 == 0, 1, -1) * (along == along[following])
+    position = np.arange(len(edge)) - first
+    following = first + (position + 1) % many
+    # faces that bound a wedge have opposite directions along the edge; if both pairings satisfy this, the solid is
+    # before an outward face along the edge, and behind one against it
+    alike = np.where(position % 2 == 0, 1, -1) * (along == along[following])
     balance = np.add.reduceat(alike, starts) if len(starts) else np.empty(0, dtype=np.int64)
     shift = np.where(balance == 0, along[starts], balance > 0).astype(np.int64)
-    ring = half[first + (place + np.repeat(shift, size)) % many]
+    ring = half[first + (position + np.repeat(shift, size)) % many]
     return ring[::2], ring[1::2]

@@ -9,9 +9,12 @@ from meshwind.core.errors import BadInputError
 from meshwind.mesh.geometry.areas_and_volumes import areas
 from meshwind.mesh.geometry.topology import patches
 
-_ALIKE = 1e9  # areas are equal, and so are places, that agree to this many parts
-_LARGE = 0.2  # of the kept piece's area, above which dropping another one deserves a warning
-_CRUMBS, _CRUMB = 20, 0.05  # more pieces than this, the largest below that share of the area: a mesh that is no surface
+_STEPS = 1e9
+"""Areas and positions are rounded to this many steps, so that round-off does not decide the order of pieces."""
+_LARGE = 0.2
+"""Area over that of the chosen piece above which a dropped piece is worth a warning."""
+_MANY_PIECES, _SMALL_SHARE = 20, 0.05
+"""With more pieces than this, of which the largest has less than this share of the area, a mesh is not a surface."""
 
 
 @dataclass(frozen=True)
@@ -28,21 +31,21 @@ class Pieces:
 
     @staticmethod
     def of(vertices: Floats, faces: Ints) -> "Pieces":
-        """Tell the pieces apart; those of one area are in the order of their centroids, x first."""
+        """Find the pieces of a mesh, ordered by area; those of equal area by their centroids, x first."""
         label, area = patches(faces), areas(vertices, faces)
         size = np.bincount(label, area)
         weight = np.maximum(size, np.finfo(float).tiny)
         middle = vertices[faces].mean(axis=1) * area[:, None]
-        places = [np.bincount(label, middle[:, k]) / weight for k in range(3)]
+        centroids = [np.bincount(label, middle[:, k]) / weight for k in range(3)]
         extent = max(float(np.ptp(vertices, axis=0).max()), np.finfo(float).tiny)
-        z, y, x = (np.round(_ALIKE * (place / extent)) for place in places[::-1])
-        order = np.lexsort((z, y, x, -np.round(_ALIKE * (size / max(size.max(), np.finfo(float).tiny)))))
+        z, y, x = (np.round(_STEPS * (coordinate / extent)) for coordinate in centroids[::-1])
+        order = np.lexsort((z, y, x, -np.round(_STEPS * (size / max(size.max(), np.finfo(float).tiny)))))
         rank = np.empty(len(order), dtype=np.int64)
         rank[order] = np.arange(len(order))
         return Pieces(vertices, faces, rank[label], size[order].astype(np.float64))
 
     def chosen(self, component: int, name: str) -> tuple[Ints, list[str]]:
-        """Faces of the piece of this rank, and what is to be said of the others."""
+        """Faces of the piece of this rank, and notes on the others."""
         count = len(self.areas)
         self._check(component, name)
         kept = self.faces[self.rank == component]
@@ -66,14 +69,14 @@ class Pieces:
         if isinstance(component, bool) or not isinstance(component, int | np.integer) or not 0 <= component < count:
             pieces = "1 piece; give 0" if count == 1 else f"{count} pieces; give a number from 0 to {count - 1}"
             raise BadInputError(f"{name}: component {component!r}: the mesh has {pieces}")
-        if count > _CRUMBS and self.areas[0] < _CRUMB * self.areas.sum():
+        if count > _MANY_PIECES and self.areas[0] < _SMALL_SHARE * self.areas.sum():
             raise BadInputError(
                 f"{name}: falls apart into {count} pieces, for its triangles do not meet; weld their vertices and"
                 " export the mesh again"
             )
 
     def _within(self, kept: Ints, other: Ints) -> bool:
-        """Whether the bounding box of one piece holds that of another."""
+        """Whether the bounding box of one piece contains that of another."""
         (low, high), (least, most) = (
             (points.min(axis=0), points.max(axis=0))
             for points in (self.vertices[kept.ravel()], self.vertices[other.ravel()])

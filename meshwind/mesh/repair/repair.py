@@ -1,4 +1,4 @@
-"""Repair a triangle mesh and say what was done."""
+"""Repair of a triangle mesh, with notes on what was changed."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,22 +14,24 @@ from meshwind.mesh.repair.pieces import Pieces
 from meshwind.mesh.repair.slivers import without_slivers
 from meshwind.mesh.repair.weld import weld, without_collapsed, without_duplicates
 
-_FARTHEST = 1e-8  # extent over distance from the origin: what is less has lost half its digits
+_LEAST_EXTENT = 1e-8
+"""Least extent over the distance from the origin: below it, coordinates have lost half of their digits."""
 
 
 def mesh_from(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh", component: int = 0) -> Mesh:
     """Make a repaired mesh from vertices (n, 3), in any unit, and triangles (m, 3) of indices from 0.
 
-    Vertices are welded, useless faces dropped, cracks closed, the rest made manifold and oriented outward, and
-    of several pieces one is kept: `component` is its rank by area, 0 the largest.  `repairs` of the result says
-    so, and what was noticed but left.  Raises BadInputError where no surface is left.
+    Vertices are welded, degenerate and repeated faces dropped, cracks closed, and the rest is made manifold and
+    oriented outwards.  Of several pieces one is kept: `component` is its rank by area, 0 the largest.  The result's
+    `repairs` lists these changes, and faults that were found but not repaired.  Raises BadInputError if no surface is
+    left.
     """
     pieces, notes = made_manifold(vertices, faces, name)
-    return kept(pieces, notes, component, name, (len(np.asarray(vertices)), len(np.asarray(faces))))
+    return chosen_piece(pieces, notes, component, name, (len(np.asarray(vertices)), len(np.asarray(faces))))
 
 
 def made_manifold(vertices: ArrayLike, faces: ArrayLike, name: str) -> tuple[Pieces, list[str]]:
-    """The first half of the repair, all pieces still there; also says what was done."""
+    """First half of the repair, of all pieces together; also returns notes on what was changed."""
     points, triangles = _checked(vertices, faces, name)
     notes: list[str] = []
     size = len(points)
@@ -45,12 +47,12 @@ def made_manifold(vertices: ArrayLike, faces: ArrayLike, name: str) -> tuple[Pie
     return Pieces.of(points, triangles), notes
 
 
-def kept(pieces: Pieces, notes: list[str], component: int, name: str, read: tuple[int, int]) -> Mesh:
-    """The second half: the mesh of one piece; `read` counts the vertices and faces of the file."""
+def chosen_piece(pieces: Pieces, notes: list[str], component: int, name: str, read: tuple[int, int]) -> Mesh:
+    """Second half of the repair: the mesh of one piece; `read` counts the vertices and faces of the file."""
     triangles, words = pieces.chosen(component, name)
     notes = notes + words
     manifold.check_orientable(triangles, name)
-    triangles = _mend_slivers(pieces.vertices, triangles, notes, name)
+    triangles = _remove_slivers(pieces.vertices, triangles, notes, name)
     points, triangles = _referenced(pieces.vertices, triangles)
     if volume(points, triangles) < 0:
         triangles = triangles[:, ::-1]
@@ -60,7 +62,7 @@ def kept(pieces: Pieces, notes: list[str], component: int, name: str, read: tupl
 
 
 def _checked(vertices: ArrayLike, faces: ArrayLike, name: str) -> tuple[Floats, Ints]:
-    """Arrays of the right shape, with finite coordinates and indices that exist."""
+    """Arrays of the right shape, with finite coordinates and valid indices."""
     raw = np.asarray(vertices, dtype=np.float64)
     bad = 0 if raw.ndim != 2 else int((~np.isfinite(raw)).any(axis=1).sum())
     if bad:
@@ -72,30 +74,32 @@ def _checked(vertices: ArrayLike, faces: ArrayLike, name: str) -> tuple[Floats, 
         raise BadInputError(f"{name}: holds no triangles; export the part's surface as a triangle mesh")
     indices = floats(given, f"{name}: faces", -1, 3)
     if (indices != np.floor(indices)).any() or indices.min() < 0 or indices.max() >= len(points):
-        raise BadInputError(f"{name}: faces name vertices that are not there; give indices from 0 to {len(points) - 1}")
+        raise BadInputError(
+            f"{name}: faces refer to vertices that do not exist; give indices from 0 to {len(points) - 1}"
+        )
     return points, indices.astype(np.int64)
 
 
 def _check_size(points: Floats, name: str) -> None:
-    """Refuse coordinates whose squares and cubes leave the range of numbers."""
+    """Refuse coordinates whose squares and cubes overflow or underflow."""
     size = float(np.abs(points).max())
     if not 1e-50 < size < 1e50:
         raise BadInputError(f"{name}: coordinates up to {size:g} are out of range; scale the mesh to ordinary units")
     extent = float(np.ptp(points, axis=0).max())
-    if 0 < extent < _FARTHEST * size:
+    if 0 < extent < _LEAST_EXTENT * size:
         raise BadInputError(
             f"{name}: lies {size:.2g} from the origin, too far for its size of {extent:.2g}; move it there"
         )
 
 
 def _referenced(points: Floats, faces: Ints) -> tuple[Floats, Ints]:
-    """Drop vertices that no face uses."""
+    """Drop unused vertices."""
     keep, renumber = compact(faces, len(points))
     return points[keep], renumber[faces]
 
 
 def _note(notes: list[str], count: int, sentence: str, one: str = "face", many: str = "faces") -> None:
-    """Add a sentence to the repairs if there was anything to do."""
+    """Add a note on a repair if the count is not 0."""
     if count:
         notes.append(sentence.format(f"{count} {one if count == 1 else many}"))
 
@@ -112,8 +116,8 @@ def _drop_useless(faces: Ints, notes: list[str], name: str) -> Ints:
 
 
 def _close_cracks(vertices: Floats, faces: Ints, notes: list[str]) -> tuple[Floats, Ints]:
-    """Join boundaries that face each other across a crack, and halve edges at which a neighbour's vertex hangs."""
-    points, whole, count, widest = cracks.closed(vertices, faces)
+    """Join boundaries that face each other across a crack, and split edges at hanging vertices."""
+    points, whole, count, widest = cracks.close_cracks(vertices, faces)
     _note(notes, count, f"closed cracks up to {widest:.2g} wide at {{}}", "vertex", "vertices")
     return points, whole
 
@@ -131,7 +135,7 @@ def _make_manifold(vertices: Floats, faces: Ints, notes: list[str]) -> tuple[Flo
 
 
 def _minority(before: Ints, after: Ints) -> int:
-    """How many faces were turned, or were not where most of their patch was."""
+    """Number of faces whose orientation relative to most of their patch was changed."""
     if np.array_equal(before, after):
         return 0
     turned = np.ones(len(before), dtype=bool)
@@ -142,8 +146,8 @@ def _minority(before: Ints, after: Ints) -> int:
     return int(np.minimum(flipped, size - flipped).sum())
 
 
-def _mend_slivers(vertices: Floats, faces: Ints, notes: list[str], name: str) -> Ints:
-    """Flip away faces without height."""
+def _remove_slivers(vertices: Floats, faces: Ints, notes: list[str], name: str) -> Ints:
+    """Remove faces without height."""
     diagonal = float(np.linalg.norm(np.ptp(_referenced(vertices, faces)[0], axis=0)))
     mended, count = without_slivers(vertices, faces, diagonal)
     _note(notes, count, "flipped or dropped {} without height", "face", "faces")

@@ -1,4 +1,4 @@
-"""Faces without height: flip their longest edge away, which moves no vertex and tears no gap."""
+"""Removal of faces without height by edge flips, which move no vertex and open no gap."""
 
 import numpy as np
 
@@ -7,8 +7,9 @@ from meshwind.mesh.geometry.areas_and_volumes import areas, edge_lengths
 from meshwind.mesh.geometry.topology import edges
 
 FLAT = 1e-6
-"""A face lower than this part of the diagonal has no height."""
-_ROUNDS = 20
+"""Least height of a face over the diagonal."""
+_MAX_ROUNDS = 20
+"""Maximum number of rounds of flips."""
 
 
 def heights(vertices: Floats, faces: Ints) -> Floats:
@@ -17,13 +18,13 @@ def heights(vertices: Floats, faces: Ints) -> Floats:
 
 
 def without_slivers(vertices: Floats, faces: Ints, diagonal: float) -> tuple[Ints, int]:
-    """Flip or, at the boundary, drop faces without height; also returns how many there were.
+    """Flip or, at the boundary, drop faces without height; also returns their number.
 
-    Faces are oriented and manifold, and stay so.
+    Faces must be oriented and manifold, and remain so.
     """
     flat = heights(vertices, faces) < FLAT * diagonal
     count = int(flat.sum())
-    for _ in range(_ROUNDS):
+    for _ in range(_MAX_ROUNDS):
         if not flat.any():
             break
         changed = _round(vertices, faces, flat)
@@ -35,21 +36,21 @@ def without_slivers(vertices: Floats, faces: Ints, diagonal: float) -> tuple[Int
 
 
 def _round(vertices: Floats, faces: Ints, flat: Bools) -> Ints | None:
-    """Flip as many flat faces as do not touch each other; None where nothing can be done."""
+    """Flip as many flat faces as do not touch each other; None if none can be flipped."""
     found = edges(faces)
     at = found.of_face.ravel()
     face = np.flatnonzero(flat)
     half = 3 * face + edge_lengths(vertices, faces[face]).argmax(axis=1)
     edge = at[half]
-    lonely = found.count[edge] == 1
+    single = found.count[edge] == 1
     other = _opposite(at, half)
     apex, far = faces[face, (half + 2) % 3], faces[other // 3, (other + 2) % 3]
     span = int(faces.max()) + 1
     wanted = np.minimum(apex, far) * span + np.maximum(apex, far)
     taken = np.isin(wanted, found.ends[:, 0] * span + found.ends[:, 1]) | (apex == far)
-    flips = np.flatnonzero(~lonely & ~taken)
+    flips = np.flatnonzero(~single & ~taken)
     flips = flips[_independent(face[flips], other[flips] // 3, wanted[flips], len(faces))]
-    drops = face[lonely]
+    drops = face[single]
     if len(flips) + len(drops) == 0:
         return None
     one, two = face[flips], other[flips] // 3
@@ -61,7 +62,7 @@ def _round(vertices: Floats, faces: Ints, flat: Bools) -> Ints | None:
 
 
 def _opposite(at: Ints, half: Ints) -> Ints:
-    """The other half-edge at the edge of each given one; itself at the boundary."""
+    """The opposite half-edge of each given one; itself at the boundary."""
     low = np.full(at.max() + 1, len(at))
     high = np.full(at.max() + 1, -1)
     np.minimum.at(low, at, np.arange(len(at)))
@@ -70,7 +71,7 @@ def _opposite(at: Ints, half: Ints) -> Ints:
 
 
 def _independent(one: Ints, two: Ints, edge: Ints, faces: int) -> Bools:
-    """Mask of flips that share no face, and no new edge, with one that comes earlier."""
+    """Mask of flips that share no face and no new edge with an earlier one."""
     turn = np.arange(len(one))
     first = np.full(faces, len(one))
     np.minimum.at(first, one, turn)

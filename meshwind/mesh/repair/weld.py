@@ -1,4 +1,4 @@
-"""Weld vertices that lie together, and drop faces that say nothing."""
+"""Welding of coincident vertices, and removal of collapsed and duplicate faces."""
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -7,11 +7,11 @@ from meshwind.core.cast import Floats, Ints
 from meshwind.mesh.geometry.topology import components
 
 WELD = 1e-7
-"""Vertices closer than this part of the diagonal are one: single precision, as in binary STL, resolves no more."""
+"""Distance over the diagonal below which vertices coincide: single precision, as in binary STL, resolves no more."""
 
 
 def weld(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
-    """Join vertices within the tolerance, transitively; the first of each group stays where it is."""
+    """Join vertices within the tolerance, transitively; each group takes the position of its first vertex."""
     exact = _first_of_equal(vertices)
     distinct, inverse = np.unique(exact, return_inverse=True)
     close = _close_pairs(vertices[distinct])
@@ -31,7 +31,7 @@ def _close_pairs(points: Floats) -> Ints:
 
 
 def _first_of_equal(vertices: Floats) -> Ints:
-    """Lowest index (n,) of a vertex with the very same coordinates."""
+    """Lowest index (n,) of a vertex with exactly the same coordinates."""
     order = np.lexsort(vertices.T)  # stable, so that the first of a group has the lowest index
     ranked = vertices[order]
     new = np.ones(len(order), dtype=bool)
@@ -42,13 +42,13 @@ def _first_of_equal(vertices: Floats) -> Ints:
 
 
 def without_collapsed(faces: Ints) -> Ints:
-    """Drop faces that name a vertex twice."""
+    """Drop faces with a repeated vertex."""
     a, b, c = faces.T
     return np.asarray(faces[(a != b) & (b != c) & (c != a)])
 
 
 def without_duplicates(faces: Ints) -> Ints:
-    """Drop faces that have the same three corners as an earlier one, in whatever order."""
+    """Drop faces with the same three corners as an earlier one, in any order."""
     ordered = np.sort(faces, axis=1)
     order = np.lexsort(ordered.T)
     ranked = ordered[order]
