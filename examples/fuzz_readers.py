@@ -1,10 +1,10 @@
-"""Fuzz a reader with coverage guidance, by hand: whatever the file, it gives a mesh or one line.
+"""Fuzz a reader, guided by coverage: any file must give a mesh or an error of one line.
 
     pip install atheris
     python examples/fuzz_readers.py .obj corpus -max_total_time=600
 
-Takes the suffix of a format, then what libFuzzer takes: a folder of first files, which grows, and its options.
-Stops at the first file that ends otherwise, and keeps it.
+Arguments are the suffix of a format, then those of libFuzzer: a folder of first files, to which it adds, and options.
+It stops at the first file with any other outcome, and keeps it.
 """
 
 import sys
@@ -21,7 +21,7 @@ with atheris.instrument_imports(include=["trimesh.exchange"]):
 
 
 def main() -> None:
-    """Fuzz until a time limit or a finding."""
+    """Fuzz until the time limit or the first finding."""
     suffix, *options = sys.argv[1:]
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, f"part{suffix}")

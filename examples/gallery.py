@@ -1,4 +1,4 @@
-"""The pictures of the gallery page: every part in data/ wound, a redesign, a fibre that is dragged.
+"""The pictures of the README beside this file: every part in data/ wound, and a redesign.
 
     python examples/gallery.py --out examples/gallery
 
@@ -42,7 +42,7 @@ SHOWN = {
 
 def main() -> None:
     """Wind, draw and write."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, default=Path("out/gallery"), help="folder for the pictures")
     parser.add_argument("--only", default=",".join((*SHOWN, "redesign")), help="names by commas")
     given = parser.parse_args()
@@ -56,22 +56,22 @@ def wound(name: str, out: Path) -> None:
     """One part's picture."""
     shown = SHOWN[name]
     with TemporaryDirectory() as folder:
-        place = Path(folder) / name
+        run = Path(folder) / name
         mw.wind(
             DATA / shown.mesh,
             paths=shown.paths,
             revolutions=shown.revolutions,
             friction=shown.friction,
             units="mm",
-            out=place,
+            out=run,
             render=False,
         )
-        mw.render(place, only=[shown.picture], page=PAGE)
-        small(place / f"{shown.picture}.png", out / f"{name}.png")
+        mw.render(run, only=[shown.picture], page=PAGE)
+        small(run / f"{shown.picture}.png", out / f"{name}.png")
 
 
 def redesigned(name: str, out: Path) -> None:
-    """A vase, before and after its neck came out to the fibres."""
+    """A vase, before and after the redesign of its neck."""
     edited = mw.redesign(DATA / "vase.stl", revolutions=0.35, paths=8)
     with TemporaryDirectory() as folder:
         mw.write_redesign(edited, folder, units="mm")
@@ -80,7 +80,7 @@ def redesigned(name: str, out: Path) -> None:
 
 
 def small(picture: Path, out: Path) -> None:
-    """A picture in 128 colours, a quarter as large."""
+    """Save a picture in 128 colours, which makes the file a quarter as large."""
     with Image.open(picture) as image:
         image.convert("RGB").quantize(128, dither=Image.Dither.NONE).save(out, optimize=True)
 

@@ -3,22 +3,22 @@
 import argparse
 from pathlib import Path
 
-import data_shapes
 import trimesh
-from data_mesher import Part, triangulate
+from sample_parts import shapes
+from sample_parts.mesher import Part, triangulate
 
 PARTS = (
-    Part("vase.stl", data_shapes.vase, closed=False, vertices=4300),
-    Part("tank.ply", data_shapes.tank, closed=True, vertices=5000),
-    Part("elbow.obj", data_shapes.elbow, closed=False, vertices=4000),
-    Part("bottle.obj", data_shapes.bottle, closed=True, vertices=5200, sharpness=12),
-    Part("cast.ply", data_shapes.cast, closed=False, vertices=4500, sharpness=15),
-    Part("wing.stl", data_shapes.wing, closed=True, vertices=6200, grid=(450, 1000), sharpness=7),
+    Part("vase.stl", shapes.vase, closed=False, vertices=4300),
+    Part("tank.ply", shapes.tank, closed=True, vertices=5000),
+    Part("elbow.obj", shapes.elbow, closed=False, vertices=4000),
+    Part("bottle.obj", shapes.bottle, closed=True, vertices=5200, sharpness=12),
+    Part("cast.ply", shapes.cast, closed=False, vertices=4500, sharpness=15),
+    Part("wing.stl", shapes.wing, closed=True, vertices=6200, grid=(450, 1000), sharpness=7),
 )
 
 
 def write(part: Part, seed: int, folder: Path) -> str:
-    """Mesh the part and write it in the format that its name asks for; return a line that says so."""
+    """Mesh the part and write it in the format of its file name; return a line with its size."""
     vertices, faces = triangulate(part, seed)
     mesh = trimesh.Trimesh(vertices, faces, process=False)
     how = {"digits": 9, "header": None, "include_normals": False} if part.file.endswith(".obj") else {}

@@ -2,8 +2,8 @@
 
     python examples/moving_ends.py --out DIR
 
-On the surface both peaks catch the fibre.  Off the surface, as a fibre in tension really moves, it flies over the
-small one and wraps around the large one.
+On the surface both peaks catch the fibre.  Where the fibre may leave the surface, as a fibre in tension does, it
+bridges the small peak and wraps around the large one.
 """
 
 import argparse
@@ -15,6 +15,7 @@ from meshwind import Surface, drag
 from meshwind.surface.interpolate import interpolate
 
 FRAMES = 23
+"""Positions of the ends."""
 SHOWN = (0, 9, 22)
 PEAKS = {"small peak, 1.2 high": 1.2, "large peak, 3.5 high": 3.5}
 
@@ -32,7 +33,7 @@ def valley(peak: float) -> Surface:
 def main() -> None:
     """Drag, print where the fibre's middle is in each frame, and draw."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=Path("."), help="folder for moving_ends.png")
+    parser.add_argument("--out", type=Path, default=Path("out/moving_ends"), help="folder for moving_ends.png")
     out = parser.parse_args().out
     out.mkdir(parents=True, exist_ok=True)
     import matplotlib
@@ -40,8 +41,8 @@ def main() -> None:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    way = np.linspace(0.25, 0.8, FRAMES)
-    start, end = np.stack([0 * way, way], axis=1), np.stack([0 * way + 1, way], axis=1)
+    v = np.linspace(0.25, 0.8, FRAMES)
+    start, end = np.stack([0 * v, v], axis=1), np.stack([0 * v + 1, v], axis=1)
     grid = np.stack(np.meshgrid(np.linspace(0, 1, 61), np.linspace(0, 1, 61), indexing="ij"), axis=-1)
     figure = plt.figure(figsize=(12, 12), layout="constrained")
     row = 0
@@ -59,14 +60,14 @@ def main() -> None:
                 axes.plot_surface(x, y, z, color="0.85", linewidth=0, antialiased=True, zorder=0)
                 axes.plot(*paths.points[frame].T, color="#0072B2", linewidth=2.0, zorder=2)
                 if not paths.on_surface[frame].all():
-                    shadow = surface.points(paths.uv[frame])
-                    axes.plot(*shadow.T, color="#009E73", linewidth=1.0, zorder=1)
+                    feet = surface.points(paths.uv[frame])
+                    axes.plot(*feet.T, color="#009E73", linewidth=1.0, zorder=1)
                 axes.set_title(f"{name}, {model}: frame {frame}", fontsize=8)
                 axes.view_init(elev=38, azim=-62)
                 axes.set_box_aspect(np.ptp([x.ravel(), y.ravel(), z.ravel()], axis=1))
                 axes.set_axis_off()
             row += 1
-    figure.suptitle("A fibre dragged along a valley (blue), and its shadow on the surface where it flies (green)")
+    figure.suptitle("A fibre dragged along a valley (blue), and its feet on the surface where it bridges (green)")
     figure.savefig(out / "moving_ends.png", dpi=110)
     print(f"wrote {out / 'moving_ends.png'}")
 

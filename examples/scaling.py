@@ -1,10 +1,10 @@
-"""How a run grows: time and peak memory of `meshwind wind` against faces, paths and particles.
+"""How the cost of a run grows: time and peak memory of `meshwind wind` against faces, paths and particles.
 
     python examples/scaling.py --out out/scaling
 
 Each run is the command itself, from the mesh file to all files and pictures, in a process of its own, on an irregular
-mesh of a vase.  Where paths grow, revolutions fall, so that each crosses as many others: crossings are pairs of paths,
-and a run with as many revolutions has them by the square of its paths.  Writes scaling.csv and scaling.png.
+mesh of a vase.  With more paths revolutions are fewer, so that each path crosses as many others: at constant
+revolutions the number of crossings grows with the square of the number of paths.  Writes scaling.csv and scaling.png.
 """
 
 import argparse
@@ -22,22 +22,22 @@ import matplotlib.pyplot as plt
 import numpy as np
 from charts.record import Results
 from charts.style import BLUE, GREY, ORANGE, RED, log_axes, save
-from fit_cost import VASE, irregular, write
+from comparison.parts import VASE, irregular, write_ply
 
 FACES = (10_000, 30_000, 100_000, 300_000, 1_000_000)
 PATHS = (100, 300, 1_000, 3_000, 5_000)
-"""A family: twice as many in all."""
+"""Per family: twice as many in all."""
 PARTICLES = (101, 201, 501, 1_001, 2_001, 5_001)
 CROSSED = 50.0
-"""Revolutions times paths a family where those grow; half of the paths that each crosses."""
-SWEPT = {"faces": "faces of the mesh", "paths": "paths in all", "particles": "particles a path"}
+"""Revolutions times paths per family where these grow; half of the number of paths that each crosses."""
+SWEPT = {"faces": "faces of the mesh", "paths": "paths in all", "particles": "particles per path"}
 
 
 def run(folder: Path, faces: int, paths: int, particles: int, revolutions: float) -> dict[str, Any]:
     """Wind once; seconds, peak memory in bytes, and seconds of each stage."""
     mesh = folder / f"vase-{faces}.ply"
     if not mesh.exists():
-        write(mesh, *irregular(VASE, faces))
+        write_ply(mesh, *irregular(VASE, faces))
     out = folder / "out"
     command = [sys.executable, "-m", "meshwind", "wind", str(mesh), "--out", str(out), "--overwrite",
                "--paths", str(paths), "--particles", str(particles), "--revolutions", repr(revolutions)]  # fmt: skip
@@ -56,7 +56,7 @@ def run(folder: Path, faces: int, paths: int, particles: int, revolutions: float
 
 
 def sweep(folder: Path, faces: Sequence[int], paths: Sequence[int], particles: Sequence[int]) -> list[dict[str, Any]]:
-    """A row a run: each of the three grows while the others stay."""
+    """A row per run: each of the three grows while the others stay."""
     run(folder, 10_000, 2, 101, 0.5)  # compile
     jobs = [("faces", (n, 100, 401, 0.5)) for n in faces]
     jobs += [("paths", (10_000, n, 401, min(CROSSED / n, 0.5))) for n in paths]
@@ -69,7 +69,7 @@ def sweep(folder: Path, faces: Sequence[int], paths: Sequence[int], particles: S
 
 
 def exponent(x: Sequence[float], y: Sequence[float]) -> float:
-    """Of the power law through the upper half of the points, where what a run always costs matters least."""
+    """Exponent of the power law through the upper half of the points, where the constant cost matters least."""
     upper = slice(len(x) // 2, None)
     return float(np.polyfit(np.log(x[upper]), np.log(y[upper]), 1)[0])
 
@@ -108,8 +108,8 @@ def draw(rows: list[dict[str, Any]], folder: Path) -> dict[str, tuple[float, flo
 
 def main() -> None:
     """Measure, print, draw."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])  # type: ignore[union-attr]
-    parser.add_argument("--out", type=Path, required=True, help="folder for the table and the chart")
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=Path, default=Path("out/scaling"), help="folder for the table and the chart")
     parser.add_argument("--quick", action="store_true", help="two small runs of each")
     given = parser.parse_args()
     results = Results(given.out, "scaling.py", given.quick)

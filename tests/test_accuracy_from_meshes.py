@@ -14,8 +14,8 @@ import numpy as np
 import potpourri3d
 import pygeodesic.geodesic
 import pytest
+from comparison.problem import TURN
 from comparison.problems import barrel_radius, vase_radius
-from comparison.rubbing import TURN
 from irregular import annulus
 from scipy.integrate import quad
 from scipy.optimize import brentq
@@ -65,7 +65,7 @@ def vase_slope(z: Floats) -> Floats:
     return np.asarray(-0.35 * 0.75 * np.pi * np.sin(0.75 * np.pi * z + 0.3) + 0.225 * np.cos(2.25 * z))
 
 
-BARREL = Turned("barrel", barrel_radius, lambda z: -0.6 * (z - 1), 0.0, 2.0, 0.45, (0.5, 1.5, 2.5))  # type: ignore[arg-type]
+BARREL = Turned("barrel", barrel_radius, lambda z: -0.6 * (z - 1), 0.0, 2.0, 0.45, (0.5, 1.5, 2.5))
 # above 3.6 rad the vase's hollows and above the rulings' 1.97 rad the waist are pressed on all the way
 VASE = Turned("vase", vase_radius, vase_slope, 0.0, 4.0, 0.7, (3.9, 4.5, 5.0))
 HYPERBOLOID = Turned("hyperboloid", lambda z: np.hypot(1, z), lambda z: z / np.hypot(1, z), -1.5, 1.5, 0.45,

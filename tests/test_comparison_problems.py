@@ -4,8 +4,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from comparison.attempt import OURS, Outcome, attempt
-from comparison.problem import Kind, Problem
+from comparison.attempt import OURS, Outcome, attempt, polyline_length
+from comparison.problem import TURN, Kind, Problem
 from comparison.problems import (
     BARREL_LIMIT,
     CONE_LIMIT,
@@ -17,7 +17,7 @@ from comparison.problems import (
     barrel_length,
     vase_radius,
 )
-from comparison.rubbing import TURN, Dragged, Sliding
+from comparison.sliding import Dragged, Sliding
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
@@ -30,7 +30,7 @@ EACH = pytest.mark.parametrize("problem", TABLE.values(), ids=TABLE.keys())
 def polyline(problem: Problem, particles: int) -> float:
     found = attempt(OURS, problem, particles)
     assert found.outcome == Outcome.REST and found.points is not None
-    return float(np.linalg.norm(np.diff(found.points, axis=0), axis=1).sum())
+    return polyline_length(found.points)
 
 
 def test_every_kind_is_there() -> None:
@@ -42,12 +42,12 @@ def test_an_entry_is_sound(problem: Problem) -> None:
     a, b = problem.surface().points([problem.start, problem.end])
     assert problem.length >= np.linalg.norm(b - a) * (1 - 1e-9)
     assert 0 < problem.accuracy < 1e-9
-    assert problem.hard
+    assert problem.difficulty
     assert problem.error(problem.length) == problem.accuracy
     assert problem.error(2 * problem.length) == pytest.approx(1.0)
-    if problem.before is not None:
-        np.testing.assert_allclose([w[0] for w in problem.way], problem.before, atol=1e-15)
-        np.testing.assert_allclose([w[-1] for w in problem.way], [problem.start, problem.end], atol=1e-15)
+    if problem.dragged_from is not None:
+        np.testing.assert_allclose([w[0] for w in problem.motion], problem.dragged_from, atol=1e-15)
+        np.testing.assert_allclose([w[-1] for w in problem.motion], [problem.start, problem.end], atol=1e-15)
     if problem.initial is not None:
         np.testing.assert_allclose(problem.initial(9)[[0, -1]], [problem.start, problem.end], atol=1e-15)
 
@@ -56,7 +56,7 @@ def test_an_entry_is_sound(problem: Problem) -> None:
 def test_richardson_agrees_with_the_answer(problem: Problem) -> None:
     coarse, fine = polyline(problem, 401), polyline(problem, 801)
     # a dragged fibre comes to rest in frames, which leave their own trace
-    assert problem.error(fine + (fine - coarse) / 3) < (2e-6 if problem.before else 2e-7)
+    assert problem.error(fine + (fine - coarse) / 3) < (2e-6 if problem.dragged_from else 2e-7)
 
 
 @pytest.mark.parametrize("twist", [0.5, 2.5, 4.0])

@@ -5,9 +5,9 @@ from functools import partial
 import numpy as np
 import pytest
 from comparison.attempt import Outcome, attempt
-from comparison.problem import Problem
+from comparison.problem import TURN, Problem
 from comparison.problems import TABLE, barrel_length, barrel_radius
-from comparison.rubbing import TURN, Sliding
+from comparison.sliding import Sliding
 
 from meshwind.core.cast import Floats
 from meshwind.path import Status, solve

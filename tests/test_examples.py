@@ -29,7 +29,7 @@ def test_the_gallery_makes_its_pictures(tmp_path: Path) -> None:
 
 
 def test_the_page_names_what_there_is() -> None:
-    scripts = {path.name for path in (ROOT / "examples").glob("*.py")} - {"data_mesher.py", "data_shapes.py"}
+    scripts = {path.name for path in (ROOT / "examples").glob("*.py")}
     assert set(re.findall(r"examples/(\w+\.py)", PAGE)) == scripts
     pictures = {path.name for path in (ROOT / "examples" / "gallery").iterdir()}
     assert set(re.findall(r"\(gallery/([\w.]+)\)", PAGE)) <= pictures

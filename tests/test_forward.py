@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from comparison.problem import Problem
+from comparison.problem import TURN, Problem
 from comparison.problems import PROBLEMS, barrel_clairaut, barrel_length, hyperboloid
-from comparison.rubbing import TURN
 from forward_shapes import fine_barrel, gutter, parabola, tube
 from scipy.optimize import brentq
 

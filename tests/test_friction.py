@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from comparison.problem import TURN
 from comparison.problems import SLIDING, TABLE, barrel
-from comparison.rubbing import TURN, Sliding, tube
+from comparison.sliding import Sliding, tube
 from friction_checks import BRIDGED, SHAPES, bent, forces, lateral
 from scipy.optimize import brentq
 

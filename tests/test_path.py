@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from comparison.problem import Problem
+from comparison.problem import TURN, Problem
 from comparison.problems import PROBLEMS, RULING, TABLE, barrel, barrel_clairaut, bottle, hyperboloid, vase_radius
-from comparison.rubbing import TURN
 from scipy.optimize import brentq
 
 from meshwind.core.errors import BadInputError

@@ -5,9 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista as pv
-from comparison.problem import Problem
+from comparison.problem import TURN, Problem
 from comparison.problems import vase_radius
-from comparison.rubbing import TURN
 from irregular import annulus
 from scipy.spatial import cKDTree
 

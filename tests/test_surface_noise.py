@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from comparison.problem import TURN
 from comparison.problems import vase_radius
-from comparison.rubbing import TURN
 from irregular import annulus
 
 from meshwind.chart import flatten

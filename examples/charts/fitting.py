@@ -4,7 +4,7 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
-from fit_cost import PARTS, irregular
+from comparison.parts import PARTS, irregular
 
 import meshwind as mw
 from charts.record import Results

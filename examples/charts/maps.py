@@ -1,7 +1,7 @@
-"""Maps of success and failure: a coloured cell a setting, with a sign for readers who see no colours."""
+"""Maps of success and failure: one coloured cell per setting, with a sign for readers who see no colours."""
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 from comparison.attempt import Attempt, Outcome
@@ -13,13 +13,25 @@ from charts.style import CLASSES, SIGNS
 
 KEYS = list(CLASSES)
 SHADES = ListedColormap(["#BFE3D5" if key == "ok" else colour for key, (_, colour) in CLASSES.items()])
+"""The colours of the classes, but for a paler one where all is right, so that failures stand out."""
+
+Row = dict[str, Any]
+"""A row of a table."""
+Y = TypeVar("Y")
+X = TypeVar("X")
 
 
 def classify(found: Attempt, error: float, allowed: float) -> str:
-    """Class of an attempt: at rest with an error above `allowed` is a wrong answer that nobody notices."""
+    """Class of an attempt: one at rest with an error above `allowed` is a wrong answer that nobody notices."""
     if found.outcome == Outcome.REST:
         return "ok" if error <= allowed else "wrong"
     return {Outcome.STALLED: "stalled", Outcome.DIVERGED: "diverged"}.get(found.outcome, "refused")
+
+
+def sweep(y: Iterable[Y], x: Sequence[X], cell: Callable[[Y, X], Row]) -> tuple[list[list[str]], list[Row]]:
+    """Classes [row of y][column of x] and the rows of the table, of which `cell` gives each with its class "result"."""
+    lines = [[cell(b, a) for a in x] for b in y]
+    return [[row["result"] for row in line] for line in lines], [row for line in lines for row in line]
 
 
 def paint(

@@ -8,15 +8,17 @@ from collections.abc import Sequence
 from dataclasses import asdict, is_dataclass
 from importlib.metadata import version
 from pathlib import Path
+from time import perf_counter, process_time
 from typing import Any
 
 
 class Results:
-    """What a script has measured, by chart; every table goes to its own CSV and into results.json."""
+    """The figures of a script, by chart; every table goes to its own CSV and into results.json."""
 
     def __init__(self, folder: Path, script: str, quick: bool) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         self.folder = folder
+        self._begin = perf_counter()
         self._all: dict[str, Any] = {"script": script, "quick": quick, "machine": machine()}
 
     def table(self, name: str, rows: Sequence[Any]) -> None:
@@ -39,6 +41,17 @@ class Results:
             if row["result"] == result and row.get("method", method) == method
         ]
 
+    def finish(self, summary: str) -> None:
+        """Write results.json with the seconds of the run, and print a line that begins with a summary."""
+        wall, processor = perf_counter() - self._begin, process_time()
+        self.table("run", [dict(seconds=wall, processor_seconds=processor)])
+        self.write()
+        print(f"{summary}, {wall:.0f} s ({processor:.0f} s of a core); charts in {self.folder}")
+
+    def progress(self, what: str) -> None:
+        """Print what is done or begun, and the seconds since the script's start."""
+        print(f"{what}: {perf_counter() - self._begin:.0f} s", flush=True)
+
     def write(self) -> None:
         """Write results.json."""
         text = json.dumps(self._all, indent=1, default=str)
@@ -46,7 +59,7 @@ class Results:
 
 
 def machine() -> dict[str, Any]:
-    """What the seconds depend on."""
+    """The processor and the libraries, on which the seconds depend."""
     names = ("numpy", "scipy", "numba", "libigl")
     return {
         "processor": processor(),
@@ -57,7 +70,7 @@ def machine() -> dict[str, Any]:
 
 
 def processor() -> str:
-    """The processor's own name, where the system tells it."""
+    """The processor's name, where the system gives it."""
     info = Path("/proc/cpuinfo")
     if info.exists():
         for line in info.read_text(encoding="utf-8").splitlines():

@@ -1,105 +1,103 @@
-"""The source's figure 7.6 (a, b) redone: the length over wall-clock time and over simulated time, method by method."""
+"""Figure 7.6 (a, b) of the source redone: length over wall-clock time and over simulated time, method by method."""
 
+from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
-from comparison.attempt import attempt
+from comparison.attempt import OURS, attempt, move
 from comparison.problems import TABLE
+from matplotlib.axes import Axes
 
 from charts.record import Results
 from charts.style import GREEN, LOOKS, ORANGE, PURPLE, save
 from charts.timing import least
-from meshwind.methods import Motion, run
+from meshwind.methods import Motion
 
 PROBLEM = TABLE["bottle-neck"]
 PARTICLES = 201
 STEP, DAMPING, STEPS = 3.0, 0.1, 1000
+"""One step size for all methods, as in the source."""
 WIDTHS = (1e-2, 1e-3, 1e-4)
+"""Of the penalty force, over the part's size."""
+SETTLED = 1e-6
+"""Relative difference from the last length up to which a length has settled."""
+MARKS = 7
+"""Numbers of steps at which seconds are measured: the cost of a step depends on which particles touch."""
 
 
-def settings() -> dict[str, tuple[str, dict[str, Any], str, str]]:
-    """Each line: scheme, parameters, colour and line style; one step size for all, as in the source."""
-    size = PROBLEM.surface().size
-    be, kkt = LOOKS["backward-euler"], LOOKS["kkt"]
-    lines: dict[str, tuple[str, dict[str, Any], str, str]] = {
-        "backward Euler (the source's own method)": ("backward-euler", dict(weighted=True), be.colour, "-"),
-        "the same, matrix reused 5 steps": (
-            "backward-euler",
-            dict(weighted=True, reuse=5),
-            LOOKS["backward-euler-reuse"].colour,
-            "--",
-        ),
-        "KKT method": ("kkt", dict(), kkt.colour, "-"),
-    }
-    for width, colour in zip(WIDTHS, (ORANGE, PURPLE, GREEN), strict=True):
-        lines[f"penalty force, width {width:g} of the size"] = ("penalty", dict(width=width * size), colour, ":")
-    return lines
+@dataclass(frozen=True)
+class Line:
+    """A method in the figure: its name, scheme, colour, line style and parameters."""
 
+    name: str
+    scheme: str
+    colour: str
+    style: str
+    parameters: dict[str, Any] = field(default_factory=dict)
 
-def measure(results: Results) -> list[dict[str, Any]]:
-    """Run every line once with its history and several times without for the seconds; draw both panels."""
-    figure, (wall, simulated) = plt.subplots(1, 2, figsize=(13, 5.2), sharey=True)
-    rows = []
-    for name, (scheme, extra, colour, line) in settings().items():
+    def run(self, steps: int, history: bool = False) -> Motion:
+        """Run it for a number of steps."""
+        return move(self.scheme, PROBLEM, PARTICLES, steps=steps, step_size=STEP, damping=DAMPING, history=history,
+                    tolerance=0.0, **self.parameters)  # fmt: skip
 
-        def go(steps: int, history: bool, scheme: str = scheme, extra: dict[str, Any] = extra) -> Motion:
-            return run(
-                scheme,
-                PROBLEM.surface(),
-                PROBLEM.start,
-                PROBLEM.end,
-                particles=PARTICLES,
-                steps=steps,
-                step_size=STEP,
-                damping=DAMPING,
-                history=history,
-                tolerance=0.0,
-                **extra,
-            )
-
-        found = go(STEPS, True)
+    def draw(self, wall: Axes, simulated: Axes) -> dict[str, Any]:
+        """Run it once with its history, and several times without for the seconds; the row of the table."""
+        found = self.run(STEPS, history=True)
         if found.history is None:
             raise SystemExit("the run kept no history")
         taken = max(found.counters.iterations, 1)
-        # the cost of a step depends on what touches, so that seconds are measured at a few marks and drawn between
-        marks = np.unique(np.r_[1, np.geomspace(4, taken, 7).astype(int)])
-        seconds = np.interp(np.arange(1, taken + 1), marks, [least(lambda k=int(k): go(k, False)) for k in marks])  # type: ignore[misc]
+        marks = np.unique(np.r_[1, np.geomspace(4, taken, MARKS).astype(int)])
+        measured = [least(partial(self.run, int(steps))) for steps in marks]
+        seconds = np.interp(np.arange(1, taken + 1), marks, measured)
         off = np.maximum(np.abs(found.history.length[1 : taken + 1] / PROBLEM.length - 1), 1e-12)
-        wall.plot(1e3 * seconds, off, line, color=colour, label=name)
-        simulated.plot(STEP * np.arange(1, taken + 1), off, line, color=colour)
-        settled = np.flatnonzero(np.abs(found.history.length / found.length - 1) < 1e-6)
-        last = np.flatnonzero(np.abs(found.history.length / found.length - 1) >= 1e-6)
-        rows.append(
-            dict(
-                method=name,
-                steps=taken,
-                status=found.status.name,
-                seconds=float(seconds[-1]),
-                error=float(off[-1]),
-                steps_until_settled=int(last[-1] + 1) if len(last) else int(settled[0]),
-                evaluations=found.counters.evaluations,
-                length=found.length,
-            )
+        wall.plot(1e3 * seconds, off, self.style, color=self.colour, label=self.name)
+        simulated.plot(STEP * np.arange(1, taken + 1), off, self.style, color=self.colour)
+        unsettled = np.flatnonzero(np.abs(found.history.length / found.length - 1) >= SETTLED)
+        return dict(
+            method=self.name,
+            steps=taken,
+            status=found.status.name,
+            seconds=float(seconds[-1]),
+            error=float(off[-1]),
+            steps_until_settled=int(unsettled[-1] + 1) if len(unsettled) else 0,
+            evaluations=found.counters.evaluations,
+            length=found.length,
         )
-    ours = attempt("meshwind", PROBLEM, PARTICLES)
-    spent = least(lambda: attempt("meshwind", PROBLEM, PARTICLES))
-    wall.plot(
-        [1e3 * spent],
-        [PROBLEM.error(ours.length)],
-        "o",
-        ms=9,
-        color=LOOKS["meshwind"].colour,
-        label=LOOKS["meshwind"].label,
-    )
-    simulated.axhline(PROBLEM.error(ours.length), color=LOOKS["meshwind"].colour, lw=1)
+
+
+def lines() -> list[Line]:
+    """All methods but ours."""
+    size = PROBLEM.surface().size
+    be, reused, kkt = (LOOKS[name].colour for name in ("backward-euler", "backward-euler-reuse", "kkt"))
+    return [
+        Line("backward Euler (the source's own method)", "backward-euler", be, "-", dict(weighted=True)),
+        Line("the same, matrix reused 5 steps", "backward-euler", reused, "--", dict(weighted=True, reuse=5)),
+        Line("KKT method", "kkt", kkt, "-"),
+        *(
+            Line(f"penalty force, width {width:g} of the size", "penalty", colour, ":", dict(width=width * size))
+            for width, colour in zip(WIDTHS, (ORANGE, PURPLE, GREEN), strict=True)
+        ),
+    ]
+
+
+def measure(results: Results) -> list[dict[str, Any]]:
+    """Measure all methods and ours, and draw both panels."""
+    figure, (wall, simulated) = plt.subplots(1, 2, figsize=(13, 5.2), sharey=True)
+    rows = [line.draw(wall, simulated) for line in lines()]
+    ours = attempt(OURS, PROBLEM, PARTICLES)
+    spent = least(lambda: attempt(OURS, PROBLEM, PARTICLES))
+    look, error = LOOKS[OURS], PROBLEM.error(ours.length)
+    wall.plot([1e3 * spent], [error], "o", ms=9, color=look.colour, label=look.label)
+    simulated.axhline(error, color=look.colour, lw=1)
     rows.append(
         dict(
-            method="meshwind",
+            method=OURS,
             steps=ours.iterations,
             status=str(ours.outcome),
             seconds=spent,
-            error=PROBLEM.error(ours.length),
+            error=error,
             steps_until_settled=ours.iterations,
             evaluations=ours.evaluations,
             length=ours.length,
@@ -115,8 +113,8 @@ def measure(results: Results) -> list[dict[str, Any]]:
     simulated.set(xscale="log", xlabel="simulated time [sqrt(m/K)]", title="as the source's 7.6 (b)")
     wall.legend()
     figure.suptitle(
-        f"{PROBLEM.name}, {PROBLEM.hard}: {PARTICLES} particles, length {PROBLEM.length:.9g}; every scheme with h ="
-        f" {STEP:g} sqrt(m/K), damping {DAMPING:g} sqrt(K m), {STEPS} steps"
+        f"{PROBLEM.name}, {PROBLEM.difficulty}: {PARTICLES} particles, length {PROBLEM.length:.9g}; every scheme with"
+        f" h = {STEP:g} sqrt(m/K), damping {DAMPING:g} sqrt(K m), {STEPS} steps"
     )
     figure.tight_layout()
     save(figure, results.folder, "source_7_6")

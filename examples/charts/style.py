@@ -1,7 +1,8 @@
-"""How every chart looks: one fixed colour and marker a method, safe for the colour-blind."""
+"""How every chart looks: one fixed colour and marker per method, safe for the colour-blind."""
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 
@@ -28,7 +29,7 @@ plt.rcParams.update(
 
 @dataclass(frozen=True)
 class Look:
-    """A method's name in the legend, its colour (Okabe and Ito's), marker and line."""
+    """A method's name in the legend, its colour (of Okabe and Ito), marker and line."""
 
     label: str
     colour: str
@@ -36,16 +37,8 @@ class Look:
     line: str = "-"
 
 
-BLACK, ORANGE, SKY, GREEN, BLUE, RED, PURPLE, GREY = (
-    "#000000",
-    "#E69F00",
-    "#56B4E9",
-    "#009E73",
-    "#0072B2",
-    "#D55E00",
-    "#CC79A7",
-    "#777777",
-)
+BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
+BLUE, RED, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#777777"
 LOOKS = {
     "meshwind": Look("meshwind (Newton, this work)", RED, "o"),
     "backward-euler": Look("backward Euler (4.16, 4.17)", BLUE, "s"),
@@ -66,18 +59,19 @@ LOOKS = {
 """In the order of the legend."""
 
 CLASSES = {
-    "ok": ("right", "#009E73"),
-    "wrong": ("wrong answer, unnoticed", "#D55E00"),
-    "refused": ("refused, with the reason", "#56B4E9"),
-    "stalled": ("not at rest when the steps ran out", "#E69F00"),
-    "diverged": ("diverged", "#000000"),
+    "ok": ("right", GREEN),
+    "wrong": ("wrong answer without a warning", RED),
+    "refused": ("refused, with the reason", SKY),
+    "stalled": ("not at rest after the last step", ORANGE),
+    "diverged": ("diverged", BLACK),
 }
-"""How an attempt can end, with its words and colour; maps draw a sign as well."""
+"""How an attempt can end, with its text in legends and its colour."""
 SIGNS = {"ok": "", "wrong": "!", "refused": "r", "stalled": "~", "diverged": "x"}
+"""What maps draw beside the colour."""
 
 
 def save(figure: Figure, folder: Path, name: str) -> None:
-    """Write a chart as PNG and forget it."""
+    """Write a chart as PNG and close it."""
     figure.savefig(folder / f"{name}.png", bbox_inches="tight")
     plt.close(figure)
 
@@ -88,3 +82,8 @@ def log_axes(axes: Axes, x: str, y: str) -> None:
     axes.set_yscale("log")
     axes.set_xlabel(x)
     axes.set_ylabel(y)
+
+
+def note(axes: Axes, x: float, y: float, text: str, **how: Any) -> None:
+    """A line of text on a white ground."""
+    axes.text(x, y, text, fontsize=8, bbox=dict(fc="white", ec="none", alpha=0.8), **how)

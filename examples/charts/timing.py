@@ -1,4 +1,4 @@
-"""Seconds of a call: the least of several repeats after a warm-up, on a machine that others use as well."""
+"""Seconds of a call: the least of several repeats after a warm-up, for machines that others use as well."""
 
 from collections.abc import Callable
 from time import perf_counter
@@ -6,14 +6,14 @@ from typing import TypeVar
 
 T = TypeVar("T")
 
-REPEATS = 15
-"""At most; fewer where a call is long."""
-SHARE = 0.08
-"""Seconds that the repeats of one call may take together, once three are done."""
+REPEATS, FEWEST = 15, 3
+"""Most and fewest repeats."""
+PATIENT = 0.08
+"""Seconds after which no further repeat is begun, once the fewest are done."""
 
 
 def timed(call: Callable[[], T]) -> tuple[float, T]:
-    """Seconds of one call, and what it gave."""
+    """Seconds of one call, and its result."""
     begin = perf_counter()
     found = call()
     return perf_counter() - begin, found
@@ -24,7 +24,7 @@ def least(call: Callable[[], object], known: float | None = None) -> float:
     best = timed(call)[0] if known is None else known
     spent = 0.0
     for k in range(REPEATS):
-        if k >= 2 and spent > SHARE:
+        if k >= FEWEST - 1 and spent > PATIENT:
             break
         seconds = timed(call)[0]
         best, spent = min(best, seconds), spent + seconds

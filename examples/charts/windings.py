@@ -1,4 +1,4 @@
-"""Ours over revolutions and waist depth, conjugate points and friction: each map with an exact answer in every cell."""
+"""Our solver over revolutions and waist depth, conjugate points and friction, with an exact answer in every cell."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -6,20 +6,27 @@ from functools import cache, partial
 
 import matplotlib.pyplot as plt
 import numpy as np
-from comparison.attempt import Attempt, attempt
-from comparison.problem import Problem
-from comparison.rubbing import TURN, Sliding
+from comparison.attempt import OURS, Attempt, attempt
+from comparison.problem import TURN, Problem
+from comparison.sliding import Sliding
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from charts.maps import classify, key, paint
+from charts.maps import Row, classify, key, paint, sweep
 from charts.record import Results
-from charts.style import save
+from charts.style import note, save
 from meshwind.surface import Surface, shapes
 
 N = 201
+"""Particles of our solver."""
+COARSE = 101
+"""Particles where fewer do: on the torus, and of backward Euler, which is slower."""
 EXACT, ROUGH = 1e-3, 1e-2
 """Relative error of the length up to which ours with friction is right, and velocity scaling, which cannot be exact."""
+SAME, SHORTER = 1e-3, 1e-6
+"""Relative difference of a length from the equator's up to which it is that of the equator, or above which shorter."""
+NEAR = 0.05
+"""Bend, relative to that of the conjugate point, next to which either answer is right."""
 
 
 @dataclass(frozen=True)
@@ -67,54 +74,32 @@ def waisted(waist: float) -> Surface:
 
 def waist(results: Results, quick: bool) -> None:
     """Revolutions from 0 to 3 over waists from 0.1 to 0.95 of the rims."""
-    turns = np.linspace(0.05, 3.05, 11 if quick else 25)
-    waists = np.linspace(0.1, 0.95, 7 if quick else 12)
-    classes, rows = [], []
-    for w in waists:
-        line, shape = [], Waist(float(w))
-        for t in turns:
-            twist = float(t * TURN)
-            problem = Problem(
-                "waist",
-                "",
-                partial(waisted, float(w)),
-                (0, 0),
-                (float(t), 1),
-                shape.length(twist),
-                twist < shape.ruling,
-            )
-            found = attempt("meshwind", problem, N)
-            error = problem.error(found.length)
-            line.append(classify(found, error, 20.0 * (twist / N) ** 2 + 1e-6))
-            rows.append(
-                dict(
-                    waist=float(w),
-                    turns=float(t),
-                    result=line[-1],
-                    error=error,
-                    iterations=found.iterations,
-                    evaluations=found.evaluations,
-                )
-            )
-        classes.append(line)
+    turns = np.linspace(0.05, 3.05, 11 if quick else 25).tolist()
+    waists = np.linspace(0.1, 0.95, 7 if quick else 12).tolist()
+
+    def cell(w: float, t: float) -> Row:
+        shape, twist = Waist(w), t * TURN
+        surface, length = partial(waisted, w), shape.length(twist)
+        problem = Problem("waist", "", surface, (0, 0), (t, 1), length, twist < shape.ruling)
+        found = attempt(OURS, problem, N)
+        error = problem.error(found.length)
+        result = classify(found, error, 20.0 * (twist / N) ** 2 + 1e-6)
+        return dict(waist=w, turns=t, result=result, error=error, iterations=found.iterations,
+                    evaluations=found.evaluations)  # fmt: skip
+
+    classes, rows = sweep(waists, turns, cell)
     figure, axes = plt.subplots(figsize=(9, 5.4))
-    paint(axes, list(turns), list(waists), classes)
+    paint(axes, turns, waists, classes)
     fine = np.linspace(waists[0] - 0.03, waists[-1] + 0.03, 100)
     axes.plot([Waist(float(min(w, 0.999))).ruling / TURN for w in fine], fine, "k--", lw=1.5)
-    axes.text(
-        0.04,
-        0.97,
-        "left of the dashed line (the rulings): a chord through the air; right: on the surface",
-        transform=axes.transAxes,
-        fontsize=8,
-        bbox=dict(fc="white", ec="none", alpha=0.8),
-    )
+    text = "left of the dashed line (the rulings): a chord through the air; right: on the surface"
+    note(axes, 0.04, 0.97, text, transform=axes.transAxes)
     axes.set(
         xlabel="revolutions",
         ylabel="radius of the waist over that of the rims",
         title=(
-            f"meshwind on hyperboloids, {N} particles, from a "
-            "straight line in (u, v)\nexact length in every cell: chord or Clairaut's integral"
+            f"meshwind on hyperboloids, {N} particles, from a straight line in (u, v)\n"
+            "exact length in every cell: chord or Clairaut's integral"
         ),
     )
     key(axes, classes)
@@ -124,64 +109,35 @@ def waist(results: Results, quick: bool) -> None:
 
 def conjugate(results: Results, quick: bool) -> None:
     """The outer equator of a torus, stable up to its conjugate point only; the fibre starts exactly on it."""
-    ratios = np.linspace(0.1, 0.9, 5 if quick else 9)
-    bends = np.linspace(0.2, 1.9, 9 if quick else 18) * np.pi
-    classes, rows = [], []
-    for ratio in ratios:
-        line = []
-        for bend in bends:
-            equator = float((1 + ratio) * bend)
-            limit = np.pi * np.sqrt(ratio / (1 + ratio))
-            problem = Problem(
-                "torus",
-                "",
-                partial(shapes.torus, 1.0, float(ratio), float(bend), (96, 128)),
-                (0, 0),
-                (0, 1),
-                equator,
-            )
-            found = attempt("meshwind", problem, 101)
-            result = classify(found, 0.0, 1.0)
-            if result == "ok":
-                same = abs(found.length / equator - 1) < 1e-3
-                # before the conjugate point the equator is a minimum; beyond it, to report it would be wrong
-                result = (
-                    "ok" if (same if bend < limit else found.length < equator * (1 - 1e-6) and not same) else "wrong"
-                )
-            near = abs(bend / limit - 1) < 0.05
-            line.append("ok" if near and result == "wrong" else result)
-            rows.append(
-                dict(
-                    ratio=ratio,
-                    bend=bend,
-                    conjugate_bend=limit,
-                    result=line[-1],
-                    length=found.length,
-                    equator=equator,
-                    outcome=str(found.outcome),
-                    iterations=found.iterations,
-                    gap=found.gap,
-                )
-            )
-        classes.append(line)
+    ratios = np.linspace(0.1, 0.9, 5 if quick else 9).tolist()
+    bends = (np.linspace(0.2, 1.9, 9 if quick else 18) * np.pi).tolist()
+
+    def cell(ratio: float, bend: float) -> Row:
+        equator, limit = (1 + ratio) * bend, np.pi * np.sqrt(ratio / (1 + ratio))
+        surface = partial(shapes.torus, 1.0, ratio, bend, (96, 128))
+        found = attempt(OURS, Problem("torus", "", surface, (0, 0), (0, 1), equator), COARSE)
+        result = classify(found, 0.0, 1.0)
+        same = abs(found.length / equator - 1) < SAME
+        # before the conjugate point the equator is a minimum; beyond it, to report it would be wrong
+        right = same if bend < limit else found.length < equator * (1 - SHORTER) and not same
+        if result == "ok" and not right and abs(bend / limit - 1) >= NEAR:
+            result = "wrong"
+        return dict(ratio=ratio, bend=bend, conjugate_bend=limit, result=result, length=found.length, equator=equator,
+                    outcome=str(found.outcome), iterations=found.iterations, gap=found.gap)  # fmt: skip
+
+    classes, rows = sweep(ratios, bends, cell)
     figure, axes = plt.subplots(figsize=(8.5, 5.2))
-    paint(axes, list(bends), list(ratios), classes)
+    paint(axes, bends, ratios, classes)
     fine = np.linspace(0.05, 0.95, 200)
     axes.plot(np.pi * np.sqrt(fine / (1 + fine)), fine, "k--", lw=1.6)
-    axes.text(
-        0.02,
-        0.96,
-        "dashed: conjugate point at bend = pi sqrt(r / (R + r)); right of it the equator is no minimum",
-        transform=axes.transAxes,
-        fontsize=8,
-        bbox=dict(fc="white", ec="none", alpha=0.8),
-    )
+    text = "dashed: conjugate point at bend = pi sqrt(r / (R + r)); right of it the equator is no minimum"
+    note(axes, 0.02, 0.96, text, transform=axes.transAxes)
     axes.set(
         xlabel="bend of the torus from end to end [rad]",
         ylabel="tube radius r over bend radius R",
         title=(
-            "meshwind started exactly on a "
-            "torus' outer equator, 101 particles\nright: the equator while it is stable, beyond it a shorter path"
+            f"meshwind started exactly on the outer equator of a torus, {COARSE} particles\n"
+            "right: the equator while it is stable, beyond it a shorter path"
         ),
     )
     key(axes, classes)
@@ -191,40 +147,30 @@ def conjugate(results: Results, quick: bool) -> None:
 
 def friction(results: Results, quick: bool) -> None:
     """Sliding on a cylinder over friction and the start's bend: stuck, stick-slip or catenary, exact everywhere."""
-    coefficients = np.linspace(0.05, 1.0, 8 if quick else 20)
-    bends = np.linspace(0.05, 1.5, 8 if quick else 20)
+    coefficients = np.linspace(0.05, 1.0, 8 if quick else 20).tolist()
+    bends = np.linspace(0.05, 1.5, 8 if quick else 20).tolist()
     half = float(np.pi)
     figure, grid = plt.subplots(1, 2, figsize=(14, 5.6), sharey=True)
     rows = []
-    solvers: Sequence[tuple[str, Callable[[Problem], Attempt]]] = (
-        ("meshwind", lambda p: attempt("meshwind", p, N)),
-        (
-            "backward Euler with (4.19), h = 0.5 sqrt(m/K)",
-            lambda p: attempt("backward-euler", p, 101, dict(step_size=0.5, damping=0.05, steps=4000)),
-        ),
-    )
-    for (name, solver), axes in zip(solvers, grid, strict=True):
-        classes = []
-        for k in bends if name == "meshwind" else bends[:: 1 if quick else 2]:
-            line = []
-            for mu in coefficients if name == "meshwind" else coefficients[:: 1 if quick else 2]:
-                problem = Sliding(float(mu), float(k), half).problem("sliding", "")
-                found = solver(problem)
-                error = problem.error(found.length)
-                line.append(classify(found, error, EXACT if name == "meshwind" else ROUGH))
-                rows.append(
-                    dict(
-                        method=name,
-                        friction=float(mu),
-                        bend=float(k),
-                        result=line[-1],
-                        error=error,
-                        iterations=found.iterations,
-                    )
-                )
-            classes.append(line)
-        step = 1 if name == "meshwind" or quick else 2
-        paint(axes, list(coefficients[::step]), list(bends[::step]), classes)
+    scaling = dict(step_size=0.5, damping=0.05, steps=4000)
+    solvers: Sequence[tuple[str, float, int, Callable[[Problem], Attempt]]] = (
+        (OURS, EXACT, 1, lambda p: attempt(OURS, p, N)),
+        ("backward Euler with (4.19), h = 0.5 sqrt(m/K)", ROUGH, 1 if quick else 2,
+         lambda p: attempt("backward-euler", p, COARSE, scaling)),
+    )  # fmt: skip
+    for (name, allowed, stride, solver), axes in zip(solvers, grid, strict=True):
+
+        def cell(k: float, mu: float, name: str = name, allowed: float = allowed,
+                 solver: Callable[[Problem], Attempt] = solver) -> Row:  # fmt: skip
+            problem = Sliding(mu, k, half).problem("sliding", "")
+            found = solver(problem)
+            error = problem.error(found.length)
+            return dict(method=name, friction=mu, bend=k, result=classify(found, error, allowed), error=error,
+                        iterations=found.iterations)  # fmt: skip
+
+        classes, found = sweep(bends[::stride], coefficients[::stride], cell)
+        rows += found
+        paint(axes, coefficients[::stride], bends[::stride], classes)
         fine = np.linspace(coefficients[0], coefficients[-1], 200)
         axes.plot(fine, fine, "k--", lw=1.2)
         axes.plot(fine, np.sinh(fine * half) / half, "k-", lw=1.2)
@@ -240,7 +186,7 @@ def friction(results: Results, quick: bool) -> None:
 
 
 def draw(results: Results, quick: bool) -> None:
-    """All three."""
+    """All three maps."""
     waist(results, quick)
     conjugate(results, quick)
     friction(results, quick)

@@ -2,24 +2,26 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from functools import partial
 from importlib.util import find_spec
 from typing import Any
 
 import matplotlib.pyplot as plt
-from comparison.attempt import Attempt, Outcome, attempt
+from comparison.attempt import OURS, Attempt, attempt
 from comparison.peers_smooth import collocate, shoot, shoot_traced
 from comparison.problem import Kind, Problem
 from comparison.problems import TABLE
 from matplotlib.axes import Axes
 
-from charts.ladders import KEPT, QUICK_SIZES, RULED, SIZES, trials
+from charts.maps import classify
 from charts.record import Results
+from charts.settings import KEPT, QUICK_SIZES, RULED, SIZES, settings
 from charts.style import LOOKS, log_axes, save
 from charts.timing import least, timed
 
 CHAINS = (
-    "meshwind",
+    OURS,
     "backward-euler",
     "backward-euler-reuse",
     RULED,
@@ -34,18 +36,36 @@ SMOOTH: dict[str, tuple[Callable[[Problem, float], Attempt], tuple[float, ...]]]
     "shooting-trace": (shoot_traced, (1e-2, 1e-3, 1e-5, 1e-7)),
     "collocation": (collocate, (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)),
 }
-MESHES = ("flipout", "mmp-pygeodesic", "mmp-libigl")
+"""SciPy's solvers with their tolerances."""
 VERTICES = (250, 1000, 4000, 16_000)
+"""Of the meshes for FlipOut and the exact polyhedral methods."""
 LARGEST_EXACT = 4000
-"""Vertices beyond which the exact polyhedral methods take seconds a path."""
+"""Vertices beyond which the exact polyhedral methods take seconds per path."""
+LARGEST_QUICK = 4000
+"""Vertices beyond which no mesh is made with --quick."""
 LARGEST_RULED = 801
 """Particles with which the rule of the fourth order is right to round-off."""
 LARGEST_DRAGGED = 201
 """Particles of a fibre that is solved for in every frame."""
 FAR = 0.3
 """A path whose length is off by more is another path: a wrong answer."""
+SHORT = 0.05
+"""Seconds below which a run is timed twice."""
+LONG = 1.0
+"""Seconds of a run after which no finer tolerance is tried."""
+GOOD = 1.5
+"""Error over the best at a size up to which settings are chosen by their time."""
 QUICK = ("barrel-1.5", "barrel-4", "vase", "catenary-0.3", "dragged", "bottle-turn")
-SHOWN_EXACT = 1e-12
+"""Problems of --quick."""
+
+
+class Reason(StrEnum):
+    """Why a method cannot solve a problem, or is not tried on it."""
+
+    NO_FRICTION = "no friction"
+    NO_GAIN = "the step's error outweighs the rule's"
+    NO_BRIDGES = "stays on the surface"
+    SHORTEST = "finds the shortest path, not one of several turns"
 
 
 @dataclass(frozen=True)
@@ -68,19 +88,12 @@ class Point:
     best: bool = False
 
 
-def classed(found: Attempt, error: float) -> str:
-    """The class of an attempt: ok, wrong, stalled, diverged or refused."""
-    if found.outcome != Outcome.REST:
-        return {Outcome.STALLED: "stalled", Outcome.DIVERGED: "diverged"}.get(found.outcome, "refused")
-    return "wrong" if error > FAR else "ok"
-
-
 def measure(problem: Problem, method: str, size: int, setting: str, call: Callable[[], Attempt]) -> Point:
-    """Run once; time again only what came to rest."""
+    """Run once; time again only what converged."""
     seconds, found = timed(call)
     error = problem.error(found.length)
-    result = classed(found, error)
-    if result == "ok" and seconds < 0.05:
+    result = classify(found, error, FAR)
+    if result == "ok" and seconds < SHORT:
         seconds = min(seconds, timed(call)[0])
     return Point(
         problem.name,
@@ -98,52 +111,50 @@ def measure(problem: Problem, method: str, size: int, setting: str, call: Callab
     )
 
 
-def cannot(problem: Problem, method: str) -> str | None:
+def cannot(problem: Problem, method: str) -> Reason | None:
     """Why a method cannot solve a problem, None where it can."""
     turns = abs(problem.end[0] - problem.start[0])
     if method == RULED and problem.friction:
-        return "the step's error outweighs the rule's"
-    if method in ("kkt", "penalty") and problem.friction:
-        return "no friction"
+        return Reason.NO_GAIN
+    if problem.friction and (method in ("kkt", "penalty") or method not in CHAINS):
+        return Reason.NO_FRICTION
     if method not in CHAINS:
-        if problem.friction:
-            return "no friction"
         if problem.bridges:
-            return "stays on the surface"
+            return Reason.NO_BRIDGES
         if method.startswith("mmp") and turns >= 0.5:
-            return "finds the shortest path, not one of several turns"
+            return Reason.SHORTEST
     return None
 
 
-def climb(problem: Problem, method: str, sizes: Sequence[int]) -> list[Point]:
-    """All rungs of a scheme's ladder; it ends with the first on which no setting comes to rest."""
+def over_sizes(problem: Problem, method: str, sizes: Sequence[int]) -> list[Point]:
+    """All settings of a scheme, size by size; the first size at which none converges is the last."""
     points: list[Point] = []
     kept: list[str] | None = None
     for n in sizes:
-        if n > (LARGEST_RULED if method == RULED else LARGEST_DRAGGED if problem.before else n):
+        if n > (LARGEST_RULED if method == RULED else LARGEST_DRAGGED if problem.dragged_from else n):
             break
-        rung = []
-        for trial in trials(method, problem, n):
-            if kept is not None and trial.key not in kept:
+        tried = []
+        for setting in settings(method, problem, n):
+            if kept is not None and setting.key not in kept:
                 continue
-            call = partial(attempt, trial.scheme, problem, n, trial.setting)
+            call = partial(attempt, setting.scheme, problem, n, setting.parameters)
             if kept is None:
                 call()  # compile
-            rung.append((measure(problem, method, n, trial.key, call), call))
-        done = [(p, call) for p, call in rung if p.result == "ok"]
-        for p, call in rung:
+            tried.append((measure(problem, method, n, setting.key, call), call))
+        done = [(p, call) for p, call in tried if p.result == "ok"]
+        for p, call in tried:
             best = any(p is q for q in front([q for q, _ in done], "seconds"))
             points.append(replace(p, seconds=least(call, p.seconds), best=True) if best else p)
         if not done:
             break
         good = min(p.error for p, _ in done)
-        order = sorted(done, key=lambda item: (item[0].error > 1.5 * good, item[0].seconds))
+        order = sorted(done, key=lambda item: (item[0].error > GOOD * good, item[0].seconds))
         kept = [p.setting for p, _ in order[:KEPT]]
     return points
 
 
 def front(points: Sequence[Point], cost: str) -> list[Point]:
-    """The points that no other beats in both cost and error, by cost."""
+    """The points to which no other is better in both cost and error, by cost."""
     best: list[Point] = []
     for p in sorted(points, key=lambda p: (getattr(p, cost), p.error)):
         if not best or p.error < best[-1].error:
@@ -152,30 +163,36 @@ def front(points: Sequence[Point], cost: str) -> list[Point]:
 
 
 def peers(problem: Problem, quick: bool) -> list[Point]:
-    """The public peers that solve this problem."""
+    """The solvers of other libraries on this problem."""
     points = []
-    for method, (solver, ladder) in SMOOTH.items():
+    for method, (solver, tolerances) in SMOOTH.items():
         if cannot(problem, method) is None:
-            for tolerance in ladder[:-1] if quick else ladder:
+            for tolerance in tolerances[:-1] if quick else tolerances:
                 call = partial(solver, problem, tolerance)
                 call()
                 p = measure(problem, method, 0, f"tolerance {tolerance:g}", call)
                 points.append(replace(p, seconds=least(call, p.seconds)) if p.result == "ok" else p)
-                if p.seconds > 1.0:
+                if p.seconds > LONG:
                     break
     if find_spec("potpourri3d") is None or find_spec("pygeodesic") is None:
-        print("the mesh peers are left out: pip install 'meshwind[peers]'")
+        print("the methods on meshes are left out: pip install 'meshwind[peers]'")
         return points
+    return points + mesh_peers(problem, quick)
+
+
+def mesh_peers(problem: Problem, quick: bool) -> list[Point]:
+    """The methods on triangle meshes, where the extra `peers` is installed."""
     from comparison.peers_mesh import PEERS, facets
 
+    points = []
     for method, solver_on_mesh in PEERS.items():
         if cannot(problem, method) is not None:
             continue
         for count in VERTICES:
-            if count > (LARGEST_EXACT if method != "flipout" else VERTICES[-1]) or (quick and count > 4000):
+            if count > (LARGEST_EXACT if method != "flipout" else VERTICES[-1]) or (quick and count > LARGEST_QUICK):
                 continue
             mesh = facets(problem, count)
-            # set-up: what a second path on the same mesh does not pay again
+            # set-up: what a second path on the same mesh does not need again
             setup = timed(lambda m=mesh, f=method: m.flipper if f == "flipout" else m.exact)[0]  # type: ignore[misc]
             on_mesh = partial(solver_on_mesh, mesh, problem)
             on_mesh()
@@ -193,14 +210,14 @@ def survey(quick: bool) -> list[Point]:
         begin = len(points)
         for method in CHAINS:
             if cannot(problem, method) is None:
-                points += climb(problem, method, QUICK_SIZES if quick else SIZES)
+                points += over_sizes(problem, method, QUICK_SIZES if quick else SIZES)
         points += peers(problem, quick)
         print(f"  {problem.name}: {len(points) - begin} settings", flush=True)
     return points
 
 
 def panel(axes: Axes, problem: Problem, points: Sequence[Point], cost: str) -> None:
-    """One problem: a faint dot for every setting at rest, and a line through each method's best."""
+    """One problem: a faint dot for every setting that converged, and a line through each method's best."""
     for method, look in LOOKS.items():
         mine = [p for p in points if p.method == method and p.result == "ok" and (cost == "seconds" or p.evaluations)]
         scale = 1e3 if cost == "seconds" else 1
@@ -219,14 +236,14 @@ def panel(axes: Axes, problem: Problem, points: Sequence[Point], cost: str) -> N
             look.line,
             color=look.colour,
             marker=look.marker,
-            ms=6 if method != "meshwind" else 7,
-            lw=2.2 if method == "meshwind" else 1.2,
-            zorder=5 if method == "meshwind" else 3,
+            ms=6 if method != OURS else 7,
+            lw=2.2 if method == OURS else 1.2,
+            zorder=5 if method == OURS else 3,
             label=look.label,
         )
-    log_axes(axes, "time a path [ms]" if cost == "seconds" else "surface evaluations", "relative error of the length")
+    log_axes(axes, "time per path [ms]" if cost == "seconds" else "surface evaluations", "relative error of the length")
     axes.set_title(
-        f"{problem.name}: {problem.hard}\nlength {problem.length:.9g}"
+        f"{problem.name}: {problem.difficulty}\nlength {problem.length:.9g}"
         + (f", friction {problem.friction:g}" if problem.friction else "")
     )
     low, high = axes.get_ylim()
@@ -238,29 +255,32 @@ HEADLINE = ("barrel-1.5", "bottle-turn", "bottle-neck", "catenary-0.3")
 
 
 def draw(results: Results, points: Sequence[Point]) -> None:
-    """A figure a kind and cost, and one of the headline's problems."""
+    """A figure for each kind and cost, and one of the headline's problems."""
     done = [problem for problem in TABLE.values() if any(q.problem == problem.name for q in points)]
     chosen = [problem for problem in done if problem.name in HEADLINE]
-    _figure(results, points, chosen, "seconds", "", "speed_and_accuracy", columns=2)
+    _figure(results, points, chosen, Panels("seconds", "", "speed_and_accuracy", columns=2))
     for kind in Kind:
         problems = [p for p in done if p.kind == kind]
         for cost, word in (("seconds", "time"), ("evaluations", "evaluations")):
             if problems:
                 columns = min(4, len(problems)) if len(problems) != 5 else 3
                 name = f"work_precision_{kind.name.lower()}_{word}"
-                _figure(results, points, problems, cost, f", {kind}", name, columns)
+                _figure(results, points, problems, Panels(cost, f", {kind}", name, columns))
 
 
-def _figure(
-    results: Results,
-    points: Sequence[Point],
-    problems: Sequence[Problem],
-    cost: str,
-    kind: str,
-    name: str,
-    columns: int,
-) -> None:
-    """A panel a problem, and one legend."""
+@dataclass(frozen=True)
+class Panels:
+    """What a figure shows: cost, kind of problems for its title, name of its file, and panels side by side."""
+
+    cost: str
+    kind: str
+    name: str
+    columns: int
+
+
+def _figure(results: Results, points: Sequence[Point], problems: Sequence[Problem], of: Panels) -> None:
+    """A panel per problem, and one legend."""
+    columns, cost = of.columns, of.cost
     rows = -(-len(problems) // columns)
     wide = max(5.0 * columns, 10.0)
     figure, grid = plt.subplots(rows, columns, figsize=(wide, 4.2 * rows + 0.8), squeeze=False)
@@ -273,12 +293,12 @@ def _figure(
         handles |= {label: h for h, label in zip(*axes.get_legend_handles_labels(), strict=True) if len(h.get_xdata())}
     word = "time" if cost == "seconds" else "evaluations"
     figure.suptitle(
-        f"Taut paths{kind}: error against {word}. Down and left is better.\nEach dot is a setting that came to"
-        " rest, the line joins a method's best.",
+        f"Taut paths{of.kind}: error against {word}. Down and left is better.\nEach dot is a setting that converged,"
+        " the line joins a method's best.",
         fontsize=11,
     )
     across = max(2, min(5, int(wide / 3.0)))
     lines = -(-len(handles) // across)
     figure.tight_layout(rect=(0, (0.25 * lines + 0.2) / (4.2 * rows + 0.8), 1, 0.99))
     figure.legend(handles.values(), handles.keys(), loc="lower center", ncol=across)
-    save(figure, results.folder, name)
+    save(figure, results.folder, of.name)

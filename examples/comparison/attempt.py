@@ -10,7 +10,7 @@ import numpy as np
 from comparison.problem import Problem
 from meshwind.core.cast import Floats
 from meshwind.methods.driver import run
-from meshwind.methods.motion import Ending
+from meshwind.methods.motion import Ending, Method, Motion
 from meshwind.path.drag import drag
 from meshwind.path.length import fibre_lengths
 from meshwind.path.paths import Counters, Status
@@ -29,13 +29,18 @@ class Outcome(StrEnum):
     REFUSED = "refused"
 
 
+ENDINGS = {Ending.CONVERGED: Outcome.REST, Ending.STOPPED: Outcome.STALLED, Ending.DIVERGED: Outcome.DIVERGED}
+STATUSES = {Status.CONVERGED: Outcome.REST, Status.STALLED: Outcome.STALLED}
+"""Outcomes of our own solver; all other statuses are refusals."""
+
+
 @dataclass(frozen=True)
 class Attempt:
     """One path by one method.
 
-    length in the surface's units as the method tells it, of the polyline where it tells none; counts of surface
-    evaluations, foot points, linear solves and iterations (time steps); points (n, 3), None where the method gives a
-    length only; gap: the largest distance of a point from the surface.
+    length in the surface's units, that of the polyline where the method computes no other; numbers of surface
+    evaluations, foot points, linear solves and iterations (time steps); gap: the largest distance of a point from the
+    surface; points (n, 3), None where the method gives a length only.
     """
 
     outcome: Outcome
@@ -48,69 +53,72 @@ class Attempt:
     points: Floats | None = None
 
 
-ENDINGS = {Ending.CONVERGED: Outcome.REST, Ending.STOPPED: Outcome.STALLED, Ending.DIVERGED: Outcome.DIVERGED}
-
-
-def polyline(points: Floats) -> float:
+def polyline_length(points: Floats) -> float:
     """Length of a polyline (n, 3)."""
     return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
-def attempt(method: str, problem: Problem, particles: int, setting: Mapping[str, Any] | None = None) -> Attempt:
+def move(scheme: str, problem: Problem, particles: int, **settings: Any) -> Motion:
+    """Run one of `Method` on the surface and between the ends of a problem, from a straight line in (u, v)."""
+    return run(scheme, problem.surface(), problem.start, problem.end, particles=particles, **settings)
+
+
+def attempt(method: str, problem: Problem, particles: int, settings: Mapping[str, Any] | None = None) -> Attempt:
     """Solve a problem by one of `Method` or by ours, from the problem's starting curve.
 
-    The setting `rule` tells the length of another method's chain by our own rule of the fourth order instead of its
-    polyline's, so that solvers can be compared apart from rules.
+    With the setting `rule` the length of another method's chain is computed by our own rule of the fourth order instead
+    of its polyline's, so that solvers can be compared apart from rules.
     """
-    given = dict(setting or {})
-    by_rule = bool(given.pop("rule", False))
+    given = dict(settings or {})
     curve = None if problem.initial is None else problem.initial(particles)
     if method == OURS:
         return _ours(problem, particles, curve, given)
+    return _theirs(Method(method), problem, particles, curve, given)
+
+
+def _theirs(method: Method, problem: Problem, particles: int, curve: Floats | None, given: dict[str, Any]) -> Attempt:
+    """A scheme of the literature; where the ends move, it runs until it is at rest for each position of theirs."""
+    by_rule = bool(given.pop("rule", False))
     if problem.friction:
         given["friction"] = problem.friction
-    if method not in ("penalty", "kkt"):
+    if not method.in_space:
         given = {"lifting": problem.bridges, "weighted": True} | given
     surface = problem.surface()
-    starts, ends = problem.way if problem.before else ([problem.start], [problem.end])
+    starts, ends = problem.motion if problem.dragged_from else ([problem.start], [problem.end])
     counts = np.zeros(4, np.int64)
     for start, end in zip(starts, ends, strict=True):
         found = run(method, surface, start, end, particles=particles, initial=curve, **given)
         curve, counts = found.uv, counts + astuple(found.counters)
         if found.status != Ending.CONVERGED:
             break
-    c, length = Counters(*(int(k) for k in counts)), found.length
+    length = found.length
     if by_rule and found.status != Ending.DIVERGED:
         length = float(fibre_lengths(surface, found.points[None], found.uv[None], found.on_surface[None])[0])
-    return Attempt(
-        ENDINGS[found.status],
-        length,
-        c.evaluations,
-        c.feet,
-        c.solves,
-        c.iterations,
-        float(np.abs(found.gap).max()),
-        found.points,
-    )
+    counters = Counters(*(int(k) for k in counts))
+    return _attempt(ENDINGS[found.status], length, counters, float(np.abs(found.gap).max()), found.points)
 
 
 def _ours(problem: Problem, particles: int, curve: Floats | None, given: dict[str, Any]) -> Attempt:
+    """Our own solver; where the ends move, the last position counts, and the first status that is not converged."""
     given |= dict(particles=particles, friction=problem.friction)
-    if problem.before:
-        found = drag(problem.surface(), *problem.way, **given)
+    if problem.dragged_from:
+        found = drag(problem.surface(), *problem.motion, **given)
     else:
         initial = None if curve is None else curve[None]
         found = solve(problem.surface(), [problem.start], [problem.end], initial=initial, **given)
-    c = found.counters
-    worst = next((status for status in found.status if status != Status.CONVERGED), Status.CONVERGED)
-    outcome = {Status.CONVERGED: Outcome.REST, Status.STALLED: Outcome.STALLED}.get(Status(int(worst)), Outcome.REFUSED)
+    status = next((Status(int(each)) for each in found.status if each != Status.CONVERGED), Status.CONVERGED)
+    outcome = STATUSES.get(status, Outcome.REFUSED)
+    return _attempt(outcome, float(found.length[-1]), found.counters, float(found.gap[-1].max()), found.points[-1])
+
+
+def _attempt(outcome: Outcome, length: float, counters: Counters, gap: float, points: Floats) -> Attempt:
     return Attempt(
         outcome,
-        float(found.length[-1]),
-        c.evaluations,
-        c.feet,
-        c.solves,
-        c.iterations,
-        float(found.gap[-1].max()),
-        found.points[-1],
+        length,
+        counters.evaluations,
+        counters.feet,
+        counters.solves,
+        counters.iterations,
+        gap,
+        points,
     )

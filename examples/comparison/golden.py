@@ -1,9 +1,11 @@
-"""Errors and counts of every method on every problem at small settings: figures that no machine changes.
+"""Errors and counts of every method on every problem at small settings: figures that do not depend on the machine.
 
-`tests/golden_methods.json` keeps them, and a test compares; `python examples/speed_accuracy.py --golden
-tests/golden_methods.json` writes them anew after a change that is meant.
+A test compares them with `tests/golden_methods.json`; after an intended change `python examples/speed_accuracy.py
+--golden tests/golden_methods.json` writes that file again.
 """
 
+import json
+from pathlib import Path
 from typing import Any
 
 from comparison.attempt import OURS, Attempt, attempt
@@ -12,6 +14,7 @@ from comparison.problem import Problem
 from comparison.problems import TABLE
 
 PARTICLES = 41
+"""Number of particles of every method."""
 SETTINGS: dict[str, tuple[str, dict[str, Any]]] = {
     OURS: (OURS, {}),
     "backward-euler": ("backward-euler", dict(step_size=100.0, steps=300)),
@@ -23,13 +26,21 @@ SETTINGS: dict[str, tuple[str, dict[str, Any]]] = {
     "penalty": ("penalty", dict(step_size=0.3, damping=0.1, steps=6000, tolerance=1e-6)),
     "kkt": ("kkt", dict(step_size=10.0, damping=0.1, steps=1000)),
 }
+"""Schemes with their settings, by name."""
 SMOOTH = {"shooting-dop853": (shoot, 1e-5), "shooting-trace": (shoot_traced, 1e-5), "collocation": (collocate, 1e-4)}
-RUBBING: dict[str, Any] = dict(step_size=0.5, damping=0.05, steps=6000)
-"""What the schemes are given instead where there is friction (4.19)."""
+"""SciPy's solvers with their tolerances."""
+WITH_FRICTION: dict[str, Any] = dict(step_size=0.5, damping=0.05, steps=6000)
+"""Settings of backward Euler where there is friction (4.19)."""
+
+
+def rewrite(path: Path) -> None:
+    """Compute errors and counts and write them."""
+    path.write_text(json.dumps(figures(), indent=1) + "\n", encoding="utf-8")
+    print(f"wrote {path}")
 
 
 def figures() -> dict[str, dict[str, dict[str, Any]]]:
-    """By problem and method: outcome, relative error of the length, evaluations, feet, solves and iterations."""
+    """Outcome, relative error of the length, evaluations, feet, solves and iterations, by problem and method."""
     return {name: _problem(problem) for name, problem in TABLE.items()}
 
 
@@ -38,8 +49,8 @@ def _problem(problem: Problem) -> dict[str, dict[str, Any]]:
     for name, (method, setting) in SETTINGS.items():
         if problem.friction and (method in ("penalty", "kkt") or name.startswith("backward-euler-")):
             continue
-        rubbing = RUBBING if problem.friction and method == "backward-euler" else {}
-        found[name] = _row(problem, attempt(method, problem, PARTICLES, setting | rubbing))
+        other = WITH_FRICTION if problem.friction and method == "backward-euler" else {}
+        found[name] = _row(problem, attempt(method, problem, PARTICLES, setting | other))
     if not problem.friction and not problem.bridges:
         for name, (solver, tolerance) in SMOOTH.items():
             found[name] = _row(problem, solver(problem, tolerance))

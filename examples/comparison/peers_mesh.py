@@ -1,7 +1,7 @@
-"""Geodesics of a triangle mesh, by the peers of the optional extra `peers`: FlipOut and exact polyhedral ones.
+"""Geodesics of a triangle mesh, by other libraries (the extra `peers`): FlipOut and exact polyhedral methods.
 
 FlipOut (Sharp and Crane 2020, potpourri3d) shortens an edge path within its homotopy class; the exact methods
-(Mitchell, Mount and Papadimitriou 1987, pygeodesic and libigl) find the shortest way of all.  All three stay on the
+(Mitchell, Mount and Papadimitriou 1987, pygeodesic and libigl) find the shortest of all paths.  All three stay on the
 facets: no bridging, no friction.
 """
 
@@ -15,14 +15,19 @@ import numpy as np
 import potpourri3d
 import pygeodesic.geodesic
 
-from comparison.attempt import Attempt, Outcome, polyline
+from comparison.attempt import Attempt, Outcome, polyline_length
 from comparison.problem import Problem
 from meshwind.core.cast import Floats, Ints
+from meshwind.surface.grid import mean_speeds
 
 JITTER = 0.25
-"""Of the vertices, over their pitch in (u, v): no mesh of practice is a regular grid."""
+"""Of the vertices, over their pitch in (u, v): meshes in practice are no regular grids."""
 LEGS = 12
-"""Pieces a turn in which FlipOut's first path follows the straight line in (u, v)."""
+"""Pieces per turn in which FlipOut's first path follows the straight line in (u, v)."""
+SPEED_SAMPLES = 16
+"""Points each way from which the numbers of rows and columns are chosen."""
+FEWEST = 8, 4
+"""Fewest columns and rows."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +52,7 @@ class Facets:
 
 
 def facets(problem: Problem, count: int, seed: int = 0) -> Facets:
-    """About `count` vertices, near square in space, sheared so that the end is one; rows run around in u."""
+    """A mesh of about `count` vertices, nearly square cells in rows around, sheared so that the end is a vertex."""
     surface = problem.surface()
     around, along = _pitches(problem, count)
     (u0, v0), (u1, v1) = problem.start, problem.end
@@ -81,37 +86,36 @@ def facets(problem: Problem, count: int, seed: int = 0) -> Facets:
 
 
 def _pitches(problem: Problem, count: int) -> tuple[int, int]:
-    """Columns around and rows a unit of v, from the mean lengths of s_u and s_v."""
-    grid = np.stack(np.meshgrid(np.arange(16) / 16, (np.arange(16) + 0.5) / 16), axis=-1).reshape(-1, 2)
-    frames = problem.surface().frames(grid)
-    width, height = (float(np.linalg.norm(frames[:, k], axis=1).mean()) for k in (1, 2))
-    around = max(8, round(np.sqrt(count * width / height)))
-    return around, max(4, round(count / around))
+    """Columns around, and rows per unit of v."""
+    width, height = mean_speeds(problem.surface(), SPEED_SAMPLES)
+    around = max(FEWEST[0], round(np.sqrt(count * width / height)))
+    return around, max(FEWEST[1], round(count / around))
 
 
 def flip_out(mesh: Facets, problem: Problem) -> Attempt:
-    """FlipOut from an edge path through vertices along the straight line in (u, v), as ours starts."""
+    """FlipOut from an edge path through vertices along the straight line in (u, v), where our solver starts too."""
     legs = max(1, round(LEGS * abs(problem.end[0] - problem.start[0])))
     share = np.arange(1, legs) / legs
     line = np.array(problem.start) + share[:, None] * (np.array(problem.end) - problem.start)
-    through = [_nearest(mesh, problem, place) for place in line]
+    through = [_nearest(mesh, problem, uv) for uv in line]
     path = mesh.flipper.find_geodesic_path_poly([mesh.start, *through, mesh.end])
-    return Attempt(Outcome.REST, polyline(path), 0, points=path)
+    return Attempt(Outcome.REST, polyline_length(path), 0, points=path)
 
 
-def _nearest(mesh: Facets, problem: Problem, place: Floats) -> int:
-    point = problem.surface().points(place[None])[0]
+def _nearest(mesh: Facets, problem: Problem, uv: Floats) -> int:
+    """The vertex nearest to a point (2,) of the surface."""
+    point = problem.surface().points(uv[None])[0]
     return int(((mesh.vertices - point) ** 2).sum(axis=1).argmin())
 
 
 def exact_pygeodesic(mesh: Facets, _: Problem) -> Attempt:
-    """The shortest way over the facets, by pygeodesic."""
+    """The shortest path over the facets, by pygeodesic."""
     length, path = mesh.exact.geodesicDistance(mesh.start, mesh.end)
     return Attempt(Outcome.REST, float(length), 0, points=np.asarray(path)[::-1])
 
 
 def exact_libigl(mesh: Facets, _: Problem) -> Attempt:
-    """The length of the shortest way over the facets, by libigl, which gives no path."""
+    """The length of the shortest path over the facets, by libigl, which gives no path."""
     empty = np.empty(0, np.int64)
     ends = np.array([mesh.start]), np.array([mesh.end])
     length = igl.exact_geodesic(mesh.vertices, mesh.faces, ends[0], empty, ends[1], empty)
@@ -123,3 +127,4 @@ PEERS: dict[str, Callable[[Facets, Problem], Attempt]] = {
     "mmp-pygeodesic": exact_pygeodesic,
     "mmp-libigl": exact_libigl,
 }
+"""The methods by the names that charts and tables use."""

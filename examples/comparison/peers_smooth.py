@@ -1,7 +1,7 @@
 """SciPy's general solvers on the geodesic's equation: shooting with DOP853, and collocation.
 
-Both take our compiled right-hand side (3.22), so that what is compared is the method.  They know neither contact nor
-friction: a path must stay on the surface and be free of it.
+Both take our compiled right-hand side (3.22), so that methods are compared rather than implementations.  They have
+neither contact nor friction: a path must stay on the surface, without friction.
 """
 
 from collections.abc import Callable
@@ -19,8 +19,15 @@ from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV
 from meshwind.surface.surface import Surface
 
 NODES = 9
-"""Of the collocation's first mesh; it refines by itself."""
+"""Nodes of the collocation's first mesh, which SciPy refines."""
 MOST_NODES = 4000
+"""Nodes at which the refinement gives up."""
+GUESS_POINTS = 201
+"""Points on the straight line in (u, v) whose polyline gives a first length."""
+SHORTEST = 1e-3
+"""Least length that the search may try, over the first one."""
+SLACK = 10.0
+"""Miss of the end, over the tolerance, up to which it counts as met."""
 
 
 def shoot(problem: Problem, tolerance: float) -> Attempt:
@@ -56,7 +63,7 @@ def shoot_traced(problem: Problem, tolerance: float) -> Attempt:
         way = trace(surface, problem.start, rates_at_start, length, tolerance=tolerance, press="ignore")
         count += way.evaluations
         uv, rate = way.uv[-1], way.uv_rate[-1]
-        if way.stop != Stop.LENGTH:  # beyond a rim: go on straight, so that the search sees where it missed
+        if way.stop != Stop.LENGTH:  # beyond a rim: extrapolated, so that the search sees by how much it missed
             uv = uv + rate * (length - way.arc_length[-1])
         return np.r_[uv, rate]
 
@@ -71,12 +78,12 @@ def _search(problem: Problem, march: Callable[[Floats, float], Floats], toleranc
     the march's error.
     """
     back, guess = _guess(problem)
-    end, slack, count = np.array(problem.end), 10.0 * tolerance, 0
+    end, slack, count = np.array(problem.end), SLACK * tolerance, 0
 
     def reach(x: Floats) -> Floats:
         nonlocal count
         count += 1
-        return march(back @ [np.cos(x[0]), np.sin(x[0])], max(x[1], 1e-3 * guess[1]))
+        return march(back @ [np.cos(x[0]), np.sin(x[0])], max(x[1], SHORTEST * guess[1]))
 
     def miss(x: Floats) -> Floats:
         return np.asarray(reach(x)[:2] - end)
@@ -109,7 +116,7 @@ def collocate(problem: Problem, tolerance: float) -> Attempt:
 
     done = solve_bvp(rate, ends, t, line, tol=tolerance, max_nodes=MOST_NODES)
     frames = surface.frames(np.ascontiguousarray(done.y[:2, :1].T))[0]
-    speed = float(np.linalg.norm(done.y[2, 0] * frames[SU] + done.y[3, 0] * frames[SV]))  # the same all along
+    speed = float(np.linalg.norm(done.y[2, 0] * frames[SU] + done.y[3, 0] * frames[SV]))  # constant along the path
     return Attempt(Outcome.REST if done.status == 0 else Outcome.STALLED, speed, count, iterations=int(done.niter))
 
 
@@ -117,7 +124,7 @@ def _guess(problem: Problem) -> tuple[Floats, Floats]:
     """From orthonormal tangents at the start to (u, v) rates, (2, 2); and (angle, length) of the straight line."""
     surface = problem.surface()
     a, b = np.array(problem.start), np.array(problem.end)
-    line = a + (b - a) * np.linspace(0.0, 1.0, 201)[:, None]
+    line = a + (b - a) * np.linspace(0.0, 1.0, GUESS_POINTS)[:, None]
     length = np.linalg.norm(np.diff(surface.points(line), axis=0), axis=1).sum()
     J = surface.frames(a[None])[0, [SU, SV]].T
     basis, scale = np.linalg.qr(J)

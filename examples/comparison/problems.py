@@ -1,21 +1,24 @@
-"""Taut paths with known answers: name, kind, what makes it hard, surface, ends, length; for tests and charts alike.
+"""The table of problems: taut paths with known answers, for tests and charts alike.
 
-Lengths are closed forms or quadratures to 1e-12, worked out beside each entry; a freeform surface has none, and its
-length is a dense reference with an error estimate of its own.
+Lengths are closed forms, or quadratures to 1e-12, in the functions beside the entries.  On freeform surfaces they are
+references from many particles, with error estimates.
 """
 
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from typing import TypeVar
 
 import numpy as np
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from comparison.problem import Kind, Problem
-from comparison.rubbing import TURN, Dragged, Sliding, tube
+from comparison.problem import TURN, Kind, Problem
+from comparison.sliding import Dragged, Sliding, tube
 from meshwind.core.cast import Floats
 from meshwind.surface import Surface, shapes
+
+Number = TypeVar("Number", float, Floats)
 
 
 def cone_length(twist: float) -> float:
@@ -30,13 +33,13 @@ CONE_LIMIT = np.pi / 3 / (0.5 / float(np.hypot(3.0, 0.5)))
 """Twist beyond which the line in the cone's sector would dip below the small rim: cos(flat angle) = 0.5."""
 
 
-def barrel_radius(z: float) -> float:
+def barrel_radius(z: Number) -> Number:
     """The convex barrel's profile on z in [0, 2]."""
     return 1.0 - 0.3 * (z - 1.0) ** 2
 
 
 def _barrel_integral(c: float, rate: Callable[[float, float], float]) -> float:
-    """Integral along the geodesic with r sin(alpha) = c; z = 1 - cos(q) takes the edge off c near the rims' radius."""
+    """Integral along the geodesic with r sin(alpha) = c; z = 1 - cos(q) removes the singularity at c = 0.7."""
 
     def by_angle(q: float) -> float:
         rise = 0.3 * np.sin(q) ** 2
@@ -79,7 +82,7 @@ def cone() -> Surface:
 @cache
 def barrel() -> Surface:
     """The barrel of `barrel_radius`."""
-    return shapes.revolution(lambda z: 1.0 - 0.3 * (z - 1.0) ** 2, 0.0, 2.0, (256, 64))
+    return shapes.revolution(barrel_radius, 0.0, 2.0, (256, 64))
 
 
 @cache
@@ -148,7 +151,7 @@ PROBLEMS = (
     Problem("elbow", "the chord of the inner bend", elbow, (0.5, 0), (0.5, 1), 2 * np.sqrt(2.0), True,
             2 - np.sqrt(2.0), Kind.BRIDGING),
 )  # fmt: skip
-"""Free of friction, with exact answers."""
+"""Without friction, with exact answers."""
 
 LONG = (
     Problem("barrel-4", f"near the limit of {BARREL_LIMIT:.2f} rad at which the fibre slides off", barrel, (0, 0),
@@ -156,8 +159,7 @@ LONG = (
     Problem("helix-5", "five and a quarter turns", lambda: tube(0.0, 1.5), (0, 0), (5.25, 1),
             float(np.hypot(5.25 * TURN, 1.5)), kind=Kind.LONG),
 )  # fmt: skip
-"""Windings so long that they need many particles or hardly hold."""
-
+"""Windings so long that they need many particles, or are close to sliding off."""
 
 SLIDING = {
     "catenary-0.3": Sliding(0.3, 0.8, np.pi),
@@ -183,7 +185,7 @@ def bottle_shape(u: Floats, v: Floats) -> Floats:
 
 @cache
 def bottle() -> Surface:
-    """The bottle as a spline: the reference is that of this very surface, whatever the formula says."""
+    """The bottle as a spline; the reference length is that on the spline, not on the formula's shape."""
     return shapes.parametric(bottle_shape, (96, 96))
 
 
@@ -195,14 +197,14 @@ FREEFORM = (
     Problem("bottle-neck", "over the neck through the air", bottle, (0.1, 0), (0.4, 1), 4.4354379168811, True,
             kind=Kind.FREEFORM, accuracy=5e-12),
 )  # fmt: skip
-"""Dense references: 1601 and 3201 particles extrapolated by Richardson; `accuracy` is what halving changes in that."""
+"""References by Richardson's extrapolation from 1601 and 3201 particles; `accuracy` is its change from half as many."""
 
 SPLINE = {
     "cone-1": 1.2e-11, "cone-3": 1.6e-10, "cone-6": 3.0e-10, "barrel-0.5": 1.1e-10, "barrel-1.5": 2.8e-10,
     "barrel-2.5": 3.4e-10, "barrel-4": 3.9e-10, "sphere": 3.9e-10, "ellipsoid": 2.3e-10, "vase": 8e-11,
     "helix-5": 5.4e-10,
 }  # fmt: skip
-"""What a length on the spline differs from that on the exact shape, relative: with 6401 particles, rounded up."""
+"""Relative difference of the length on the spline from that on the exact shape, with 6401 particles, rounded up."""
 TABLE = {
     problem.name: replace(problem, accuracy=max(problem.accuracy, SPLINE.get(problem.name, 0.0)))
     for problem in (*PROBLEMS, *LONG, *FRICTION, *FREEFORM)

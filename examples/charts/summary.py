@@ -1,4 +1,4 @@
-"""What the work-precision diagrams say in figures: who is beaten where, by how much, and what fails."""
+"""The work-precision diagrams in figures: which methods are better than ours and where, by how much, and what fails."""
 
 from collections.abc import Sequence
 from statistics import median
@@ -6,28 +6,39 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+from comparison.attempt import OURS
 from comparison.problems import TABLE
 
 from charts.record import Results
 from charts.style import LOOKS, save
-from charts.work_precision import Point, cannot, front
+from charts.work_precision import Point, Reason, cannot, front
 
-OURS = "meshwind"
 NOISE = 1.1
 """A time counts as shorter if it is by this factor: repeats on a shared machine agree no better."""
 TIE = 1.02
 """Errors are equal to this factor: schemes on one chain of particles share its error to many digits."""
 FLYING = ("hyperboloid", "elbow")
+"""Problems whose fibre is in the air from end to end: there every method is exact with any number of particles."""
 ERRORS = (1e-4, 1e-6, 1e-8)
+"""At which times are compared."""
+DARK = 0.6
+"""Share of failures above which the text on a cell is white."""
+SHORT = {
+    Reason.NO_FRICTION: "no\nfriction",
+    Reason.NO_GAIN: "no gain",
+    Reason.NO_BRIDGES: "cannot\nbridge",
+    Reason.SHORTEST: "shortest\nonly",
+}
+"""Reasons as the table of failures has them."""
 
 
 def of(points: Sequence[Point], problem: str, method: str) -> list[Point]:
-    """The settings of a method on a problem that came to rest."""
+    """The settings of a method that converged on a problem."""
     return [p for p in points if p.problem == problem and p.method == method and p.result == "ok"]
 
 
 def beaten(points: Sequence[Point], cost: str = "seconds") -> list[dict[str, Any]]:
-    """Rungs of ours on which another method is cheaper and at least as accurate, the worst such case of each."""
+    """Settings of ours to which another method is cheaper and at least as accurate, with the cheapest such method."""
     rows = []
     for problem in dict.fromkeys(p.problem for p in points):
         for mine in front(of(points, problem, OURS), cost):
@@ -77,7 +88,7 @@ def ratios(points: Sequence[Point]) -> list[dict[str, Any]]:
                 row: dict[str, Any] = dict(
                     problem=problem,
                     method=method,
-                    rungs=len(found),
+                    settings=len(found),
                     least=min(r for _, r in found),
                     middle=median(r for _, r in found),
                     most=max(r for _, r in found),
@@ -87,9 +98,9 @@ def ratios(points: Sequence[Point]) -> list[dict[str, Any]]:
 
 
 def summary(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Ratios at equal error a method: the middle one of all problems with the least and the most, and of how many.
+    """Ratios at equal error per method: median over the problems, with the least, the largest and their number.
 
-    Problems whose fibre flies from end to end are left out: there every method is exact with any particles.
+    Problems whose fibre is in the air from end to end are left out.
     """
     table = []
     for method in (name for name in LOOKS if name != OURS):
@@ -114,7 +125,7 @@ def at_error(points: Sequence[Point], problem: str, method: str, error: float) -
 
 
 def failures(points: Sequence[Point]) -> list[dict[str, Any]]:
-    """Settings tried and how each ended, by problem and method; with why where a method cannot."""
+    """Settings tried and how they ended, by problem and method, or the reason why a method cannot solve a problem."""
     rows = []
     for problem in dict.fromkeys(p.problem for p in points):
         for method in LOOKS:
@@ -133,30 +144,16 @@ def draw_failures(results: Results, rows: Sequence[dict[str, Any]]) -> None:
     methods = list(LOOKS)
     share = np.full((len(methods), len(problems)), np.nan)
     figure, axes = plt.subplots(figsize=(1.0 + 0.72 * len(problems) + 3, 0.42 * len(methods) + 2.2))
-    words = {
-        "no friction": "no\nfriction",
-        "the step's error outweighs the rule's": "no gain",
-        "stays on the surface": "cannot\nbridge",
-        "finds the shortest path, not one of several turns": "shortest\nonly",
-    }
     for row in rows:
         i, j = methods.index(row["method"]), problems.index(row["problem"])
         failed = row["tried"] - row["ok"]
         if row["cannot"] or not row["tried"]:
-            axes.text(
-                j, i, words.get(row["cannot"], "not\ntried"), ha="center", va="center", fontsize=5.5, color="#888888"
-            )
+            text = SHORT.get(row["cannot"], "not\ntried")
+            axes.text(j, i, text, ha="center", va="center", fontsize=5.5, color="#888888")
             continue
         share[i, j] = failed / row["tried"]
-        axes.text(
-            j,
-            i,
-            f"{failed}/{row['tried']}",
-            ha="center",
-            va="center",
-            fontsize=7,
-            color="white" if share[i, j] > 0.6 else "black",
-        )
+        colour = "white" if share[i, j] > DARK else "black"
+        axes.text(j, i, f"{failed}/{row['tried']}", ha="center", va="center", fontsize=7, color=colour)
     axes.imshow(share, cmap="Blues", vmin=0, vmax=1.1, aspect="auto")
     axes.set_xticks(range(len(problems)), problems, rotation=45, ha="right")
     axes.set_yticks(range(len(methods)), [LOOKS[m].label for m in methods])
@@ -168,7 +165,7 @@ def draw_failures(results: Results, rows: Sequence[dict[str, Any]]) -> None:
 
 
 CAPABILITIES = (
-    # method, several turns, bridging, friction, ends within a facet, path, certificate
+    # method, several turns, bridging, friction, ends, certificate
     ("meshwind", "yes", "yes", "yes, Coulomb's law", "a surface: any point", "residual and status"),
     (
         "backward-euler",
@@ -206,7 +203,7 @@ CAPABILITIES = (
         "shooting-dop853",
         "yes, ill-conditioned with length",
         "no",
-        "only where told what slips which way",
+        "only where it is known what slips and which way",
         "a surface: any point",
         "miss of the end",
     ),
@@ -214,7 +211,7 @@ CAPABILITIES = (
         "shooting-trace",
         "yes, ill-conditioned with length",
         "no",
-        "only where told what slips which way",
+        "only where it is known what slips and which way",
         "a surface: any point",
         "miss of the end",
     ),
@@ -222,7 +219,7 @@ CAPABILITIES = (
         "collocation",
         "yes",
         "no",
-        "only where told what slips which way",
+        "only where it is known what slips and which way",
         "a surface: any point",
         "residual; not stability",
     ),
@@ -230,6 +227,6 @@ CAPABILITIES = (
 
 
 def capabilities() -> list[dict[str, str]]:
-    """The table of who can do what."""
+    """The table of what each method can do."""
     heads = ("several turns", "bridging", "friction", "ends", "certificate")
     return [dict(zip(("method", *heads), (LOOKS[m].label, *rest), strict=True)) for m, *rest in CAPABILITIES]

@@ -1,7 +1,7 @@
-"""The settings that each method is tried with: a ladder of sizes and, on each rung, a grid of its own parameters.
+"""The settings that each method is tried with: sizes from small to large and, at each, a grid of its own parameters.
 
-Every setting is run; what a chart draws as a method's line is the front of the best.  Going up, a rung keeps the
-settings that served best on the one below, so that a hopeless one is not tried at every size.
+Every setting is run; what a chart draws as a method's line is the front of the best.  Each size keeps the settings that
+were best at the size before, so that a hopeless one is not tried at every size.
 """
 
 from collections.abc import Mapping
@@ -9,29 +9,35 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from comparison.attempt import OURS
 from comparison.problem import Problem
 
 from meshwind.methods import stable_step
 
 SIZES = (26, 51, 101, 201, 401, 801, 1601, 3201, 6401)
 QUICK_SIZES = (26, 101, 401)
+"""Numbers of particles."""
 STEP_LIMIT = 1.5e6
 """Particles times steps that a run may take: about 0.3 s."""
-COSTLIER = {"rk4": 4, "kkt": 8, "penalty": 8}
-"""A step of these costs about so many times one of backward Euler, which leaves them fewer steps in the same time."""
+FEWEST_STEPS = 20
+"""Steps that a run may take at least."""
+COST = {"rk4": 4, "kkt": 8, "penalty": 8}
+"""Cost of a step over that of backward Euler: these methods get fewer steps, to take about the same time."""
 KEPT = 3
-"""Settings that go on to the next rung."""
+"""Settings that the next size keeps."""
+RULED = "backward-euler-ruled"
+"""Backward Euler with and without reuse, its lengths by our rule of the fourth order instead of the polyline's."""
 
 
 @dataclass(frozen=True)
-class Trial:
+class Setting:
     """One setting of a method: its name in the charts, the scheme behind it, particles and parameters."""
 
     method: str
     scheme: str
     particles: int
     key: str
-    setting: Mapping[str, Any]
+    parameters: Mapping[str, Any]
 
 
 def slowest(n: int) -> float:
@@ -39,27 +45,22 @@ def slowest(n: int) -> float:
     return 2.0 * np.pi / (n - 1)
 
 
-RULED = "backward-euler-ruled"
-"""Backward Euler with and without reuse, its lengths told by our rule rather than by the polyline."""
-
-
-def trials(method: str, problem: Problem, n: int) -> list[Trial]:
+def settings(method: str, problem: Problem, n: int) -> list[Setting]:
     """All settings of a method for n particles."""
     scheme = "backward-euler" if method.startswith("backward-euler") else method
-    steps = max(20, int(STEP_LIMIT / n / COSTLIER.get(method, 1)))
-    made = []
-    for key, setting in _grid(method, problem, n).items():
-        full = setting if method == "meshwind" else {"steps": steps, "tolerance": 1e-6} | setting
-        made.append(Trial(method, scheme, n, key, full))
-    return made
+    steps = max(FEWEST_STEPS, int(STEP_LIMIT / n / COST.get(method, 1)))
+    common = {} if method == OURS else {"steps": steps, "tolerance": 1e-6}
+    grid = _grid(method, problem, n)
+    return [Setting(method, scheme, n, key, common | parameters) for key, parameters in grid.items()]
 
 
 def _grid(method: str, problem: Problem, n: int) -> dict[str, dict[str, Any]]:
-    if method == "meshwind":
+    """Parameters of a method, by what charts and tables call them."""
+    if method == OURS:
         return {"tolerance 1e-10 (default)": {}, "tolerance 1e-6": {"tolerance": 1e-6}}
     if method == RULED:
         both = _grid("backward-euler", problem, n) | _grid("backward-euler-reuse", problem, n)
-        return {key: setting | {"rule": True} for key, setting in both.items()}
+        return {key: parameters | {"rule": True} for key, parameters in both.items()}
     if method == "backward-euler":
         if problem.friction:
             return {f"h={h:g}, damping 0.05": dict(step_size=h, damping=0.05) for h in (0.1, 0.3, 1.0, 10.0)}

@@ -18,7 +18,11 @@ Ints = NDArray[np.int64]
 Map = Callable[[Floats, Floats], Floats]
 
 ROUNDS = 20
+"""Of Lloyd's relaxation."""
 JITTER = 0.35
+"""Largest offset of the dense grid's points, over its pitch."""
+RIM_JITTER, SITE_JITTER = 0.3, 0.8
+"""Largest offset of a first site along a rim, and within its share of the area, over what each site has."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +30,7 @@ class Part:
     """A smooth map and how to mesh it.
 
     vertices is the count wanted; grid counts the dense sample around and along; sharpness, a length, draws
-    vertices to the places whose radius of curvature is smaller than it.
+    vertices to where the radius of curvature is smaller than it.
     """
 
     file: str
@@ -75,8 +79,8 @@ def rim_sites(space: Floats, rims: Ints, spacing: float, random: np.random.Gener
     for rim in np.split(rims, 2):
         length = np.cumsum(np.linalg.norm(space[rim] - np.roll(space[rim], 1, axis=0), axis=1))
         count = round(float(length[-1:].sum()) / spacing)
-        place = (np.arange(count) + 0.3 * random.random(count)) / max(count, 1)
-        chosen.append(rim[np.searchsorted(length, place * length[-1:].sum())])
+        share = (np.arange(count) + RIM_JITTER * random.random(count)) / max(count, 1)
+        chosen.append(rim[np.searchsorted(length, share * length[-1:].sum())])
     return np.concatenate(chosen)
 
 
@@ -101,7 +105,7 @@ def relax(space: Floats, weight: Floats, fixed: Ints, count: int, random: np.ran
     total = np.cumsum(free_weight)
     wanted = count - len(fixed)
     # one site in each equal share of the area, so that no two begin at one point
-    free = np.searchsorted(total, (np.arange(wanted) + 0.8 * random.random(wanted)) * total[-1] / wanted)
+    free = np.searchsorted(total, (np.arange(wanted) + SITE_JITTER * random.random(wanted)) * total[-1] / wanted)
     sites: Floats = space[np.concatenate([fixed, free])]
     for _ in range(ROUNDS):
         label = nearest(sites, space)
@@ -117,9 +121,9 @@ def dual(label: Ints) -> Ints:
     lowest = met.argmin(axis=1)[:, None]
     met = np.take_along_axis(met, (lowest + np.arange(3)) % 3, axis=1)
     odd = met[:, 1] > met[:, 2]
-    triangle, place = np.unique(np.sort(met, axis=1), axis=0, return_inverse=True)
+    triangle, number = np.unique(np.sort(met, axis=1), axis=0, return_inverse=True)
     # a ragged border of cells may meet there and back again: the passes cancel
-    sense = np.sign(np.bincount(place, np.where(odd, -1.0, 1.0)))
+    sense = np.sign(np.bincount(number, np.where(odd, -1.0, 1.0)))
     oriented: Ints = np.where((sense < 0)[:, None], triangle[:, [0, 2, 1]], triangle)[sense != 0]
     return oriented
 

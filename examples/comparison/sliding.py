@@ -1,4 +1,4 @@
-"""Fibres on a cylinder that friction holds, with closed forms: sliding to rest, and dragged by their ends."""
+"""Fibres with friction on a cylinder, with closed forms: sliding to rest, and dragged by their ends."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -6,11 +6,9 @@ from functools import cache
 import numpy as np
 from scipy.optimize import brentq
 
-from comparison.problem import Kind, Problem
+from comparison.problem import TURN, Kind, Problem
 from meshwind.core.cast import Floats
 from meshwind.surface import Surface, shapes
-
-TURN = 2 * np.pi
 
 
 @cache
@@ -74,10 +72,10 @@ class Sliding:
         z = self.k / 2 * (self.half**2 - t * t)
         return np.stack([t / TURN, (z + 1.0) / (self.top + 2.0)], axis=1)
 
-    def problem(self, name: str, hard: str) -> Problem:
+    def problem(self, name: str, difficulty: str) -> Problem:
         """This as an entry of the table."""
         a, b = ((s * self.half / TURN, 1.0 / (self.top + 2.0)) for s in (-1, 1))
-        return Problem(name, hard, self.surface, a, b, self.length, kind=Kind.FRICTION, friction=self.mu,
+        return Problem(name, difficulty, self.surface, a, b, self.length, kind=Kind.FRICTION, friction=self.mu,
                        initial=self.initial)  # fmt: skip
 
 
@@ -103,12 +101,12 @@ class Dragged:
         """Length at rest, with the ends up."""
         return float(2.0 * (self.stuck + np.sinh(self.mu * (self.half - self.stuck)) / self.mu))
 
-    def problem(self, name: str, hard: str) -> Problem:
+    def problem(self, name: str, difficulty: str) -> Problem:
         """This as an entry of the table."""
         low, high = 1.0 / (self.rise + 2.0), (1.0 + self.rise) / (self.rise + 2.0)
         a, b = -self.half / TURN, self.half / TURN
-        return Problem(name, hard, self.surface, (a, high), (b, high), self.length, kind=Kind.MOVING, friction=self.mu,
-                       before=((a, low), (b, low)))  # fmt: skip
+        return Problem(name, difficulty, self.surface, (a, high), (b, high), self.length, kind=Kind.MOVING,
+                       friction=self.mu, dragged_from=((a, low), (b, low)))  # fmt: skip
 
     def surface(self) -> Surface:
         """The cylinder, with a margin of 1 at both ends."""

@@ -1,9 +1,10 @@
-"""Particles against error: the order of convergence of ours on every problem."""
+"""Particles against error: the order of convergence of our solver on every problem."""
 
 from collections.abc import Sequence
 
 import matplotlib.pyplot as plt
 import numpy as np
+from comparison.attempt import OURS
 from comparison.problem import Kind
 from comparison.problems import TABLE
 
@@ -16,7 +17,7 @@ LEAST = 26
 
 
 def draw(results: Results, points: Sequence[Point]) -> None:
-    """A panel a kind, each problem a line, with slopes 2 and 4 beside."""
+    """A panel per kind and a line per problem, with slopes 2 and 4 beside."""
     kinds = [kind for kind in Kind if any(p.kind == kind for p in points)]
     figure, grid = plt.subplots(1, len(kinds), figsize=(4.2 * len(kinds), 4.4), sharey=True, squeeze=False)
     for axes, kind in zip(grid[0], kinds, strict=True):
@@ -26,7 +27,7 @@ def draw(results: Results, points: Sequence[Point]) -> None:
                 {
                     p.size: p
                     for p in points
-                    if p.problem == name and p.method == "meshwind" and p.result == "ok" and "default" in p.setting
+                    if p.problem == name and p.method == OURS and p.result == "ok" and "default" in p.setting
                 }.values(),
                 key=lambda p: p.size,
             )

@@ -1,0 +1,1 @@
+"""The sample parts in `data/`: smooth maps, and their irregular meshes."""
