@@ -11,7 +11,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import TINY
 from meshwind.path.paths import Paths
 from meshwind.surface.forms import area_elements
-from meshwind.surface.grid import mean_speeds, parameter_grid
+from meshwind.surface.grid import composite_gauss, mean_speeds, parameter_grid
 from meshwind.surface.surface import Surface
 
 _FEWEST_ROWS, _MOST_ROWS = 4, 256
@@ -94,17 +94,10 @@ def _rows(surface: Surface, nu: int) -> int:
 def cell_areas(surface: Surface, nu: int, nv: int) -> Floats:
     """Areas (nu, nv) of the grid's cells by Gauss quadrature of |s_u x s_v|."""
     pieces = [-(-spans // cells) for spans, cells in zip(surface.spans, (nu, nv), strict=True)]
-    (u, wu), (v, wv) = (_composite_gauss(n * many) for n, many in zip((nu, nv), pieces, strict=True))
+    (u, wu), (v, wv) = (composite_gauss(n * many, _GAUSS) for n, many in zip((nu, nv), pieces, strict=True))
     element = area_elements(surface.frames(parameter_grid(u, v))).reshape(len(u), len(v))
     patches = (wu[:, None] * element * wv).reshape(nu, pieces[0] * _GAUSS, nv, pieces[1] * _GAUSS)
     return np.asarray(patches.sum(axis=(1, 3)))
-
-
-def _composite_gauss(intervals: int) -> tuple[Floats, Floats]:
-    """Gauss nodes and weights on equal intervals of [0, 1]."""
-    node, weight = np.polynomial.legendre.leggauss(_GAUSS)
-    at = (np.arange(intervals)[:, None] + 0.5 * (node + 1.0)) / intervals
-    return at.ravel(), np.tile(0.5 * weight / intervals, intervals)
 
 
 @njit(cache=True)

@@ -1,6 +1,7 @@
 """Clairaut's bound: on a shape of revolution r sin(alpha) is constant, so no fibre can turn more than it allows."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -9,7 +10,7 @@ from meshwind.core.cast import Floats, frozen
 from meshwind.core.vectors import TINY
 from meshwind.surface.evaluate import SU, SV, S
 from meshwind.surface.forms import fundamental_forms
-from meshwind.surface.grid import parameter_grid, rim_frames, rings
+from meshwind.surface.grid import composite_gauss, parameter_grid, rim_frames, rings
 from meshwind.surface.surface import Surface
 
 _AROUND, _ALONG = 24, 96
@@ -30,12 +31,42 @@ _NODES = 6
 """Gauss nodes per interval along the meridian."""
 _FEWEST = 64
 """Fewest intervals."""
+_ROOT = 1e-24
+"""Least (r^2 - c^2) / r^2, which keeps the integrand finite where a node all but lies on the rim."""
 _CONSTANTS = 64
 """Values of Clairaut's constant at which the turns are compared."""
 _SAME_RIM = 1e-9
 """Relative difference of the rims' radii that is round-off."""
 _HOLLOW = -1e-6
 """Least normal curvature, over the largest radius, that counts as pressing: below it lies the fit's noise."""
+
+
+class Axis(NamedTuple):
+    """The line through the middles of the two rims: a point (3,), and a unit vector (3,) from start to end."""
+
+    middle: Floats
+    along: Floats
+
+    def coordinates(self, points: Floats) -> Floats:
+        """Distance from the axis and height along it (k, 2) of points (k, 3)."""
+        off = points - self.middle
+        height = off @ self.along
+        return np.stack([np.linalg.norm(off - height[:, None] * self.along, axis=1), height], axis=1)
+
+    def across(self, points: Floats) -> Floats:
+        """Vectors (k, 3) to points (k, 3) from the nearest points of the axis."""
+        off = points - self.middle
+        return np.asarray(off - (off @ self.along)[:, None] * self.along)
+
+
+class Rings(NamedTuple):
+    """Means around the part at k values of v: radius, its slope dr/ds, speed ds/dv, curvatures along and around."""
+
+    r: Floats
+    slope: Floats
+    speed: Floats
+    bend: Floats
+    hoop: Floats
 
 
 @dataclass(frozen=True)
@@ -58,7 +89,7 @@ class Profile:
 
     def turns(self, constant: float) -> float:
         """Turns from rim to rim of the geodesic with c = r sin(alpha): the integral of c / (r sqrt(r^2 - c^2)) ds."""
-        root = np.sqrt(np.maximum((self.r - constant) * (self.r + constant), 1e-24 * self.r**2))
+        root = np.sqrt(np.maximum((self.r - constant) * (self.r + constant), _ROOT * self.r**2))
         return float((constant / (self.r * root) * self.weight).sum() / (2.0 * np.pi))
 
     def bound(self) -> float:
@@ -89,18 +120,15 @@ def profile(surface: Surface) -> Profile | None:
     axis = _axis(surface)
     if axis is None:
         return None
-    middle, along = axis
     uv = parameter_grid(np.arange(_AROUND) / _AROUND, np.linspace(0.0, 1.0, _ALONG + 1))
-    samples = _radius_and_height(surface.points(uv) - middle, along)
-    meridian = _radius_and_height(_meridian(surface, _MERIDIAN) - middle, along)
-    deviation = _from_profile(samples, meridian)
-    if deviation > allowed or abs(_twist(surface, middle, along)) > _TWIST:
+    deviation = _from_line(axis.coordinates(surface.points(uv)), axis.coordinates(_meridian(surface, _MERIDIAN)))
+    if deviation > allowed or abs(_twist(surface, axis)) > _TWIST:
         return None
-    return _nodes(surface, middle, along, deviation)
+    return _nodes(surface, axis, deviation)
 
 
-def _axis(surface: Surface) -> tuple[Floats, Floats] | None:
-    """The line through the middles of the two rims: a point and a unit vector from start to end."""
+def _axis(surface: Surface) -> Axis | None:
+    """The axis of a surface, None where the rims' middles are too close together."""
     middles = []
     for v in (0.0, 1.0):
         frames = rim_frames(surface, v, _RIM_SAMPLES)
@@ -108,13 +136,7 @@ def _axis(surface: Surface) -> tuple[Floats, Floats] | None:
         middles.append((frames[:, S] * speed[:, None]).sum(axis=0) / max(float(speed.sum()), TINY))
     step = middles[1] - middles[0]
     length = float(np.linalg.norm(step))
-    return (middles[0], step / length) if length > _SHORTEST * surface.size else None
-
-
-def _radius_and_height(off: Floats, along: Floats) -> Floats:
-    """Distance from the axis and height along it (k, 2) of points (k, 3) relative to a point of the axis."""
-    height = off @ along
-    return np.stack([np.linalg.norm(off - height[:, None] * along, axis=1), height], axis=1)
+    return Axis(middles[0], step / length) if length > _SHORTEST * surface.size else None
 
 
 def _meridian(surface: Surface, count: int) -> Floats:
@@ -123,7 +145,7 @@ def _meridian(surface: Surface, count: int) -> Floats:
     return surface.points(np.stack([np.zeros_like(v), v], axis=1))
 
 
-def _from_profile(points: Floats, line: Floats) -> float:
+def _from_line(points: Floats, line: Floats) -> float:
     """Largest distance of points (k, 2) from a fine polyline (m, 2) that is continued straight past its ends."""
     near = np.clip(cKDTree(line).query(points)[1], 1, len(line) - 2)
     chord = line[near + 1] - line[near - 1]
@@ -132,43 +154,39 @@ def _from_profile(points: Floats, line: Floats) -> float:
     return float(np.abs(across / np.maximum(np.linalg.norm(chord, axis=1), TINY)).max())
 
 
-def _twist(surface: Surface, middle: Floats, along: Floats) -> float:
+def _twist(surface: Surface, axis: Axis) -> float:
     """Turns that the chart's meridian u = 0 winds about the axis from rim to rim."""
-    off = _meridian(surface, _WINDING) - middle
-    off -= (off @ along)[:, None] * along
-    step = np.arctan2(np.cross(off[:-1], off[1:]) @ along, (off[:-1] * off[1:]).sum(axis=1))
+    off = axis.across(_meridian(surface, _WINDING))
+    step = np.arctan2(np.cross(off[:-1], off[1:]) @ axis.along, (off[:-1] * off[1:]).sum(axis=1))
     return float(step.sum() / (2.0 * np.pi))
 
 
-def _nodes(surface: Surface, middle: Floats, along: Floats, deviation: float) -> Profile:
+def _nodes(surface: Surface, axis: Axis, deviation: float) -> Profile:
     """Integrate over t in v = (1 - cos(pi t)) / 2, which takes away the inverse square roots at the rims."""
-    node, weight = np.polynomial.legendre.leggauss(_NODES)
-    many = max(2 * surface.spans[1], _FEWEST)
-    t = ((np.arange(many)[:, None] + 0.5 * (node + 1.0)) / many).ravel()
+    t, weight = composite_gauss(max(2 * surface.spans[1], _FEWEST), _NODES)
     v = np.concatenate([[0.0], np.sin(0.5 * np.pi * t) ** 2, [1.0]])
-    r, slope, speed, bend, hoop = _mean_ring(surface, middle, along, v)
-    stretch = 0.5 * np.pi * np.sin(np.pi * t) * np.tile(0.5 * weight / many, many)
+    found = _mean_rings(surface, axis, v)
+    stretch = 0.5 * np.pi * np.sin(np.pi * t) * weight
     return Profile(
         v=frozen(v[1:-1]),
-        r=frozen(r[1:-1]),
-        weight=frozen(speed[1:-1] * stretch),
-        bend=frozen(bend[1:-1]),
-        hoop=frozen(hoop[1:-1]),
-        rims=(float(r[0]), float(r[-1])),
-        slopes=(float(slope[0]), float(slope[-1])),
+        r=frozen(found.r[1:-1]),
+        weight=frozen(found.speed[1:-1] * stretch),
+        bend=frozen(found.bend[1:-1]),
+        hoop=frozen(found.hoop[1:-1]),
+        rims=(float(found.r[0]), float(found.r[-1])),
+        slopes=(float(found.slope[0]), float(found.slope[-1])),
         deviation=deviation,
     )
 
 
-def _mean_ring(surface: Surface, middle: Floats, along: Floats, v: Floats) -> tuple[Floats, ...]:
-    """Radius, dr/ds, ds/dv and the two normal curvatures (k,) at v (k,), each the mean around the part."""
+def _mean_rings(surface: Surface, axis: Axis, v: Floats) -> Rings:
+    """The means around the part at v (k,)."""
     frames = rings(surface, v, _AROUND).reshape(-1, 6, 3)
-    off = frames[:, S] - middle
-    out = off - (off @ along)[:, None] * along
+    out = axis.across(frames[:, S])
     r = np.linalg.norm(out, axis=1)
     speed = np.linalg.norm(frames[:, SV], axis=1)
     slope = (out * frames[:, SV]).sum(axis=1) / np.maximum(r * speed, TINY)
     forms = fundamental_forms(frames)
     bend = forms.second.vv / np.maximum(forms.first.vv, TINY)
     hoop = forms.second.uu / np.maximum(forms.first.uu, TINY)
-    return tuple(each.reshape(len(v), _AROUND).mean(axis=1) for each in (r, slope, speed, bend, hoop))
+    return Rings(*(each.reshape(len(v), _AROUND).mean(axis=1) for each in (r, slope, speed, bend, hoop)))

@@ -22,6 +22,13 @@ def midpoints(count: int) -> Floats:
     return (np.arange(count) + 0.5) / count
 
 
+def composite_gauss(intervals: int, nodes: int) -> tuple[Floats, Floats]:
+    """Nodes and weights (intervals nodes,) of Gauss quadrature on equal intervals of [0, 1]."""
+    node, weight = np.polynomial.legendre.leggauss(nodes)
+    at = (np.arange(intervals)[:, None] + 0.5 * (node + 1.0)) / intervals
+    return at.ravel(), np.tile(0.5 * weight / intervals, intervals)
+
+
 @dataclass(frozen=True)
 class Grid:
     """Samples of a surface: uv (k, 2), points (k, 3), frames (k, 6, 3), and outward quads (q, 4).
