@@ -36,3 +36,11 @@ def test_the_page_names_what_there_is() -> None:
     for name in re.findall(r"data/([\w.]+)", PAGE):
         if not name.endswith("/"):
             assert (ROOT / "data" / name).is_file()
+
+
+def test_scripts_load_from_any_folder(tmp_path: Path) -> None:
+    """What each imports is found beside it; the fuzzer's library is not among those for the tests."""
+    scripts = sorted(str(path) for path in (ROOT / "examples").glob("*.py") if path.name != "fuzz_readers.py")
+    code = f"import runpy, sys; sys.path[0] = {str(ROOT / 'examples')!r}; [runpy.run_path(p) for p in {scripts}]"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
