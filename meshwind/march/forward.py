@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from meshwind.core.cast import Floats, Ints, floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.threads import parallel_for
-from meshwind.march.march import EVALUATIONS, ROWS, RUNNING, STOP, march_all
+from meshwind.march.march import EVALUATIONS, ROWS, RUNNING, STOP, Marches, Rules, march_all
 from meshwind.march.traced import Stop, Trace
 from meshwind.surface.evaluate import Spline
 from meshwind.surface.surface import Surface
@@ -177,29 +177,23 @@ def traces(  # noqa: PLR0913
     state = np.column_stack([np.zeros(count), np.full(count, size), at * spans - piece, rates * spans])
     counts = np.zeros((count, 7), np.int64)
     counts[:, :2], counts[:, 2], counts[:, STOP] = piece, 1, RUNNING
-    setting = (size, exact, every, float(spacing), tolerance, press == "stop", LIMIT)
+    rules = Rules(size, exact, every, float(spacing), tolerance, press == "stop", LIMIT)
     first = np.column_stack([np.zeros(count), at, rates])
-    rows = _march(Spline(np.array(surface.net), surface.periodic), setting, slips, lengths, state, counts, first)
+    marches = Marches(slips, lengths, state, counts, np.empty((count, 0, 5)))
+    rows = _march(Spline(np.array(surface.net), surface.periodic), rules, marches, first)
     return _finish(surface, rows, slips, counts)
 
 
-def _march(
-    spline: Spline,
-    setting: tuple[float, bool, bool, float, float, bool, int],
-    slips: Floats,
-    lengths: Floats,
-    state: Floats,
-    counts: Ints,
-    first: Floats,
-) -> list[Floats]:
+def _march(spline: Spline, rules: Rules, start: Marches, first: Floats) -> list[Floats]:
     """March in chunks until every path has stopped; returns each path's rows (n, 5)."""
     chunks = [[row[None]] for row in first]
     going = np.arange(len(first))
     while len(going):
-        some, tally, rows = state[going], counts[going], np.empty((len(going), CHUNK, 5))
+        state, tally, rows = start.state[going], start.counters[going], np.empty((len(going), CHUNK, 5))
         tally[:, ROWS] = 0
-        parallel_for(march_all, len(going), 1, spline, setting, slips[going], lengths[going], some, tally, rows)
-        state[going], counts[going] = some, tally
+        marches = Marches(start.slip[going], start.length[going], state, tally, rows)
+        parallel_for(march_all, len(going), 1, spline, rules, marches)
+        start.state[going], start.counters[going] = state, tally
         for path, written, filled in zip(going, rows, tally[:, ROWS], strict=True):
             chunks[path].append(written[:filled].copy())
         going = going[tally[:, STOP] == RUNNING]

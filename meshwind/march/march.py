@@ -5,11 +5,26 @@ equations are analytic, so order 8 is order 8, where steps across a knot line wo
 Steps therefore end on knot lines.  The source's RK4 takes its fixed steps over the surface as a whole.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
+from meshwind.core.cast import Floats, Ints
 from meshwind.march.geodesic_equation import STAGES, local_error, rates
-from meshwind.march.step_events import EDGE, KNOT, LIFTS, OPEN, SLACK, STAYS, Ground, end_inside, end_pressed, take
+from meshwind.march.step_events import (
+    EDGE,
+    KNOT,
+    LIFTS,
+    OPEN,
+    SLACK,
+    STAYS,
+    Ground,
+    Work,
+    end_inside,
+    end_pressed,
+    take,
+)
 from meshwind.surface.evaluate import Spline
 
 RUNNING, LENGTH, RIM_START, RIM_END, EDGE_OF_SURFACE, LIFTS_OFF, STEP_LIMIT = range(-1, 6)
@@ -94,7 +109,7 @@ def controlled(ground, tolerance, y, h, reach, work, end):
     count = 0
     while True:
         count += take(ground, y, h, work, end)
-        error = local_error(h, size, work[0], work[1]) / tolerance if exact else 0.0
+        error = local_error(h, size, work.frame, work.stages) / tolerance if exact else 0.0
         if error <= 1.0 and np.isfinite(end[0] + end[1] + end[2] + end[3]):
             grown = h * min(5.0, 0.9 * max(error, 1e-12) ** -0.125)
             return h, (grown if h >= reach else max(reach, grown)), count
@@ -120,15 +135,44 @@ def change_window(exact, sides, count, y):
     return moved
 
 
+class Rules(NamedTuple):
+    """How all paths march.
+
+    size: the part's, a length; exact: whether by the adaptive method; every: whether each step is recorded; spacing:
+    arc length between marks that steps must meet; tolerance: of the local error; presses: whether a path stops where
+    the fibre lifts off; limit: maximum number of steps.
+    """
+
+    size: float
+    exact: bool
+    every: bool
+    spacing: float
+    tolerance: float
+    presses: bool
+    limit: int
+
+
+class Marches(NamedTuple):
+    """Paths on the march: required friction kg/kn and length (p,), state (p, 6), counters (p, 7), rows (p, m, 5)."""
+
+    slip: Floats
+    length: Floats
+    state: Floats
+    counters: Ints
+    rows: Floats
+
+
 @njit(cache=True)
-def march(spline, setting, slip, length, state, count, rows):
+def march(spline, rules, path, marches):
     """March one path on until it stops or has filled its rows (m, 5) of (s, u, v, du/ds, dv/ds)."""
-    size, exact, every, spacing, tolerance, presses, limit = setting
+    size, exact, presses = rules.size, rules.exact, rules.presses
+    slip, length, state = marches.slip[path], marches.length[path], marches.state[path]
+    count, rows = marches.counters[path], marches.rows[path]
     spans = (spline.net.shape[0] - 3, spline.net.shape[1] - 3) if exact else (1, 1)
     window = np.empty((4, 4, 3)) if exact else spline.net
     ground = Ground(Spline(window, spline.periodic and not exact), slip, size, exact)
-    work = (np.empty((7, 3)), np.empty((STAGES, 4)), np.empty(4))
-    K = work[1]
+    work = Work(np.empty((7, 3)), np.empty((STAGES, 4)), np.empty(4))
+    K = work.stages
     end = np.empty(4)
     y = state[Y:]
     sides = np.empty(4, np.int64)
@@ -139,13 +183,13 @@ def march(spline, setting, slip, length, state, count, rows):
         if how != STAYS:
             count[STOP] = reason(how)
             break
-        press, speed = rates(ground.spline, slip, y, work[0], K[0])
+        press, speed = rates(ground.spline, slip, y, work.frame, K[0])
         count[EVALUATIONS] += 1
         if presses and press * size < -SLACK:
             count[STOP] = LIFTS_OFF
             break
         count[STEPS] += 1
-        if count[STEPS] > limit or not speed > 0.0:
+        if count[STEPS] > rules.limit or not speed > 0.0:
             count[STOP] = STEP_LIMIT
             break
         if exact:  # unit speed (3.18): scale the rates as the curve run through at that speed
@@ -153,12 +197,12 @@ def march(spline, setting, slip, length, state, count, rows):
                 y[2 + k] /= speed
                 K[0, k] /= speed
                 K[0, 2 + k] /= speed * speed
-        mark = min(count[MARK] * spacing, length)
+        mark = min(count[MARK] * rules.spacing, length)
         h = mark - state[S]
         if exact:
             h = min(h, state[REACH], room(sides, y))
         whole = h >= mark - state[S]
-        taken, state[REACH], more = controlled(ground, tolerance, y, h, state[REACH], work, end)
+        taken, state[REACH], more = controlled(ground, rules.tolerance, y, h, state[REACH], work, end)
         count[EVALUATIONS] += more
         if taken == 0.0:
             count[STOP] = STEP_LIMIT
@@ -178,20 +222,26 @@ def march(spline, setting, slip, length, state, count, rows):
             count[STOP] = reason(how)
         elif state[S] >= length:
             count[STOP] = LENGTH
-        if (every or count[STOP] != RUNNING or state[S] == mark) and shorter > SHORTEST * size:
-            row = rows[count[ROWS]]
-            row[0] = state[S]
-            for c in range(2):
-                row[1 + c] = (count[COLUMN + c] + y[c]) / spans[c]
-                row[3 + c] = y[2 + c] / spans[c]
-            count[ROWS] += 1
+        if (rules.every or count[STOP] != RUNNING or state[S] == mark) and shorter > SHORTEST * size:
+            record(state, count, spans, rows)
         if change_window(exact, sides, count, y):
             open_window(spline, exact, count, window)
             look_around(spans[0], spans[1], spline.periodic, exact, count, sides)
 
 
+@njit(cache=True)
+def record(state, count, spans, rows):
+    """Write where a path is into its next row."""
+    row, y = rows[count[ROWS]], state[Y:]
+    row[0] = state[S]
+    for c in range(2):
+        row[1 + c] = (count[COLUMN + c] + y[c]) / spans[c]
+        row[3 + c] = y[2 + c] / spans[c]
+    count[ROWS] += 1
+
+
 @njit(nogil=True, cache=True)
-def march_all(first, last, spline, setting, slip, length, state, count, rows):
+def march_all(first, last, spline, rules, marches):
     """March paths first to last on; see `march`."""
     for path in range(first, last):
-        march(spline, setting, slip[path], length[path], state[path], count[path], rows[path])
+        march(spline, rules, path, marches)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from meshwind.core.cast import Floats
 from meshwind.march.geodesic_equation import dormand_prince_8, rates, runge_kutta_4
 from meshwind.surface.evaluate import Spline
 
@@ -37,14 +38,30 @@ class Ground(NamedTuple):
     exact: bool
 
 
+class Work(NamedTuple):
+    """Room for a step: the surface's frame (7, 3), the rates of the stages, and the rates (4,) at the end."""
+
+    frame: Floats
+    stages: Floats
+    after: Floats
+
+
+class Event(NamedTuple):
+    """What ends a step: the quantity `what` meets target, to within slack; before is its value at the start."""
+
+    what: int
+    target: float
+    slack: float
+    before: float
+
+
 @njit(cache=True)
 def take(ground, y, h, work, end):
     """One step from y by h into `end`, with K[0] set; returns the number of surface evaluations."""
     spline, slip, exact = ground.spline, ground.slip, ground.exact
-    at, K, _ = work
     if exact:
-        return dormand_prince_8(spline, slip, y, h, at, K, end)
-    return runge_kutta_4(spline, slip, y, h, at, K, end)
+        return dormand_prince_8(spline, slip, y, h, work.frame, work.stages, end)
+    return runge_kutta_4(spline, slip, y, h, work.frame, work.stages, end)
 
 
 @njit(cache=True)
@@ -52,7 +69,7 @@ def measure(ground, what, end, work):
     """The quantity `what` at the end of a step."""
     if what < PRESS:
         return end[what]
-    return rates(ground.spline, ground.slip, end, work[0], work[2])[0]
+    return rates(ground.spline, ground.slip, end, work.frame, work.after)[0]
 
 
 @njit(cache=True)
@@ -68,16 +85,17 @@ def first_guess(what, target, y, h, end):
 
 
 @njit(cache=True)
-def shorten(ground, what, target, slack, y, before, h, work, end):
-    """Shorten a step of length h so that `what` meets target at its end; returns (length, evaluations).
+def shorten(ground, event, y, h, work, end):
+    """Shorten a step of length h so that an event is at its end; returns (length, evaluations).
 
-    before is the quantity at y, on the other side of the target than at `end`.  Within `slack` of the target is
-    near enough; with slack 0 the root is bracketed to round-off.  False position (Illinois), every third time a
+    At y the quantity is on the other side of the target than at `end`.  Within its slack of the target is near
+    enough; with slack 0 the root is bracketed to round-off.  False position (Illinois), every third time a
     bisection.  The end lies past the target for rates, so that the next step sees their new sign, otherwise before.
     """
+    what, target = event.what, event.target
     count = 0
     a, b = 0.0, h
-    fa, fb = before - target, measure(ground, what, end, work) - target
+    fa, fb = event.before - target, measure(ground, what, end, work) - target
     guess = first_guess(what, target, y, h, end) if what < 2 else b * fa / (fa - fb) if fa != fb else 0.5 * b
     past = what == 2 or what == 3
     last = -1
@@ -88,7 +106,7 @@ def shorten(ground, what, target, slack, y, before, h, work, end):
             break
         count += take(ground, y, guess, work, end) + (what == PRESS)
         f = measure(ground, what, end, work) - target
-        if abs(f) < slack:
+        if abs(f) < event.slack:
             return guess, count
         far = (f > 0.0) == (fb > 0.0)
         if far:
@@ -116,7 +134,7 @@ def stay_one_way(ground, c, kind, y, h, work, end):
     low = min(y[c], end[c])
     if (1.0 - high if r0 > 0.0 else low) > reach:
         return h, 0
-    return shorten(ground, 2 + c, 0.0, 0.0, y, r0, h, work, end)
+    return shorten(ground, Event(2 + c, 0.0, 0.0, r0), y, h, work, end)
 
 
 @njit(cache=True)
@@ -139,10 +157,10 @@ def end_inside(ground, sides, y, h, work, end):
             wall = float(upper)
             if kind == KNOT:
                 target = wall + (0.5 * WIDTH if upper else -0.5 * WIDTH)
-                h, more = shorten(ground, c, target, 0.5 * WIDTH, y, y[c], h, work, end)
+                h, more = shorten(ground, Event(c, target, 0.5 * WIDTH, y[c]), y, h, work, end)
                 how = STAYS
             else:
-                h, more = shorten(ground, c, wall, 0.0, y, y[c], h, work, end)
+                h, more = shorten(ground, Event(c, wall, 0.0, y[c]), y, h, work, end)
                 end[c] = wall
                 how = LEAVES + side
             count += more
@@ -151,14 +169,14 @@ def end_inside(ground, sides, y, h, work, end):
 
 @njit(cache=True)
 def middle_press(ground, y, h, end, work):
-    """Normal curvature half-way along a step, on the quintic through its two ends; work[2] holds the rates at end."""
-    _, K, out = work
+    """Normal curvature half-way along a step, on the quintic through its two ends, of which the rates are known."""
+    K, out = work.stages, work.after
     half = np.empty(4)
     for c in range(2):
         a, b, r0, r1, a0, a1 = y[c], end[c], y[2 + c], end[2 + c], K[0, 2 + c], out[2 + c]
         half[c] = 0.5 * (a + b) + h * (5.0 / 32.0 * (r0 - r1) + h / 64.0 * (a0 + a1))
         half[2 + c] = 15.0 / 8.0 * (b - a) / h - 7.0 / 16.0 * (r0 + r1) + h / 32.0 * (a1 - a0)
-    return rates(ground.spline, ground.slip, half, work[0], out)[0]
+    return rates(ground.spline, ground.slip, half, work.frame, out)[0]
 
 
 @njit(cache=True)
@@ -171,7 +189,7 @@ def end_pressed(ground, y, press, h, how, work, end):
     target = 0.0 if press > 0.0 else least
     at_end = measure(ground, PRESS, end, work)
     if at_end < least:
-        h, count = shorten(ground, PRESS, target, 0.0, y, press, h, work, end)
+        h, count = shorten(ground, Event(PRESS, target, 0.0, press), y, h, work, end)
         return h, LIFTS, count + 1
     half = middle_press(ground, y, h, end, work)
     curve = 2.0 * (press - 2.0 * half + at_end)
@@ -184,6 +202,6 @@ def end_pressed(ground, y, press, h, how, work, end):
     count = 3 + take(ground, y, t * h, work, dip)
     if measure(ground, PRESS, dip, work) >= least:
         return h, how, count
-    h, more = shorten(ground, PRESS, target, 0.0, y, press, t * h, work, dip)
+    h, more = shorten(ground, Event(PRESS, target, 0.0, press), y, t * h, work, dip)
     end[:] = dip
     return h, LIFTS, count + more
