@@ -82,7 +82,7 @@ def test_bridge_ends_are_where_the_chord_is_tangent() -> None:
     paths = solve(bottle(), [(0.1, 0), (0.3, 0)], [(0.4, 1), (0.9, 1)])
     spans = bridges(paths)
     assert len(spans) >= 2
-    places = touchdowns(paths, spans.path, spans.first, spans.last)[1]
+    places = touchdowns(paths.surface, paths.points, paths.uv, spans.path, spans.first, spans.last)[1]
     chord = spans.ends[:, 1] - spans.ends[:, 0]
     chord /= np.linalg.norm(chord, axis=1)[:, None]
     spacing = spans.length / (spans.last - spans.first)

@@ -17,6 +17,7 @@ from meshwind.cli.main import app
 from meshwind.core.option import options_of
 from meshwind.layup.layup import assess
 from meshwind.mesh.geometry.mesh import Mesh
+from meshwind.path.kernels.state import NEEDS_TREE
 from meshwind.results.schema import RESULTS
 from meshwind.results.write import write_files
 from meshwind.surface import shapes
@@ -58,6 +59,11 @@ def test_every_status_is_described() -> None:
         for number, name in zip(numbers.split(","), re.findall(r"`(\w+)`", names), strict=True)
     }
     assert listed == {(int(status), status.name.lower()) for status in mw.Status}
+
+
+def test_every_status_has_advice_and_a_number_of_its_own() -> None:
+    assert all(status.advice for status in mw.Status)
+    assert NEEDS_TREE not in set(mw.Status)
 
 
 def test_every_file_is_described() -> None:

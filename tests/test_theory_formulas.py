@@ -19,7 +19,7 @@ from meshwind.methods.chain import Physics
 from meshwind.methods.in_space import PENALTY, SpaceRules, space_work
 from meshwind.methods.strand import Strand
 from meshwind.path.kernels.contact import lift, pull
-from meshwind.path.kernels.state import energy
+from meshwind.path.kernels.state import blank, energy, no_contacts
 from meshwind.path.solve import straight
 from meshwind.planning.pressing import pressing
 from meshwind.surface import Surface, shapes
@@ -227,11 +227,8 @@ def test_velocities_are_scaled_by_friction() -> None:
 def test_weights_across_a_bridge() -> None:
     """(5.2), (5.3) and (5.8): the weights of the example, and that those of a row add up to nothing."""
     X = np.random.default_rng(4).normal(size=(6, 3))
-    out = np.empty(3)
-    pull(X, 1, 0, 4, out)
-    assert out == pytest.approx(X[0] - 4 / 3 * X[1] + X[4] / 3)
-    pull(X, 4, 1, 5, out)
-    assert out == pytest.approx(X[1] / 3 - 4 / 3 * X[4] + X[5])
+    assert pull(X, 1, 0, 4) == pytest.approx(X[0] - 4 / 3 * X[1] + X[4] / 3)
+    assert pull(X, 4, 1, 5) == pytest.approx(X[1] / 3 - 4 / 3 * X[4] + X[5])
     before, i, after = 3, 5, 9
     outer = 1 / (i - before) + 1 / (after - i)
     assert -(after - before) / ((i - before) * (after - i)) + outer == pytest.approx(0.0)
@@ -245,11 +242,10 @@ def test_the_unweighted_test_can_have_the_wrong_sign() -> None:
     X = np.column_stack([X[:, 0], 0.0 * X[:, 0], X[:, 1]])
     normal = np.tile([0.0, 0.0, 1.0], (6, 1))
     touching = np.array([True, True, False, False, False, True])
-    weighted, before, after = np.empty(3), np.zeros(6, np.int64), np.zeros(6, np.int64)
-    pull(X, 1, 0, 5, weighted)
-    assert weighted[2] < 0.0
+    state = blank(6)._replace(X=X, normal=normal, touching=touching)
+    assert pull(X, 1, 0, 5)[2] < 0.0
     assert (X[0] - 2 * X[1] + X[5])[2] > 0.0
-    assert lift(X, normal, touching, 0.0, True, before, after) == 0
+    assert lift(state, 0.0, True, no_contacts(6)) == 0
 
 
 def squared_distance(point: Floats, uv: Floats) -> float:

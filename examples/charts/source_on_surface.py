@@ -1,4 +1,4 @@
-"""Figures 4.2 (c, d) and 4.3 (e to g) of the source redone: on half a sphere, with and without friction.
+"""Fig. 4.2 (c, d) and Fig. 4.3 (e to g) of the source redone: on half a sphere, with and without friction.
 
 The source gives neither the sphere's radius, nor the time step, nor the number of particles, only that the ends are 2
 apart in figure 4.2 and that the runs of figure 4.3 are damped.  The values here are our choice, the best found for the

@@ -11,7 +11,7 @@ from numba import njit
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.methods.chain import SOLVES
-from meshwind.path.kernels.block_tridiagonal import solve
+from meshwind.path.kernels.block_tridiagonal import SymmetricSystem, solve
 from meshwind.surface.evaluate import SU
 
 
@@ -59,7 +59,8 @@ def step(chain, physics, forces, count, refresh, system, move, tally):
     tally[SOLVES] += 1
     if refresh:
         build(chain, physics, forces, count, system)
-        if not solve(system.diagonal, system.upper, metric, 0.0, right, count, x, system.inverse):
+        matrix = SymmetricSystem(system.diagonal, system.upper, metric, right, x, system.inverse)
+        if not solve(matrix, 0.0, count):
             return False
     else:
         solve_again(system, count)

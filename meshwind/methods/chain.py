@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 from meshwind.core.cast import Bools, Floats, Ints
-from meshwind.path.kernels.newton import held
+from meshwind.path.kernels.contact import held
 from meshwind.surface.evaluate import SU, SV, S, frame, tangents, unit_normal
 
 EVALUATIONS, FEET, SOLVES, STEPS = range(4)

@@ -5,17 +5,16 @@ frame's friction holds, so that the fibre remembers its way.
 """
 
 from collections.abc import Callable
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats, floats
 from meshwind.core.errors import BadInputError
-from meshwind.path.batch import Batch, Setting, fresh
+from meshwind.path.batch import Batch, fresh
 from meshwind.path.friction import Friction, friction_of
-from meshwind.path.ladder import failing
+from meshwind.path.kernels.coulomb import STUCK
+from meshwind.path.nested import failing
 from meshwind.path.paths import Paths
 from meshwind.path.solve import (
     ITERATIONS,
@@ -27,6 +26,7 @@ from meshwind.path.solve import (
     check_share,
     straight,
 )
+from meshwind.path.solver import Solver
 from meshwind.surface.surface import Surface
 
 LONGEST_STEP = 0.02
@@ -103,20 +103,16 @@ def drag(  # noqa: PLR0913
     check_extent(surface)
     check_count(iterations, "iterations", 1)
     check_share(tolerance, "tolerance")
-    setting = Setting(surface, friction_of(surface, friction), bridging, tolerance, iterations)
+    solver = Solver(surface, friction_of(surface, friction), bridging, tolerance, iterations)
     curve = straight(first[:1], last[:1], 2) if initial is None else floats(initial, "initial", -1, 2)[None]
     check_curves(curve)
     state = fresh(curve, particles)
-    setting.run(state, resume=False)
+    solver.relax(state, resume=False)
     frames = [state]
     for k in range(1, len(first)):
-        frames.append(_advance(setting, frames[-1], first[k], last[k]))
-    arrays: dict[str, Any] = {name: _join([getattr(f, name) for f in frames]) for name in _RESULTS}
-    joined = Batch(**arrays)
-    return as_paths(setting, joined, np.where(last[:, 0] >= first[:, 0], 1, -1))
-
-
-_RESULTS = tuple(Batch.__dataclass_fields__)
+        frames.append(_advance(solver, frames[-1], first[k], last[k]))
+    joined = Batch._make(_join(list(arrays)) for arrays in zip(*frames, strict=True))
+    return as_paths(solver, joined, np.where(last[:, 0] >= first[:, 0], 1, -1))
 
 
 def _join(arrays: list[Floats]) -> Floats:
@@ -126,34 +122,33 @@ def _join(arrays: list[Floats]) -> Floats:
     return np.concatenate(arrays)
 
 
-def _advance(setting: Setting, state: Batch, start: Floats, end: Floats) -> Batch:
+def _advance(solver: Solver, state: Batch, start: Floats, end: Floats) -> Batch:
     """The fibre at rest with its ends at `start` and `end` (2,), moved there in steps that it can follow."""
     here = np.stack([state.uv[0, 0], state.uv[0, -1]])
     goal = np.stack([start, end])
     steps = max(1, int(np.ceil(np.abs(goal - here).max() / LONGEST_STEP)))
-    cost = np.zeros_like(state.tallies)
+    cost = np.zeros_like(state.counters)
     done, step, halvings = 0.0, 1.0 / steps, 0
     while done < 1.0:
         share = min(done + step, 1.0)
-        trial = _moved(state, here + share * (goal - here), setting.friction.none)
-        setting.run(trial, resume=True)
-        cost += trial.tallies
+        trial = _moved(state, here + share * (goal - here), solver.friction.none)
+        solver.relax(trial, resume=True)
+        cost += trial.counters
         if failing(trial)[0] and halvings < HALVINGS:
             step, halvings = 0.5 * step, halvings + 1
             continue
         state, done = trial, share
-    result = replace(state)
-    result.tallies[:] = cost
-    return result
+    state.counters[:] = cost
+    return state
 
 
 def _moved(state: Batch, ends: Floats, smooth: bool) -> Batch:
     """A copy with new ends (2, 2), at rest nowhere yet; with friction it starts from where the fibre lies now."""
     trial = state.rows(np.zeros(1, np.int64))
-    trial.tallies[:] = 0
+    trial.counters[:] = 0
     trial.uv[0, 0], trial.uv[0, -1] = ends
     if not smooth:
-        trial.starts = trial.uv.copy()
-        trial.place[0] = np.arange(trial.uv.shape[1])
-        trial.mode[:] = 0
+        trial.anchor[0] = np.arange(trial.particles)
+        trial.mode[:] = STUCK
+        return trial._replace(starts=trial.uv.copy())
     return trial

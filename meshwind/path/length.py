@@ -1,8 +1,8 @@
 """The length of a fibre from its particles: fourth order where the polyline's is second.
 
-The chord c of an arc of curvature k is shorter than it by c^3 k^2 / 24.  The fibre at rest is the shortest, or all but,
-so that its length forgives the particles' own error, which is of second order: what is left is of the fourth.  A bridge
-is straight from where it truly leaves the surface, between particles, to where it comes back.
+The chord c of an arc of curvature k is shorter than it by c^3 k^2 / 24.  The fibre in equilibrium is the shortest, or
+all but, so that its length forgives the particles' own error, which is of second order: what is left is of the fourth.
+A bridge is straight from where it truly leaves the surface, between particles, to where it comes back.
 """
 
 import numpy as np
@@ -10,6 +10,7 @@ from numba import njit
 
 from meshwind.core.cast import Bools, Floats
 from meshwind.core.threads import parallel_for
+from meshwind.core.vectors import TINY
 from meshwind.path.kernels.state import distance
 from meshwind.path.kernels.touchdown import touchdown
 from meshwind.surface.surface import Surface
@@ -18,7 +19,7 @@ from meshwind.surface.surface import Surface
 @njit(cache=True)
 def bend(X, i):
     """Curvature of the fibre at particle i, squared, from the turn of its chords."""
-    before, after = max(distance(X, i, i - 1), 1e-300), max(distance(X, i + 1, i), 1e-300)
+    before, after = max(distance(X, i, i - 1), TINY), max(distance(X, i + 1, i), TINY)
     square = 0.0
     for k in range(3):
         square += ((X[i + 1, k] - X[i, k]) / after - (X[i, k] - X[i - 1, k]) / before) ** 2
@@ -50,7 +51,7 @@ def lengths_all(first, last, spline, X, uv, touching, length):
     """Write the lengths (p,) of fibres first to last with particles X (p, n, 3)."""
     n = X.shape[1]
     frames = np.empty((6, 3))
-    place, here, there = np.empty(2), np.empty(3), np.empty(3)
+    where, here, there = np.empty(2), np.empty(3), np.empty(3)
     for p in range(first, last):
         total = 0.0
         i = 0
@@ -64,8 +65,8 @@ def lengths_all(first, last, spline, X, uv, touching, length):
             i = j + 1
             while i < n - 1 and not touching[p, i]:
                 i += 1
-            total += touchdown(spline, X[p], uv[p], j, i, frames, place, here)
-            total += touchdown(spline, X[p], uv[p], i, j, frames, place, there)
+            total += touchdown(spline, X[p], uv[p], j, i, frames, where, here)
+            total += touchdown(spline, X[p], uv[p], i, j, frames, where, there)
             square = 0.0
             for k in range(3):
                 square += (there[k] - here[k]) ** 2

@@ -98,5 +98,5 @@ def bridges(paths: Paths) -> Bridges:
     padded = np.pad(paths.gap, ((0, 0), (0, 1)), constant_values=0.0).ravel()
     gap = np.maximum.reduceat(padded, bounds)[::2] if len(bounds) else np.zeros(0)
     length = arc[path, last] - arc[path, first]
-    ends, _ = touchdowns(paths, path, first, last)
+    ends, _ = touchdowns(paths.surface, paths.points, paths.uv, path, first, last)
     return Bridges(frozen(path), frozen(first), frozen(last), frozen(length), frozen(gap), frozen(ends))

@@ -8,10 +8,11 @@ from numpy.typing import ArrayLike
 from meshwind.core.cast import Floats, floats, frozen, ints
 from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
-from meshwind.path.batch import Batch, Setting
+from meshwind.path.batch import Batch
 from meshwind.path.friction import Friction, friction_of
-from meshwind.path.ladder import climb
+from meshwind.path.nested import solve_nested
 from meshwind.path.paths import Counters, Paths
+from meshwind.path.solver import Solver
 from meshwind.surface.surface import Surface
 
 TOLERANCE = 1e-10
@@ -148,27 +149,27 @@ def solve(  # noqa: PLR0913
     check_curves(curves)
     count = len(curves)
     sense = np.where(last[:, 0] >= first[:, 0], 1, -1) if family is None else ints(family, "family", count)
-    setting = Setting(surface, friction_of(surface, friction), bridging, tolerance, iterations)
-    batch, holds = climb(setting, curves, particles, accuracy)
-    return as_paths(setting, batch, sense, holds)
+    solver = Solver(surface, friction_of(surface, friction), bridging, tolerance, iterations)
+    batch, holds = solve_nested(solver, curves, particles, accuracy)
+    return as_paths(solver, batch, sense, holds)
 
 
-def as_paths(setting: Setting, batch: Batch, sense: ArrayLike, holds: tuple[Floats, Floats] | None = None) -> Paths:
+def as_paths(solver: Solver, batch: Batch, sense: ArrayLike, holds: tuple[Floats, Floats] | None = None) -> Paths:
     """The public form of a solved batch."""
-    total = batch.tallies.sum(axis=0)
-    turns, coefficients = holds if holds is not None else (np.zeros(len(batch)), np.zeros(len(batch)))
+    total = batch.counters.sum(axis=0)
+    turns, coefficients = holds if holds is not None else (np.zeros(batch.paths), np.zeros(batch.paths))
     return Paths(
-        surface=setting.surface,
-        points=frozen(batch.X + setting.surface.middle),
+        surface=solver.surface,
+        points=frozen(batch.X + solver.surface.middle),
         uv=frozen(batch.uv),
         on_surface=frozen(batch.touching),
         gap=frozen(batch.gap),
         normal=frozen(batch.normal),
-        slip=frozen(batch.slip),
+        slip=frozen(batch.required),
         family=frozen(np.asarray(sense, dtype=np.int64)),
         status=frozen(batch.status),
         residual=frozen(batch.residual),
-        friction=setting.friction.largest,
+        friction=solver.friction.largest,
         counters=Counters(*(int(total[k]) for k in range(4))),
         holding_turns=frozen(turns),
         holding_friction=frozen(coefficients),

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.path import Paths, Status, solve
-from meshwind.path.batch import Setting, fresh
+from meshwind.path.batch import fresh
 from meshwind.path.friction import Friction, friction_of
-from meshwind.path.ladder import fewest, search
 from meshwind.path.lengths import bridged_share, lengths
+from meshwind.path.nested import fewest, search
 from meshwind.path.paths import converged_or_all
 from meshwind.path.solve import as_paths, straight
+from meshwind.path.solver import Solver
 from meshwind.planning.families import families
 from meshwind.surface.surface import Surface
 
@@ -51,17 +52,17 @@ class Trial:
 def trial(surface: Surface, revolutions: float, friction: float | Friction = 0.0, paths: int = PATHS) -> Trial:
     """Wind both families with `paths` coarse paths each; those that fail are tried again with more particles."""
     rims = families(surface, paths, revolutions)
-    setting = Setting(surface, friction_of(surface, friction), True, _TOLERANCE, _ITERATIONS)
+    solver = Solver(surface, friction_of(surface, friction), True, _TOLERANCE, _ITERATIONS)
     curves = straight(rims.start, rims.end, 2)
     least = max(_SEGMENTS, int(fewest(curves).max(initial=0)))
     left, batches = np.arange(len(curves)), []
     for factor in _REFINEMENTS:
         batch = fresh(curves[left], least * factor + 1)
-        setting.run(batch, resume=False)
+        solver.relax(batch, resume=False)
         failed = float((batch.status != Status.CONVERGED).mean())
         if factor > 1 or 0.0 < failed <= _HOPELESS:
-            search(setting, batch)
-        batches.append(as_paths(setting, batch, rims.family[left]))
+            search(solver, batch)
+        batches.append(as_paths(solver, batch, rims.family[left]))
         left = left[batch.status != Status.CONVERGED]
         if not len(left) or (factor == 1 and failed > _HOPELESS):
             break

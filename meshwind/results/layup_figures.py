@@ -24,7 +24,7 @@ REGIONS = (4, 8)
 """Number of equal parts of u and of v in which crossings are counted."""
 
 
-def spread(values: Floats) -> Spread:
+def parallel_for(values: Floats) -> Spread:
     """Minimum, median and maximum; None if there are no values."""
     if not len(values):
         return {"min": None, "median": None, "max": None}
@@ -35,8 +35,8 @@ def crossing_figures(crossings: Crossings, own: int) -> CrossingFigures:
     """Angles in degrees, quality as |cos|, counts by region; own: crossings of fibres of the same family."""
     return {
         "count": len(crossings),
-        "angle": spread(np.degrees(crossings.angle)),
-        "quality": spread(np.abs(np.cos(crossings.angle))),
+        "angle": parallel_for(np.degrees(crossings.angle)),
+        "quality": parallel_for(np.abs(np.cos(crossings.angle))),
         "off_surface": int((~crossings.on_surface).sum()),
         "own_family": own,
         "by_region": counts(crossings, *REGIONS).tolist(),
@@ -66,9 +66,9 @@ def spacing_figures(layup: Layup, spaced: Spaced | None) -> SpacingFigures:
     """Distances between neighbours and between crossings; the gap and overlap that the band's width leaves."""
     largest, width = layup.neighbours.largest, layup.coverage.width
     figures: SpacingFigures = {
-        "neighbours": spread(largest),
-        "d1": spread(layup.sides.d1),
-        "d2": spread(layup.sides.d2),
+        "neighbours": parallel_for(largest),
+        "d1": parallel_for(layup.sides.d1),
+        "d2": parallel_for(layup.sides.d2),
         "widest_gap": max(float(largest.max(initial=width)) - width, 0.0),
         "neighbours_apart": float((largest > width).mean()) if len(largest) else None,
     }
@@ -101,9 +101,9 @@ def quad_figures(layup: Layup) -> QuadFigures:
         "quads": len(mesh.quads),
         "triangles": len(mesh.triangles),
         "convex_inner": quality.convex_share,
-        "scaled_jacobian": spread(quality.jacobian),
-        "aspect": spread(quality.aspect),
-        "warp": spread(quality.warp),
+        "scaled_jacobian": parallel_for(quality.jacobian),
+        "aspect": parallel_for(quality.aspect),
+        "warp": parallel_for(quality.warp),
         "off_surface_points": int((~mesh.on_surface).sum()),
         "left_out": list(mesh.left_out),
         "of": "windings as asked for" if layup.initial else "paths",

@@ -1,4 +1,4 @@
-"""Reading of STL, PLY, OBJ, OFF, GLB and GLTF files by trimesh.
+"""Reading of STL, PLY, OBJ, OFF, GLB and GLTF files by trimesh, which also cuts polygons into triangles.
 
 STL and OBJ files are checked first, because trimesh gives no reason why it cannot read a damaged file, or reads it
 silently.

@@ -1,19 +1,72 @@
-"""Symmetric 2 x 2 block tridiagonal systems by block Cholesky: O(n), and a test of definiteness on the way."""
+"""2 x 2 block tridiagonal systems: O(n) by block elimination, with a test of definiteness on the way."""
 
+from typing import NamedTuple
+
+import numpy as np
 from numba import njit
+
+from meshwind.core.cast import Floats
 
 DEFINITE = 1e-11
 """A pivot whose determinant is below this share of its block's diagonal product counts as singular."""
 
 
-@njit(cache=True)
-def solve(diagonal, upper, metric, shift, right, count, x, inverse):
-    """Solve (H + shift M) x = right for the first `count` blocks; returns whether the matrix is positive definite.
+class SymmetricSystem(NamedTuple):
+    """(H + shift M) x = right, symmetric.
 
-    diagonal (n, 3) holds each block's (uu, uv, vv) of H; upper (n, 2, 2) couples block j to j + 1; metric (n, 3)
-    are the blocks of M, the surface's first fundamental form at each particle.  inverse (n, 3) is work space.
-    x (n, 2) is meaningful only where True is returned; the factorisation stops at the first bad pivot.
+    diagonal (n, 3) holds each block's (uu, uv, vv) of H; upper (n, 2, 2) couples block j to j + 1; metric (n, 3) are
+    the blocks of M, the surface's first fundamental form at each particle; right, x (n, 2); inverse (n, 3) is left with
+    the pivots' inverses.
     """
+
+    diagonal: Floats
+    upper: Floats
+    metric: Floats
+    right: Floats
+    x: Floats
+    inverse: Floats
+
+
+class GeneralSystem(NamedTuple):
+    """(A + shift I) x = right, where A need not be symmetric.
+
+    lower, diagonal, upper (n, 2, 2): row block j couples to j - 1, j, j + 1; right, x (n, 2); carry (n, 2, 2) is work
+    space.
+    """
+
+    lower: Floats
+    diagonal: Floats
+    upper: Floats
+    right: Floats
+    x: Floats
+    carry: Floats
+
+
+@njit(cache=True)
+def symmetric_system(n):
+    """Room for a symmetric system of n blocks."""
+    return SymmetricSystem(
+        np.empty((n, 3)), np.empty((n, 2, 2)), np.empty((n, 3)), np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 3))
+    )
+
+
+@njit(cache=True)
+def general_system(n):
+    """Room for a general system of n blocks."""
+    return GeneralSystem(
+        np.empty((n, 2, 2)), np.empty((n, 2, 2)), np.empty((n, 2, 2)),
+        np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 2, 2)),
+    )  # fmt: skip
+
+
+@njit(cache=True)
+def solve(system, shift, count):
+    """Solve a symmetric system for its first `count` blocks; returns whether the matrix is positive definite.
+
+    x is meaningful only where True is returned; the factorisation stops at the first bad pivot.
+    """
+    diagonal, upper, metric = system.diagonal, system.upper, system.metric
+    right, x, inverse = system.right, system.x, system.inverse
     for j in range(count):
         a = diagonal[j, 0] + shift * metric[j, 0]
         b = diagonal[j, 1] + shift * metric[j, 1]
@@ -48,12 +101,10 @@ def solve(diagonal, upper, metric, shift, right, count, x, inverse):
 
 
 @njit(cache=True)
-def solve_general(lower, diagonal, upper, shift, right, count, x, carry):
-    """Solve (A + shift I) x = right for the first `count` 2 x 2 blocks by block elimination; A need not be symmetric.
-
-    lower, diagonal, upper (n, 2, 2): row block j couples to j - 1, j, j + 1.  carry (n, 2, 2) is work space.  Returns
-    False at a singular pivot, and then x (n, 2) is meaningless.
-    """
+def solve_general(system, shift, count):
+    """Solve a general system for its first `count` blocks; returns False at a singular pivot, where x is lost."""
+    lower, diagonal, upper = system.lower, system.diagonal, system.upper
+    right, x, carry = system.right, system.x, system.carry
     for j in range(count):
         a, b = diagonal[j, 0, 0] + shift, diagonal[j, 0, 1]
         c, d = diagonal[j, 1, 0], diagonal[j, 1, 1] + shift

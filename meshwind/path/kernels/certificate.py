@@ -3,7 +3,8 @@
 import numpy as np
 from numba import njit
 
-from meshwind.path.kernels.newton import measure_gap
+from meshwind.core.vectors import TINY
+from meshwind.path.kernels.landing import measure_gap
 from meshwind.path.kernels.state import distance, energy
 from meshwind.surface.evaluate import S
 
@@ -18,18 +19,19 @@ LONGEST_SEGMENT = 2.0
 
 
 @njit(cache=True)
-def certify(body, state, slip, tally):
-    """True gaps of the lifted particles, and the slip |kg| / kn that each touching one needs.
+def certify(body, state, required, counters):
+    """True gaps of the lifted particles, and the friction |kg| / kn that each touching one requires.
 
     A lifted particle that turns out to be inside the body lands; returns how many did.
     """
-    X, uv, frames, normal, touching, gap = state
+    X, uv, frames, normal = state.X, state.uv, state.frames, state.normal
+    touching, gap = state.touching, state.clear
     n = len(X)
     landed = 0
     for i in range(n):
-        slip[i] = np.nan
+        required[i] = np.nan
         if not touching[i]:
-            height, gap[i] = measure_gap(body, state, i, tally)
+            height, gap[i] = measure_gap(body, state, i, counters)
             if height < -INSIDE * body.size and 0.0 < uv[i, 1] < 1.0:
                 for k in range(3):
                     X[i, k] = frames[i, S, k]
@@ -38,14 +40,14 @@ def certify(body, state, slip, tally):
     for i in range(1, n - 1):
         if touching[i]:
             gap[i] = 0.0
-            slip[i] = needed_slip(X, normal, i)
+            required[i] = required_friction(X, normal, i)
     return landed
 
 
 @njit(cache=True)
 def unresolved(state, periodic):
     """Whether the path cuts an edge by a segment on the surface much longer than the others, or the whole body."""
-    X, touching = state[0], state[4]
+    X, touching = state.X, state.touching
     n = len(X)
     if largest_leap(state, periodic) > max(HALF_TURN, 2.0 / (n - 1)):
         return True
@@ -63,7 +65,7 @@ def largest_leap(state, periodic):
     It is not where their gaps cover the way; a foot leaps from side to side of a hollow, too.  But by a whole turn no
     foot leaps.  Where u is not periodic only v counts.
     """
-    X, uv, clear = state[0], state[1], state[5]
+    X, uv, clear = state.X, state.uv, state.clear
     most = 0.0
     for i in range(len(uv) - 1):
         turn = abs(uv[i + 1, 0] - uv[i, 0]) if periodic else 0.0
@@ -74,10 +76,10 @@ def largest_leap(state, periodic):
 
 
 @njit(cache=True)
-def needed_slip(X, normal, i):
+def required_friction(X, normal, i):
     """|kg| / kn from the turn of the polyline's unit tangent at particle i; 0 where the fibre runs straight."""
-    p = 1.0 / max(distance(X, i, i - 1), 1e-300)
-    q = 1.0 / max(distance(X, i + 1, i), 1e-300)
+    p = 1.0 / max(distance(X, i, i - 1), TINY)
+    q = 1.0 / max(distance(X, i + 1, i), TINY)
     press = side = square = 0.0
     for k in range(3):
         c, d = (k + 1) % 3, (k + 2) % 3
@@ -87,4 +89,4 @@ def needed_slip(X, normal, i):
         press -= turn * normal[i, k]
         side += turn * b
         square += b * b
-    return abs(side) / np.sqrt(max(square, 1e-300)) / press if press > PULL else 0.0
+    return abs(side) / np.sqrt(max(square, TINY)) / press if press > PULL else 0.0

@@ -1,20 +1,25 @@
-"""Which particles touch the surface: lifting (5.1) and the springs that skip lifted particles (5.2)."""
+"""Which particles touch the surface: lifting (5.1), the springs that skip lifted particles (5.2), and the rims."""
 
-import numpy as np
 from numba import njit
+
+from meshwind.path.kernels.geometry import combine, dot, minus, row
+
+DEEP, SHALLOW, NOTHING = range(3)
+"""What a step may release: all that pulls off, as in a convex hull scan; only what its present neighbours pull off;
+nothing.  A step that fails is tried again with the next."""
 
 
 @njit(inline="always", cache=True)
-def pull(X, i, before, after, out):
+def pull(X, i, before, after):
     """Force on particle i from its nearest touching neighbours, per unit of spring: the row j of (5.2)."""
-    a, b = 1.0 / (i - before), 1.0 / (after - i)
-    for k in range(3):
-        out[k] = a * (X[before, k] - X[i, k]) + b * (X[after, k] - X[i, k])
+    here = row(X, i)
+    return combine(1.0 / (i - before), minus(row(X, before), here), 1.0 / (after - i), minus(row(X, after), here))
 
 
 @njit(cache=True)
-def link(touching, before, after):
+def link(touching, contacts):
     """Fill each touching particle's nearest touching neighbours; the two ends always touch."""
+    before, after = contacts.before, contacts.after
     n = len(touching)
     last = 0
     for i in range(1, n):
@@ -25,7 +30,7 @@ def link(touching, before, after):
 
 
 @njit(cache=True)
-def lift(X, normal, touching, slack, deep, before, after):
+def lift(state, slack, deep, contacts):
     """Release every touching particle that its neighbours pull off the surface (Algorithm 1).
 
     The force is the weighted one of (5.2): with uneven gaps the unweighted test of Algorithm 1 has the wrong sign.
@@ -33,15 +38,16 @@ def lift(X, normal, touching, slack, deep, before, after):
     by repeated sweeps; without, only particles that their present neighbours pull off are released.  A pull up to
     `slack` counts as none.  Returns how many were released.
     """
-    link(touching, before, after)
+    X, normal, touching = state.X, state.normal, state.touching
+    before, after = contacts.before, contacts.after
+    link(touching, contacts)
     released = 0
-    force = np.empty(3)
     i, n = after[0], len(touching)
     while i < n - 1:
-        pull(X, i, before[i], after[i], force)
+        force = pull(X, i, before[i], after[i])
         p, q = before[i], after[i]
         i_next = q
-        if force[0] * normal[i, 0] + force[1] * normal[i, 1] + force[2] * normal[i, 2] > slack:
+        if dot(force, row(normal, i)) > slack:
             touching[i] = False
             released += 1
             if deep:
@@ -49,5 +55,25 @@ def lift(X, normal, touching, slack, deep, before, after):
                 i_next = p if p > 0 else q
         i = i_next
     if not deep:
-        link(touching, before, after)
+        link(touching, contacts)
     return released
+
+
+@njit(cache=True)
+def release(state, slack, caution, contacts):
+    """Release what `caution` (DEEP, SHALLOW or NOTHING) lets go, and link the rest; returns how many were released."""
+    if caution == NOTHING:
+        link(state.touching, contacts)
+        return 0
+    return lift(state, slack, caution == DEEP, contacts)
+
+
+@njit(cache=True)
+def held(uv, i, periodic, fu, fv):
+    """Bit 1: the force pushes particle i out over an edge in u; bit 2: out over a rim in v."""
+    bits = 0
+    if not periodic and ((uv[i, 0] <= 0.0 and fu < 0.0) or (uv[i, 0] >= 1.0 and fu > 0.0)):
+        bits |= 1
+    if (uv[i, 1] <= 0.0 and fv < 0.0) or (uv[i, 1] >= 1.0 and fv > 0.0):
+        bits |= 2
+    return bits

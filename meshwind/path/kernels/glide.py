@@ -1,71 +1,87 @@
 """A taut path that stays on the surface: Newton's method on the springs' energy, on few particles first, then on all.
 
 Most paths never leave the surface, and what they need is little: no trial states, no contacts, no feet, one pass over
-the particles a step.  The few particles take the steps from the starting curve; the many start from their answer,
-which is off by their spacing squared, and need two.  Whatever is not as simple as that (a step that gains energy, a
-rim, a saddle, a pull off the surface at rest) is left to `relax`.
+the particles per step.  The few particles take the steps from the starting curve; the many start from their answer,
+which is off by their spacing squared, and need two.  What is not as simple as that (a step that gains energy, a rim, a
+saddle, a pull off the surface in equilibrium) is left to `relax`.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
+from meshwind.core.cast import Floats
+from meshwind.core.vectors import TINY
 from meshwind.path.kernels.block_tridiagonal import DEFINITE
-from meshwind.path.kernels.newton import EVALUATIONS, ITERATIONS, SOLVES
-from meshwind.path.kernels.state import distance
-from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, S, frame, tangents, unit_normal
+from meshwind.path.kernels.state import EVALUATIONS, ITERATIONS, SOLVES, distance
+from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, S, frame, position, tangents, unit_normal
 
 FEW = 24
-"""Segments of the first solve, a turn: a quarter of a radian each."""
-STEPS, LAST_STEPS = 12, 5
-"""Steps that the few, and the many particles may take: a path that needs more is not simple."""
+"""Segments of the first solve per turn: a quarter of a radian each."""
+MAX_STEPS, MAX_LAST_STEPS = 12, 5
+"""Maximum number of steps of the few, and then of the many particles: a path that needs more is not simple."""
 LONGEST_MOVE = 0.25
 """No step moves a particle further than this in u or v: beyond it the quadratic model means nothing."""
 NEAR = 1e-5
-"""Unbalanced force from which one more step of Newton's mostly ends: the rest after it needs no second derivatives."""
+"""Unbalanced force from which one more step of Newton's mostly ends: the balance after it needs no second
+derivatives."""
+ROUND_OFF = 1e-12
+"""Relative increase of the energy that is none."""
+
+
+class Factors(NamedTuple):
+    """Room for the linear system of a path of n particles.
+
+    inverse (n, 3): the pivots' inverses; upper (n, 2, 2): the couplings; x (n, 2): right-hand sides, then the solution.
+    """
+
+    inverse: Floats
+    upper: Floats
+    x: Floats
 
 
 @njit(cache=True)
-def glide(spline, pull_off, tolerance, steps, uv, frames, system, tally):
-    """Bring the path uv (n, 2) to rest on the surface, in place; returns its residual and whether it is at rest.
+def glide(spline, limits, uv, frames, factors, counters):
+    """Bring the path uv (n, 2) to equilibrium on the surface, in place; returns its residual and whether it is there.
 
-    frames (n, 6, 3) are left as they are there.  system is (pivots (n, 3), upper (n, 2, 2), x (n, 2)), work space.
+    frames (n, 6, 3) are left as they are there.
     """
-    pivots, upper, x = system
     n = len(uv)
     before = np.inf
     near = False
     residual = np.inf
-    for _ in range(steps):
-        tally[ITERATIONS] += 1
-        energy, length = evaluate(spline, uv, frames, near, tally)
-        if not energy <= before * (1.0 + 1e-12):
+    for _ in range(limits.iterations):
+        counters[ITERATIONS] += 1
+        energy, length = evaluate(spline, uv, frames, near, counters)
+        if not energy <= before * (1.0 + ROUND_OFF):
             return residual, False
         before, spacing = energy, length / (n - 1)
         if near:
-            residual = unbalanced(frames, n) / spacing
-            if residual <= tolerance:
-                return residual, presses(frames, n, pull_off * spacing)
-            evaluate(spline, uv, frames, False, tally)
-        tally[SOLVES] += 1
-        worst = eliminate(frames, n, 1.0, pivots, upper, x)
+            residual = unbalanced(frames) / spacing
+            if residual <= limits.tolerance:
+                return residual, presses(frames, limits.pull_off * spacing)
+            evaluate(spline, uv, frames, not near, counters)  # a literal would be compiled apart
+        counters[SOLVES] += 1
+        worst = eliminate(frames, 1.0, factors)
         stable = worst >= 0.0
         if not stable:
-            tally[SOLVES] += 1
-            worst = eliminate(frames, n, 0.0, pivots, upper, x)
+            counters[SOLVES] += 1
+            worst = eliminate(frames, 0.0, factors)
         residual = worst / spacing
-        if residual <= tolerance:
-            return residual, stable and presses(frames, n, pull_off * spacing)
-        if not step(spline.periodic, uv, n, pivots, upper, x):
+        if residual <= limits.tolerance:
+            return residual, stable and presses(frames, limits.pull_off * spacing)
+        if not substitute(spline.periodic, uv, factors):
             return residual, False
         near = stable and residual <= NEAR
     return residual, False
 
 
 @njit(cache=True)
-def evaluate(spline, uv, frames, lean, tally):
+def evaluate(spline, uv, frames, lean, counters):
     """Frames at all particles, without second derivatives if `lean`; returns the springs' energy and the length."""
     energy = length = 0.0
-    tally[EVALUATIONS] += len(uv)
+    counters[EVALUATIONS] += len(uv)
     for i in range(len(uv)):
         if lean:
             tangents(spline, uv[i, 0], uv[i, 1], frames[i])
@@ -81,13 +97,13 @@ def evaluate(spline, uv, frames, lean, tally):
 
 
 @njit(cache=True)
-def eliminate(frames, n, bend, pivots, upper, x):
+def eliminate(frames, bend, factors):
     """Assemble the Hessian and force of the energy and eliminate forward, all in one pass.
 
-    bend: 1 for Newton's step, 0 for Gauss-Newton's, which (4.16) is with a long time step.  pivots (n, 3) get the
-    pivots' inverses, upper (n, 2, 2) the couplings, x (n, 2) the right hand sides.  Returns the largest unbalanced
-    force in the tangent plane, or -1 where the matrix is not positive definite.
+    bend: 1 for Newton's step, 0 for Gauss-Newton's, which (4.16) is with a long time step.  Returns the largest
+    unbalanced force in the tangent plane, or -1 where the matrix is not positive definite.
     """
+    n, pivots, upper, x = len(frames), factors.inverse, factors.upper, factors.x
     worst = 0.0
     for i in range(1, n - 1):
         a = b = d = fu = fv = guu = guv = gvv = w00 = w01 = w10 = w11 = 0.0
@@ -128,8 +144,9 @@ def eliminate(frames, n, bend, pivots, upper, x):
 
 
 @njit(cache=True)
-def step(periodic, uv, n, pivots, upper, x):
+def substitute(periodic, uv, factors):
     """Substitute backwards and move the particles; False where one would go too far, or over a rim."""
+    n, pivots, upper, x = len(uv), factors.inverse, factors.upper, factors.x
     reach = 0.0
     p = q = 0.0
     for i in range(n - 2, 0, -1):
@@ -148,8 +165,9 @@ def step(periodic, uv, n, pivots, upper, x):
 
 
 @njit(cache=True)
-def unbalanced(frames, n):
+def unbalanced(frames):
     """Largest force in the tangent plane."""
+    n = len(frames)
     worst = 0.0
     for i in range(1, n - 1):
         fu = fv = guu = guv = gvv = 0.0
@@ -165,8 +183,9 @@ def unbalanced(frames, n):
 
 
 @njit(cache=True)
-def presses(frames, n, slack):
+def presses(frames, slack):
     """Whether no particle is pulled off the surface by more than `slack`."""
+    n = len(frames)
     normal = np.empty(3)
     for i in range(1, n - 1):
         unit_normal(frames[i], normal)
@@ -187,13 +206,17 @@ def along(curve, t, out):
 
 
 @njit(cache=True)
-def spread_along(spline, curve, uv, frames, tally):
+def spread_along(spline, curve, uv, frames, counters):
     """Fill uv (n, 2) with points of a polyline (m, 2) in the plane, evenly spaced by length on the surface."""
     n, last = len(uv), len(curve) - 1.0
     for i in range(n):
         along(curve, last * i / (n - 1), uv[i])
-    _, length = evaluate(spline, uv, frames, True, tally)
+        position(spline, uv[i, 0], uv[i, 1], frames[i, S])
+    counters[EVALUATIONS] += n
     X = frames[:, S]
+    length = 0.0
+    for i in range(1, n):
+        length += distance(X, i, i - 1)
     j, s = 0, 0.0
     reach = distance(X, 0, 1)
     for i in range(1, n - 1):
@@ -202,7 +225,7 @@ def spread_along(spline, curve, uv, frames, tally):
             s += reach
             j += 1
             reach = distance(X, j, j + 1)
-        share = min((want - s) / max(reach, 1e-300), 1.0)
+        share = min((want - s) / max(reach, TINY), 1.0)
         along(curve, last * (j + share) / (n - 1), uv[i])
 
 

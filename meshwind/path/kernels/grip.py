@@ -1,107 +1,136 @@
-"""The hold of a fibre on its starting curve: where each particle belongs on it, and how far it has slipped from it."""
+"""The grip of a fibre on its starting curve: where each particle belongs on it, and how far it has slipped from it."""
 
 import numpy as np
 from numba import njit
 
-from meshwind.path.kernels.coulomb import HELD, STUCK, curve_at, nearest_on
-from meshwind.path.kernels.newton import EVALUATIONS
-from meshwind.path.kernels.state import copy_particle, touch_down
+from meshwind.core.vectors import TINY
+from meshwind.path.kernels.coulomb import HELD, STUCK, slipping
+from meshwind.path.kernels.geometry import derivative
+from meshwind.path.kernels.starting_curve import curve_at, nearest_on, offset_from
+from meshwind.path.kernels.state import EVALUATIONS, copy_particle, put_on_surface
 from meshwind.surface.evaluate import SU, SV
 
-SETTLE = 1e-12
+ON_CURVE = 1e-12
 """Round-off of a lateral distance over the part's size: nearer to the starting curve counts as on it."""
+ROUNDS = 2
+"""Rounds of spacing particles evenly: the second leaves an error of the order of the first's squared."""
 
 
 @njit(cache=True)
-def slide(spline, step, move, contacts, count, curve, balance, state, grip, trial, after_grip, size, tally):
-    """Write into `trial` the touching particles moved by step * move: along the curve if stuck, freely if slipping."""
-    uv = state[1]
-    place, offset, mode = grip
-    place_t, offset_t, mode_t = after_grip
-    ways, load = balance[3], balance[4]
+def move_with_grip(rough, step, fibre, trial, work, count, counters):
+    """Write into `trial` the touching particles moved by a share of Newton's step.
+
+    A stuck one moves along the starting curve, a slipping one freely; one that comes to the curve sticks to it.
+    """
+    spline, size, curve = rough.body.spline, rough.body.size, fibre.curve
+    uv, mode, anchor = fibre.state.uv, fibre.grip.mode, fibre.grip.anchor
+    moved, grip = trial.state, trial.grip
+    inner, ways, mu, move = work.contacts.inner, work.balance.ways, work.balance.mu, work.system.x
     last = len(uv) - 1
-    copy_particle(state, trial, 0)
-    copy_particle(state, trial, last)
-    for i in range(last + 1):
-        place_t[i], offset_t[i], mode_t[i] = place[i], offset[i], mode[i]
+    copy_particle(fibre.state, moved, 0)
+    copy_particle(fibre.state, moved, last)
+    copy_grip(fibre.grip, grip)
     for c in range(count):
-        i = contacts[c]
+        i = inner[c]
         if mode[i] == STUCK:
-            _, _, du, dv = curve_at(curve, place[i])
-            rate = np.sqrt((du * du + dv * dv) / max(ways[i, 0, 0] ** 2 + ways[i, 0, 1] ** 2, 1e-300))
-            place_t[i] = min(max(place[i] + step * move[c, 0] / max(rate, 1e-300), 0.0), len(curve) - 1.0)
-            u, v, _, _ = curve_at(curve, place_t[i])
-            touch_down(spline, trial, i, u, v)
+            _, _, du, dv = curve_at(curve, anchor[i])
+            rate = np.sqrt((du * du + dv * dv) / max(ways[i, 0, 0] ** 2 + ways[i, 0, 1] ** 2, TINY))
+            s = min(max(anchor[i] + step * move[c, 0] / max(rate, TINY), 0.0), len(curve) - 1.0)
+            put_on_curve(spline, curve, s, moved, i)
+            grip.anchor[i] = s
             continue
         u = uv[i, 0] + step * (move[c, 0] * ways[i, 0, 0] + move[c, 1] * ways[i, 1, 0])
         v = uv[i, 1] + step * (move[c, 0] * ways[i, 0, 1] + move[c, 1] * ways[i, 1, 1])
         v = min(max(v, 0.0), 1.0)
         if not spline.periodic:
             u = min(max(u, 0.0), 1.0)
-        touch_down(spline, trial, i, u, v)
-        locate(curve, i, trial, after_grip, size)
-        if mode[i] != HELD and load[i, 3] > 0.0 and offset_t[i] * mode[i] >= 0.0:  # back on the curve, or across it
-            mode_t[i] = np.int8(STUCK)
-            u, v, _, _ = curve_at(curve, place_t[i])
-            touch_down(spline, trial, i, u, v)
-            offset_t[i] = 0.0
-            tally[EVALUATIONS] += 1
-    tally[EVALUATIONS] += count
+        put_on_surface(spline, moved, i, u, v)
+        s, d = locate(curve, anchor[i], moved, i, size)
+        if mode[i] != HELD and mu[i] > 0.0 and d * mode[i] >= 0.0:  # back on the curve, or across it
+            grip.mode[i] = np.int8(STUCK)
+            put_on_curve(spline, curve, s, moved, i)
+            d = 0.0
+            counters[EVALUATIONS] += 1
+        grip.anchor[i], grip.offset[i] = s, d
+    counters[EVALUATIONS] += count
 
 
 @njit(cache=True)
-def locate(curve, i, state, grip, size):
-    """Place of particle i along the starting curve, and its signed distance from it, positive to the left."""
-    uv, frames = state[1], state[2]
-    place, offset, mode = grip
-    place[i] = nearest_on(curve, place[i], uv[i, 0], uv[i, 1], frames[i])
-    u, v, du, dv = curve_at(curve, place[i])
-    # both the way from the curve and the curve's tangent lie in the tangent plane: their area over the tangent's length
-    e = f = g = 0.0
-    for k in range(3):
-        su, sv = frames[i, SU, k], frames[i, SV, k]
-        e, f, g = e + su * su, f + su * sv, g + sv * sv
-    area = np.sqrt(max(e * g - f * f, 0.0)) * (du * (uv[i, 1] - v) - dv * (uv[i, 0] - u))
-    d = area / np.sqrt(max(e * du * du + 2.0 * f * du * dv + g * dv * dv, 1e-300))
-    offset[i] = d if abs(d) > SETTLE * size else 0.0
+def copy_grip(source, target):
+    """Copy a grip into another."""
+    for i in range(len(source.mode)):
+        target.anchor[i], target.offset[i], target.mode[i] = source.anchor[i], source.offset[i], source.mode[i]
 
 
 @njit(cache=True)
-def take_hold(spline, curve, state, grip, size, tally):
-    """Complete the grip of a state: stuck particles go to their place, slipping ones measure their way from it."""
-    X, uv, frames, normal, touching, clear = state
-    place, offset, mode = grip
+def put_on_curve(spline, curve, s, state, i):
+    """Put particle i on the surface at s of the starting curve."""
+    u, v, _, _ = curve_at(curve, s)
+    put_on_surface(spline, state, i, u, v)
+
+
+@njit(cache=True)
+def locate(curve, s, state, i, size):
+    """Anchor of particle i on the starting curve, from a guess s, and its signed distance from there."""
+    u, v = state.uv[i, 0], state.uv[i, 1]
+    su, sv = derivative(state.frames, i, SU), derivative(state.frames, i, SV)
+    s = nearest_on(curve, s, u, v, su, sv)
+    d = offset_from(curve, s, u, v, su, sv)
+    return s, d if abs(d) > ON_CURVE * size else 0.0
+
+
+@njit(cache=True)
+def hold_where_it_lies(fibre, i, size):
+    """Find the anchor of particle i, and its mode: stuck if it lies on the curve, slipping to its side of it if not."""
+    grip = fibre.grip
+    grip.anchor[i], grip.offset[i] = locate(fibre.curve, grip.anchor[i], fibre.state, i, size)
+    grip.mode[i] = np.int8(STUCK) if grip.offset[i] == 0.0 else slipping(grip.offset[i])
+
+
+@njit(cache=True)
+def restore_grip(spline, fibre, size, counters):
+    """Complete a grip whose anchors and modes are known: stuck particles go to their anchors, others are located."""
+    touching, offset, mode = fibre.state.touching, fibre.grip.offset, fibre.grip.mode
     offset[0] = offset[-1] = 0.0
-    for i in range(1, len(X) - 1):
+    for i in range(1, len(touching) - 1):
         offset[i] = 0.0
         if not touching[i]:
             mode[i] = STUCK
             continue
         if mode[i] != STUCK:
-            locate(curve, i, state, grip, size)
-            mode[i] = np.int8(STUCK if offset[i] == 0.0 else (-1 if offset[i] > 0.0 else 1))
+            hold_where_it_lies(fibre, i, size)
         if mode[i] == STUCK:
-            u, v, _, _ = curve_at(curve, place[i])
-            touch_down(spline, state, i, u, v)
-            tally[EVALUATIONS] += 1
+            put_on_curve(spline, fibre.curve, fibre.grip.anchor[i], fibre.state, i)
+            counters[EVALUATIONS] += 1
             offset[i] = 0.0
 
 
 @njit(cache=True)
-def space_along(spline, curve, state, place):
-    """Put the particles on the starting curve, evenly by length in space."""
-    X = state[0]
+def attach_to_curve(spline, fibre, counters):
+    """Stick all particles to the starting curve, evenly by length in space."""
+    X, curve, anchor = fibre.state.X, fibre.curve, fibre.grip.anchor
     n = len(X)
+    fibre.grip.mode[:] = STUCK
+    fibre.grip.offset[:] = 0.0
     for i in range(n):
-        place[i] = (len(curve) - 1.0) * i / (n - 1)
-    for _ in range(2):
+        anchor[i] = (len(curve) - 1.0) * i / (n - 1)
+    for _ in range(ROUNDS):
         for i in range(n):
-            u, v, _, _ = curve_at(curve, place[i])
-            touch_down(spline, state, i, u, v)
+            put_on_curve(spline, curve, anchor[i], fibre.state, i)
         s = np.zeros(n)
         for i in range(1, n):
             s[i] = s[i - 1] + np.sqrt(((X[i] - X[i - 1]) ** 2).sum())
-        place[:] = np.interp(np.linspace(0.0, s[n - 1], n), s, place)
+        anchor[:] = np.interp(np.linspace(0.0, s[n - 1], n), s, anchor)
     for i in range(n):
-        u, v, _, _ = curve_at(curve, place[i])
-        touch_down(spline, state, i, u, v)
+        put_on_curve(spline, curve, anchor[i], fibre.state, i)
+    counters[EVALUATIONS] += (ROUNDS + 1) * n
+
+
+@njit(cache=True)
+def hold_landed(fibre, trial, size):
+    """Give particles that have landed in `trial` an anchor between those of their neighbours, and a mode."""
+    anchor, last = trial.grip.anchor, len(trial.curve) - 1
+    for i in range(1, len(anchor) - 1):
+        if trial.state.touching[i] and not fibre.state.touching[i]:
+            anchor[i] = min(max(0.5 * (anchor[i - 1] + anchor[i + 1]), 0.0), last)
+            hold_where_it_lies(trial, i, size)

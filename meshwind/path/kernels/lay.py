@@ -1,64 +1,64 @@
-"""Frictionless paths from their starting curves, each by the cheapest way that does: gliding on the surface, else
-bridging, on few particles first and then, from their answer, on more."""
+"""Frictionless paths from their starting curves, each by the cheapest way that does.
+
+That is Newton's method on the surface alone or, where a path bridges or slips, nested iteration: the path is relaxed on
+few particles first and then, from their answer, on more.
+"""
 
 import numpy as np
 from numba import njit
 
-from meshwind.path.kernels.certificate import needed_slip, unresolved
-from meshwind.path.kernels.glide import FEW, LAST_STEPS, STEPS, glide, resample, spread_along
+from meshwind.path.kernels.certificate import required_friction, unresolved
+from meshwind.path.kernels.glide import FEW, MAX_LAST_STEPS, MAX_STEPS, Factors, glide, resample, spread_along
 from meshwind.path.kernels.refine import refine
-from meshwind.path.kernels.relax import CONVERGED, begin, settle, take_up
-from meshwind.path.kernels.state import blank
+from meshwind.path.kernels.relax import relax_and_certify, restore_contact, start_on_curve
+from meshwind.path.kernels.state import CONVERGED, Limits, blank, state_of
 from meshwind.surface.evaluate import S, unit_normal
 
 FEWEST = 96
-"""Segments of the lowest rung, at least, and as many a turn, where a path may bridge or slip."""
+"""Least number of segments of the coarsest level, and as many per turn, where a path may bridge or slip."""
 
 
 @njit(nogil=True, cache=True)
-def lay_all(
-    first, last, body, pull_off, rough, tolerance, limit, starts,
-    X, uv, normal, touching, gap, slip, residual, status, tallies,
-):  # fmt: skip
-    """Bring paths first to last to rest from their starting curves (p, m, 2); below the last rung to `rough` only.
+def solve_without_friction(first, last, body, limits, rough, batch):
+    """Bring paths first to last of a batch to equilibrium from their starting curves; coarse levels to `rough` only.
 
-    A path that does not come to rest has the status of the rung where it failed, LIFTED where a tree is missing, and
+    A path that does not converge has the status of the level where it failed, NEEDS_TREE where a tree is missing, and
     arrays that mean nothing.
     """
-    n = uv.shape[1]
+    n = batch.uv.shape[1]
     frames = np.empty((n, 6, 3))
-    system = np.empty((n, 3)), np.empty((n, 2, 2)), np.empty((n, 2))
+    factors = Factors(np.empty((n, 3)), np.empty((n, 2, 2)), np.empty((n, 2)))
     for p in range(first, last):
-        state = (X[p], uv[p], frames, normal[p], touching[p], gap[p])
-        residual[p], at_rest = on_surface(
-            body.spline, pull_off, tolerance, starts[p], state, system, slip[p], tallies[p]
-        )
-        status[p] = CONVERGED
-        if not at_rest:
-            residual[p], status[p] = by_rungs(
-                body, pull_off, rough, tolerance, limit, starts[p], state, slip[p], tallies[p]
-            )
+        curve, state = batch.starts[p], state_of(batch, p, frames)
+        required, counters = batch.required[p], batch.counters[p]
+        residual, found = solve_on_surface(body.spline, limits, curve, state, factors, required, counters)
+        status = CONVERGED
+        if not found:
+            residual, status = solve_nested(body, limits, rough, curve, state, required, counters)
+        batch.residual[p], batch.status[p] = residual, status
 
 
 @njit(cache=True)
-def on_surface(spline, pull_off, tolerance, curve, state, system, slip, tally):
-    """Glide from a starting curve (m, 2) into `state`; returns the residual and whether it is as simple as that."""
-    X, uv, frames, normal, touching, clear = state
+def solve_on_surface(spline, limits, curve, state, factors, required, counters):
+    """Solve from a starting curve (m, 2) into `state` on the surface; returns the residual and whether that does."""
+    X, uv, frames, normal = state.X, state.uv, state.frames, state.normal
     n = len(uv)
     few = int(np.ceil(FEW * max(1.0, turn_of(curve)))) + 1
-    steps = STEPS
+    steps = MAX_STEPS
     if 2 * few < n:
-        rough = np.empty((few, 2))
-        spread_along(spline, curve, rough, frames[:few], tally)
-        residual, at_rest = glide(spline, pull_off, tolerance, STEPS, rough, frames[:few], system, tally)
-        if not at_rest:
+        coarse = np.empty((few, 2))
+        spread_along(spline, curve, coarse, frames[:few], counters)
+        first = Limits(limits.pull_off, limits.tolerance, steps)
+        residual, found = glide(spline, first, coarse, frames[:few], factors, counters)
+        if not found:
             return residual, False
-        resample(rough, uv)
-        steps = LAST_STEPS
+        resample(coarse, uv)
+        steps = MAX_LAST_STEPS
     else:
-        spread_along(spline, curve, uv, frames, tally)
-    residual, at_rest = glide(spline, pull_off, tolerance, steps, uv, frames, system, tally)
-    if not at_rest:
+        spread_along(spline, curve, uv, frames, counters)
+    second = Limits(limits.pull_off, limits.tolerance, steps)
+    residual, found = glide(spline, second, uv, frames, factors, counters)
+    if not found:
         return residual, False
     for i in range(n):
         unit_normal(frames[i], normal[i])
@@ -67,27 +67,29 @@ def on_surface(spline, pull_off, tolerance, curve, state, system, slip, tally):
     if unresolved(state, spline.periodic):
         return residual, False
     for i in range(1, n - 1):
-        slip[i] = needed_slip(X, normal, i)
+        required[i] = required_friction(X, normal, i)
     return residual, True
 
 
-@njit(cache=True)
-def by_rungs(body, pull_off, rough, tolerance, limit, curve, state, slip, tally):
-    """Relax a path from its starting curve (m, 2) on ever more particles; the last rung is `state`."""
-    n = len(state[0])
+@njit(inline="always", cache=True)
+def solve_nested(body, limits, rough, curve, state, required, counters):
+    """Relax a path from its starting curve (m, 2) on ever more particles; the finest level is `state`."""
+    n = len(state.X)
     level = halvings(curve, n)
+    coarse_limits = Limits(limits.pull_off, rough, limits.iterations)
     low = blank(((n - 1) >> level) + 1) if level else state
-    begin(body.spline, curve, low, tally)
+    start_on_curve(body.spline, curve, low, counters)
     residual, status = np.inf, CONVERGED
     while status == CONVERGED:
-        residual, status = settle(body, pull_off, rough if level else tolerance, limit, level == 0, low, slip, tally)
+        which = coarse_limits if level else limits
+        residual, status = relax_and_certify(body, which, level == 0, low, required, counters)
         if level == 0:
             break
         level -= 1
         high = blank(((n - 1) >> level) + 1) if level else state
-        refine(low[0], low[1], low[4], low[5], high[0], high[1], high[4], high[5])
+        refine(low, high)
         if status == CONVERGED:
-            take_up(body, high, tally)
+            restore_contact(body, high, counters)
         low = high
     return residual, status
 

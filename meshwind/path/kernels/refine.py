@@ -3,38 +3,45 @@
 import numpy as np
 from numba import njit
 
+from meshwind.path.kernels.coulomb import STUCK
+from meshwind.path.kernels.state import state_of
+
+ON_PARTICLE = 1e-9
+"""Share of a segment within which a finer particle counts as lying on a coarse one."""
+
 
 @njit(cache=True)
-def refine(X, uv, touching, gap, X2, uv2, touching2, gap2):
-    """Resample a path of m particles to n evenly by index.
+def refine(coarse, fine):
+    """Resample a state of m particles to one of n evenly by index: positions, parameters, contacts and gaps.
 
     Parameters are cubic where four neighbours touch and linear elsewhere.  A particle between a touching and a lifted
     one is lifted, on their chord, its gap bounded from theirs: a gap changes by no more than the way.
     """
-    m, n = len(X), len(X2)
+    X, uv, touching, gap = coarse.X, coarse.uv, coarse.touching, coarse.clear
+    m, n = len(X), len(fine.X)
     for i in range(n):
         k, x = between(i, m, n)
         low, high = touching[k] or x == 1.0, touching[k + 1] or x == 0.0
-        touching2[i] = low and high
+        fine.touching[i] = low and high
         way = 0.0
         for a in range(3):
             way += (X[k + 1, a] - X[k, a]) ** 2
         way = np.sqrt(way)
-        gap2[i] = 0.0 if touching2[i] else max(gap[k] - x * way, gap[k + 1] - (1.0 - x) * way)
+        fine.clear[i] = 0.0 if fine.touching[i] else max(gap[k] - x * way, gap[k + 1] - (1.0 - x) * way)
         for a in range(3):
-            X2[i, a] = (1.0 - x) * X[k, a] + x * X[k + 1, a]
+            fine.X[i, a] = (1.0 - x) * X[k, a] + x * X[k + 1, a]
         cubic = 0 < k < m - 2 and 0.0 < x < 1.0
         if cubic:
             cubic = touching[k - 1] and touching[k] and touching[k + 1] and touching[k + 2]
         for a in range(2):
-            uv2[i, a] = (1.0 - x) * uv[k, a] + x * uv[k + 1, a]
+            fine.uv[i, a] = (1.0 - x) * uv[k, a] + x * uv[k + 1, a]
             if cubic:
                 y = 1.0 - x
                 left = uv[k - 1, a] - 2.0 * uv[k, a] + uv[k + 1, a]
                 right = uv[k, a] - 2.0 * uv[k + 1, a] + uv[k + 2, a]
-                uv2[i, a] -= x * y * ((1.0 + y) * left + (1.0 + x) * right) / 6.0
-        uv2[i, 1] = min(max(uv2[i, 1], 0.0), 1.0)
-    touching2[0] = touching2[n - 1] = True
+                fine.uv[i, a] -= x * y * ((1.0 + y) * left + (1.0 + x) * right) / 6.0
+        fine.uv[i, 1] = min(max(fine.uv[i, 1], 0.0), 1.0)
+    fine.touching[0] = fine.touching[n - 1] = True
 
 
 @njit(inline="always", cache=True)
@@ -43,29 +50,30 @@ def between(i, m, n):
     at = i * (m - 1.0) / (n - 1.0)
     k = min(int(at), m - 2)
     x = at - k
-    if x < 1e-9:
+    if x < ON_PARTICLE:
         x = 0.0
-    elif x > 1.0 - 1e-9:
+    elif x > 1.0 - ON_PARTICLE:
         x = 1.0
     return k, x
 
 
 @njit(cache=True)
-def refine_grip(place, mode, place2, mode2):
-    """Resample the hold on the starting curve: places linearly, modes from the nearest particle."""
-    m, n = len(place), len(place2)
+def refine_grip(anchor, mode, fine_anchor, fine_mode):
+    """Resample the grip on the starting curve: anchors linearly, modes from the nearest particle."""
+    m, n = len(anchor), len(fine_anchor)
     for i in range(n):
         k, x = between(i, m, n)
         near = k if x < 0.5 else k + 1
-        place2[i] = (1.0 - x) * place[k] + x * place[k + 1]
-        mode2[i] = mode[near]
-        if x > 0.0 and x < 1.0 and mode[k] != mode[k + 1] and (mode[k] == 0 or mode[k + 1] == 0):
-            mode2[i] = 0
+        fine_anchor[i] = (1.0 - x) * anchor[k] + x * anchor[k + 1]
+        fine_mode[i] = mode[near]
+        if x > 0.0 and x < 1.0 and mode[k] != mode[k + 1] and (mode[k] == STUCK or mode[k + 1] == STUCK):
+            fine_mode[i] = STUCK
 
 
 @njit(nogil=True, cache=True)
-def refine_all(first, last, X, uv, touching, gap, place, mode, X2, uv2, touching2, gap2, place2, mode2):
-    """Resample paths first to last."""
+def refine_all(first, last, coarse, fine):
+    """Resample paths first to last of a batch to those of a finer one."""
+    frames = np.empty((0, 6, 3))
     for p in range(first, last):
-        refine(X[p], uv[p], touching[p], gap[p], X2[p], uv2[p], touching2[p], gap2[p])
-        refine_grip(place[p], mode[p], place2[p], mode2[p])
+        refine(state_of(coarse, p, frames), state_of(fine, p, frames))
+        refine_grip(coarse.anchor[p], coarse.mode[p], fine.anchor[p], fine.mode[p])

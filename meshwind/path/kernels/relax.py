@@ -1,196 +1,265 @@
 """The taut path: projected Newton on the particles' energy in the parametric plane, with lifting and landing.
 
-The fibre is n particles joined by zero-length springs (4.1); at rest it minimises E = 1/2 sum |P_{i+1} - P_i|^2
-outside the body.  The implicit step (4.16) with a long time step is a Gauss-Newton step on E; keeping the term
-F . s_uu as well makes it Newton's, and the time step lives on as a shift of the Hessian where that is not positive
-definite.  Lifted particles are eliminated: they lie evenly on the chord between touching ones (5.2).  Every iterate
-stays outside the body, and a step counts only if E falls, so that lifting and landing cannot chatter.
+The fibre is n particles joined by zero-length springs (4.1); in equilibrium it minimises
+E = 1/2 sum |P_{i+1} - P_i|^2 outside the body.  The implicit step (4.16) with a long time step is a Gauss-Newton step
+on E; keeping the term F . s_uu as well makes it Newton's, and the time step lives on as a shift of the Hessian where
+that is not positive definite.  Lifted particles are eliminated: they lie evenly on the chord between touching ones
+(5.2).  Every iterate stays outside the body, and a step counts only if E falls, so that lifting and landing cannot
+chatter.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from meshwind.path.kernels.block_tridiagonal import solve
+from meshwind.core.cast import Bools
+from meshwind.core.vectors import TINY
+from meshwind.path.kernels.assembly import assemble
+from meshwind.path.kernels.block_tridiagonal import SymmetricSystem, solve, symmetric_system
 from meshwind.path.kernels.certificate import HALF_TURN, certify, largest_leap, unresolved
-from meshwind.path.kernels.contact import lift, link
+from meshwind.path.kernels.contact import DEEP, NOTHING, lift, release
 from meshwind.path.kernels.glide import LONGEST_MOVE, spread_along
-from meshwind.path.kernels.newton import (
+from meshwind.path.kernels.landing import carry_lifted, land, sag
+from meshwind.path.kernels.state import (
+    CONVERGED,
     EVALUATIONS,
     ITERATIONS,
+    LEFT_CHART,
+    NEEDS_TREE,
+    SLID_OFF_END,
+    SLID_OFF_START,
     SOLVES,
-    assemble,
-    carry_lifted,
-    land,
-    move_touching,
-    sag,
+    STALLED,
+    TOO_COARSE,
+    UNSTABLE,
+    Contacts,
+    blank,
+    copy,
+    copy_particle,
+    energy,
+    no_contacts,
+    put_on_surface,
+    state_of,
 )
-from meshwind.path.kernels.state import blank, copy, energy, place, touch_down
-from meshwind.path.kernels.status import Status
-
-CONVERGED, SLID_START, SLID_END, UNSTABLE, STALLED, LEFT_CHART, TOO_COARSE = (int(status) for status in Status)
-LIFTED = TOO_COARSE + 1
-"""The fibre leaves the surface and no search tree was given: start again with one.  No result ever has it."""
 
 SMALLEST_STEP = 1e-7
+"""Share of Newton's step below which no shorter one is tried."""
 DESCENT = 1e-4
-"""Armijo's share of the predicted fall."""
-PATIENCE = 60
-"""Steps in a row that a path may lean on a rim before it counts as slid off there."""
-MOST_LANDINGS = 4
-"""Times that a path is relaxed anew because its certificate finds a particle inside the body."""
-MOST_FALLS = 5
-"""Saddles that a path may leave on its way to rest."""
+"""Armijo's share of the predicted decrease."""
+BLIND_SLOPE, BLIND_RISE = 1e-13, 1e-12
+"""Predicted decrease over the energy that round-off hides, and the increase over the energy that it may show."""
+LEAST_SHIFT = 0.1
+"""Smallest shift of the Hessian over the springs' smallest eigenvalue, about (pi / n)^2."""
+SHIFT_UP, SHIFT_DOWN = 4.0, 0.25
+"""Factors of the shift where the matrix is not definite, and after a step that counts: up fast, and down as fast."""
+LEAP_MARGIN = 1.2
+"""A path that leaps further than this times its leap at the start has gone through the body."""
+MAX_LEANING = 60
+"""Maximum number of steps in a row that a path may lean on a rim before it counts as slid off there."""
+MAX_LANDINGS = 4
+"""Maximum number of times that a path is relaxed anew because its certificate finds a particle inside the body."""
+MAX_ESCAPES = 5
+"""Maximum number of saddles that a path may leave."""
+INVERSE_ITERATIONS = 8
+"""Steps of the inverse iteration for the descending mode: its sign counts, not its digits."""
+LOPSIDED = 0.1
+"""Added to half a wave as the first guess of that mode, so that an antisymmetric mode is not orthogonal to it."""
+ESCAPE_STEP = 0.03
+"""Largest move in u or v along the descending mode: so long that the energy shows which side is lower."""
 
 
-@njit(cache=True)
-def relax(body, pull_off, tolerance, limit, state, tally):
-    """Bring a path to rest from `state`, in place.
+class Workspace(NamedTuple):
+    """Contacts and linear system of the present step; touched (n,): which particles touched when it began."""
 
-    pull_off: angle (radians) of the pull that lifts a particle, infinite for a fibre that cannot leave the surface.
+    contacts: Contacts
+    system: SymmetricSystem
+    touched: Bools
+
+
+@njit(inline="always", cache=True)
+def relax(body, limits, state, counters):
+    """Bring a path to equilibrium from `state`, in place.
+
     Returns (residual, status): residual is the largest unbalanced force over the tension, an angle in radians.
     """
-    trial = blank(len(state[0]))
-    residual, status, odd = descend(body, pull_off, tolerance, limit, state, trial, tally)
-    if odd:
+    trial = blank(len(state.X))
+    residual, status, swapped = minimise(body, limits, state, trial, counters)
+    if swapped:
         copy(trial, state)
     return residual, status
 
 
 @njit(cache=True)
-def descend(body, pull_off, tolerance, limit, state, trial, tally):
+def minimise(body, limits, state, trial, counters):
     """As `relax`; the answer is left in `state` or, where the third result says so, in `trial`."""
-    n, periodic = len(state[0]), body.spline.periodic
-    odd = False
-    contacts = np.empty(n, np.int64)
-    before, after = np.zeros(n, np.int64), np.zeros(n, np.int64)
-    diagonal, upper, metric = np.empty((n, 3)), np.empty((n, 2, 2)), np.empty((n, 3))
-    right, move, work = np.empty((n, 2)), np.empty((n, 2)), np.empty((n, 3))
-    kept = np.empty(n, np.bool_)
-    shift, least = 0.0, 0.1 * (np.pi / n) ** 2
-    now, length = energy(state[0])
-    most = max(HALF_TURN, 1.2 * largest_leap(state, periodic))
+    n, periodic = len(state.X), body.spline.periodic
+    swapped = False
+    work = Workspace(no_contacts(n), symmetric_system(n), np.empty(n, np.bool_))
+    contacts, system = work.contacts, work.system
+    shift, least = 0.0, LEAST_SHIFT * (np.pi / n) ** 2
+    now, length = energy(state.X)
+    most = max(HALF_TURN, LEAP_MARGIN * largest_leap(state, periodic))
     residual = np.inf
-    caution = falls = leant = leaning = 0
-    for _ in range(limit):
-        tally[ITERATIONS] += 1
-        X, uv, frames, normal, touching, clear = state
-        spacing = max(length, 1e-300) / (n - 1)
+    caution = np.int64(DEEP)  # a literal would have its callees compiled twice
+    escapes = leant = 0
+    for _ in range(limits.iterations):
+        counters[ITERATIONS] += 1
+        spacing = max(length, TINY) / (n - 1)
+        slack = limits.pull_off * spacing
         for i in range(n):
-            kept[i] = touching[i]
-        released = 0
-        if caution < 2:
-            released = lift(X, normal, touching, pull_off * spacing, caution == 0, before, after)
-        else:
-            link(touching, before, after)
+            work.touched[i] = state.touching[i]
+        released = release(state, slack, caution, contacts)
         if released > 0 and len(body.tree.levels) == 0:
-            return residual, LIFTED, odd
-        count, force, leaning = assemble(state, periodic, before, after, contacts, diagonal, upper, metric, right)
-        residual = max(force, sag(X, after)) / spacing
-        if released == 0 and residual <= tolerance:
-            if caution == 2 and lift(X, normal, touching, pull_off * spacing, False, before, after) > 0:
-                break  # at rest but for pulls that no step could follow
-            tally[SOLVES] += 1
-            if solve(diagonal, upper, metric, 0.0, right, count, move, work):
-                if leaning == 0:
-                    return residual, CONVERGED, odd
-                return residual, UNSTABLE if falls > 0 else leaving_by(uv, leaning), odd
-            falls += 1
-            if falls > MOST_FALLS or not fall(
-                body, state, trial, contacts, count,
-                diagonal, upper, metric, least, tally,
-            ):  # fmt: skip
-                return residual, UNSTABLE, odd
-            state, trial, odd = trial, state, not odd
-            now, length = energy(state[0])
+            return residual, NEEDS_TREE, swapped
+        count, force, leaning = assemble(state, periodic, contacts, system)
+        residual = max(force, sag(state.X, contacts.after)) / spacing
+        if released == 0 and residual <= limits.tolerance:
+            if caution == NOTHING and lift(state, slack, False, contacts) > 0:
+                break  # in equilibrium but for pulls that no step could follow
+            counters[SOLVES] += 1
+            if solve(system, 0.0, count):
+                return residual, where_it_rests(state.uv, leaning, escapes > 0), swapped
+            escapes += 1
+            if escapes > MAX_ESCAPES or not escape_saddle(body, state, trial, work, count, least, counters):
+                return residual, UNSTABLE, swapped
+            state, trial, swapped = trial, state, not swapped
+            now, length = energy(state.X)
             continue
         leant = leant + 1 if leaning > 0 else 0
-        if leant > PATIENCE:
-            return residual, leaving_by(uv, leaning), odd
-        definite = False
-        while not definite and shift < 1.0 / least:
-            tally[SOLVES] += 1
-            definite = solve(diagonal, upper, metric, shift, right, count, move, work)
-            if not definite:
-                shift = max(4.0 * shift, least)
+        if leant > MAX_LEANING:
+            return residual, leaving_by(state.uv, leaning), swapped
+        definite, shift = newton_step(system, count, shift, least, counters)
         if not definite:
             break
-        slope = 0.0
-        reach = 0.0
-        for c in range(count):
-            slope += right[c, 0] * move[c, 0] + right[c, 1] * move[c, 1]
-            reach = max(reach, abs(move[c, 0]), abs(move[c, 1]))
-        step = min(1.0, LONGEST_MOVE / max(reach, 1e-300))
-        accepted = False
-        while step > SMALLEST_STEP:
-            move_touching(body.spline, step, move, contacts, count, state, trial, tally)
-            carry_lifted(body, step, contacts, count, state, trial, tally)
-            if largest_leap(trial, periodic) > most:  # neighbours on two sides: one went through the body
-                step *= 0.5
-                continue
-            then, length_then = energy(trial[0])
-            # below round-off the energy cannot judge a step, and Newton's is right
-            blind = slope <= 1e-13 * now and then <= now * (1.0 + 1e-12)
-            if then <= now - DESCENT * step * slope or blind:
-                accepted = True
-                break
-            step *= 0.5
+        accepted, then, length_then = line_search(body, most, count, now, state, trial, work, counters)
         if accepted:
-            state, trial, odd = trial, state, not odd
+            state, trial, swapped = trial, state, not swapped
             now, length = then, length_then
-            caution = 0
-            shift = 0.25 * shift if shift > least else 0.0
+            caution = np.int64(DEEP)
+            shift = SHIFT_DOWN * shift if shift > least else 0.0
         else:
             for i in range(n):
-                touching[i] = kept[i]
-            if caution == 2:
+                state.touching[i] = work.touched[i]
+            if caution == NOTHING:
                 break
             caution += 1
-    return residual, failure(state[1], periodic), odd
+    return residual, failure(state.uv, periodic), swapped
 
 
 @njit(cache=True)
-def fall(body, state, trial, contacts, count, diagonal, upper, metric, least, tally):
-    """Leave a saddle of the energy along its steepest descending mode, found by inverse iteration.
+def newton_step(system, count, shift, least, counters):
+    """Solve for the step, with the Hessian shifted until it is definite; returns whether it is, and the shift."""
+    while shift < 1.0 / least:
+        counters[SOLVES] += 1
+        if solve(system, shift, count):
+            return True, shift
+        shift = max(SHIFT_UP * shift, least)
+    return False, shift
+
+
+@njit(cache=True)
+def line_search(body, most, count, now, state, trial, work, counters):
+    """Shorten the step until the energy, which is `now`, falls, and no neighbours leap further than `most`.
+
+    Writes the moved path into `trial`; returns whether the step counts, the energy there and the length.
+    """
+    right, move = work.system.right, work.system.x
+    slope = 0.0
+    reach = 0.0
+    for c in range(count):
+        slope += right[c, 0] * move[c, 0] + right[c, 1] * move[c, 1]
+        reach = max(reach, abs(move[c, 0]), abs(move[c, 1]))
+    step = min(1.0, LONGEST_MOVE / max(reach, TINY))
+    then, length = now, 0.0
+    while step > SMALLEST_STEP:
+        move_touching(body.spline, step, move, work.contacts, count, state, trial, counters)
+        carry_lifted(body, step, work.contacts, count, state, trial, counters)
+        if largest_leap(trial, body.spline.periodic) > most:  # neighbours on two sides: one went through the body
+            step *= 0.5
+            continue
+        then, length = energy(trial.X)
+        # below round-off the energy cannot judge a step, and Newton's is right
+        blind = slope <= BLIND_SLOPE * now and then <= now * (1.0 + BLIND_RISE)
+        if then <= now - DESCENT * step * slope or blind:
+            return True, then, length
+        step *= 0.5
+    return False, then, length
+
+
+@njit(cache=True)
+def move_touching(spline, step, move, contacts, count, state, trial, counters):
+    """Write into `trial` the touching particles moved on the surface by step * move (count, 2), and the two ends."""
+    uv = state.uv
+    n = len(uv)
+    copy_particle(state, trial, 0)
+    copy_particle(state, trial, n - 1)
+    for c in range(count):
+        i = contacts.inner[c]
+        u, v = uv[i, 0] + step * move[c, 0], min(max(uv[i, 1] + step * move[c, 1], 0.0), 1.0)
+        if not spline.periodic:
+            u = min(max(u, 0.0), 1.0)
+        put_on_surface(spline, trial, i, u, v)
+    counters[EVALUATIONS] += count
+
+
+@njit(cache=True)
+def escape_saddle(body, state, trial, work, count, least, counters):
+    """Leave a saddle of the energy along its direction of most negative curvature, found by inverse iteration.
 
     Writes the lower of the two sides into `trial`; returns False where neither side is lower.
     """
-    right, mode, work = np.empty((count, 2)), np.zeros((count, 2)), np.empty((count, 3))
-    shift = least
+    system, contacts = work.system, work.contacts
+    metric = system.metric
+    right, mode = np.empty((count, 2)), np.zeros((count, 2))
+    modal = SymmetricSystem(system.diagonal, system.upper, metric, right, mode, system.inverse)
     for c in range(count):
-        right[c, 0] = right[c, 1] = np.sin(np.pi * (c + 1.0) / (count + 1.0)) + 0.1
+        right[c, 0] = right[c, 1] = np.sin(np.pi * (c + 1.0) / (count + 1.0)) + LOPSIDED
+    shift = least
     while True:
-        tally[SOLVES] += 1
-        if solve(diagonal, upper, metric, shift, right, count, mode, work):
+        counters[SOLVES] += 1
+        if solve(modal, shift, count):
             break
         shift *= 2.0
         if shift > 1.0 / least:
             return False
-    for _ in range(8):
+    for _ in range(INVERSE_ITERATIONS):
         reach = np.abs(mode).max()
         for c in range(count):
             x, y = mode[c, 0] / reach, mode[c, 1] / reach
             right[c, 0] = metric[c, 0] * x + metric[c, 1] * y
             right[c, 1] = metric[c, 1] * x + metric[c, 2] * y
-        tally[SOLVES] += 1
-        solve(diagonal, upper, metric, shift, right, count, mode, work)
+        counters[SOLVES] += 1
+        solve(modal, shift, count)
     mode /= np.abs(mode).max()
-    best = energy(state[0])[0]
+    best = energy(state.X)[0]
     chosen = 0.0
-    for step in (0.03, -0.03):
-        move_touching(body.spline, step, mode, contacts, count, state, trial, tally)
-        carry_lifted(body, 0.0, contacts, count, state, trial, tally)
-        then = energy(trial[0])[0]
+    for step in (ESCAPE_STEP, -ESCAPE_STEP):
+        move_touching(body.spline, step, mode, contacts, count, state, trial, counters)
+        carry_lifted(body, 0.0, contacts, count, state, trial, counters)
+        then = energy(trial.X)[0]
         if then < best:
             best, chosen = then, step
     if chosen > 0.0:  # the trial holds the other side
-        move_touching(body.spline, chosen, mode, contacts, count, state, trial, tally)
-        carry_lifted(body, 0.0, contacts, count, state, trial, tally)
+        move_touching(body.spline, chosen, mode, contacts, count, state, trial, counters)
+        carry_lifted(body, 0.0, contacts, count, state, trial, counters)
     return chosen != 0.0
 
 
 @njit(cache=True)
+def where_it_rests(uv, leaning, escaped):
+    """Status of a path in stable equilibrium, of which particle `leaning` leans on a rim or edge (0: none does).
+
+    A path that has escaped from a saddle to come there has no stable equilibrium of its own.
+    """
+    if leaning == 0:
+        return CONVERGED
+    return UNSTABLE if escaped else leaving_by(uv, leaning)
+
+
+@njit(cache=True)
 def failure(uv, periodic):
-    """Why a path did not come to rest: it lies on a rim or hangs over it, or else nobody knows."""
+    """Status of a path that found no equilibrium: where it lies on a rim or hangs over it, or else STALLED."""
     for i in range(1, len(uv) - 1):
         if uv[i, 1] <= 0.0 or uv[i, 1] >= 1.0 or (not periodic and (uv[i, 0] <= 0.0 or uv[i, 0] >= 1.0)):
             return leaving_by(uv, i)
@@ -201,51 +270,49 @@ def failure(uv, periodic):
 def leaving_by(uv, i):
     """Where a path leaves whose particle i is held: over a rim, or an edge of a surface open in u."""
     if uv[i, 1] <= 0.0:
-        return SLID_START
-    return SLID_END if uv[i, 1] >= 1.0 else LEFT_CHART
+        return SLID_OFF_START
+    return SLID_OFF_END if uv[i, 1] >= 1.0 else LEFT_CHART
 
 
 @njit(nogil=True, cache=True)
-def relax_all(
-    first, last, body, pull_off, tolerance, limit, resume, final, starts,
-    X, uv, normal, touching, gap, slip, residual, status, tallies,
-):  # fmt: skip
-    """Relax paths first to last: from their starting curves (p, m, 2), or with `resume` from what the arrays hold.
+def relax_all(first, last, body, limits, resume, final, batch):
+    """Relax paths first to last of a batch: from their starting curves, or with `resume` from what the batch holds.
 
     Only a `final` answer pays for its certificate; others leave lower bounds of the gaps.
     """
-    n = uv.shape[1]
-    frames = np.empty((n, 6, 3))
+    frames = np.empty((batch.uv.shape[1], 6, 3))
     for p in range(first, last):
-        state = (X[p], uv[p], frames, normal[p], touching[p], gap[p])
+        state, counters = state_of(batch, p, frames), batch.counters[p]
         if resume:
-            take_up(body, state, tallies[p])
+            restore_contact(body, state, counters)
         else:
-            begin(body.spline, starts[p], state, tallies[p])
-        residual[p], status[p] = settle(body, pull_off, tolerance, limit, final, state, slip[p], tallies[p])
+            start_on_curve(body.spline, batch.starts[p], state, counters)
+        batch.residual[p], batch.status[p] = relax_and_certify(body, limits, final, state, batch.required[p], counters)
 
 
 @njit(cache=True)
-def begin(spline, curve, state, tally):
+def start_on_curve(spline, curve, state, counters):
     """Put a path on its starting curve (m, 2), evenly spaced by length."""
-    spread_along(spline, curve, state[1], state[2], tally)
-    place(spline, state)
-    tally[EVALUATIONS] += len(state[1])
+    uv = state.uv
+    spread_along(spline, curve, uv, state.frames, counters)
+    for i in range(len(uv)):
+        put_on_surface(spline, state, i, uv[i, 0], uv[i, 1])
+    counters[EVALUATIONS] += len(uv)
 
 
 @njit(cache=True)
-def settle(body, pull_off, tolerance, limit, final, state, slip, tally):
-    """Bring a path to rest from `state` and, if the answer is `final`, certify it; what it finds inside lands.
+def relax_and_certify(body, limits, final, state, required, counters):
+    """Relax a path and, if the answer is `final`, certify it; what the certificate finds inside the body lands.
 
-    Returns (residual, status).
+    Writes the friction that each particle requires into required (n,); returns (residual, status).
     """
     inside = 0
     residual, status = np.inf, STALLED
-    for _ in range(MOST_LANDINGS):
-        residual, status = relax(body, pull_off, tolerance, limit, state, tally)
-        if not final or status == LIFTED:
+    for _ in range(MAX_LANDINGS):
+        residual, status = relax(body, limits, state, counters)
+        if not final or status == NEEDS_TREE:
             return residual, status
-        inside = certify(body, state, slip, tally)
+        inside = certify(body, state, required, counters)
         if inside == 0 or status != CONVERGED:
             break
     if status == CONVERGED:
@@ -257,12 +324,12 @@ def settle(body, pull_off, tolerance, limit, final, state, slip, tally):
 
 
 @njit(cache=True)
-def take_up(body, state, tally):
+def restore_contact(body, state, counters):
     """Complete a state of which positions, parameters and contacts are known; what is inside the body lands."""
-    touching, uv, clear = state[4], state[1], state[5]
-    for i in range(len(touching)):
-        if touching[i]:
-            touch_down(body.spline, state, i, uv[i, 0], uv[i, 1])
-            tally[EVALUATIONS] += 1
-        elif clear[i] <= 0.0:
-            land(body, state[0], state, i, tally)
+    uv = state.uv
+    for i in range(len(uv)):
+        if state.touching[i]:
+            put_on_surface(body.spline, state, i, uv[i, 0], uv[i, 1])
+            counters[EVALUATIONS] += 1
+        elif state.clear[i] <= 0.0:
+            land(body, state.X, state, i, counters)

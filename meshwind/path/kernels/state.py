@@ -1,20 +1,72 @@
-"""The state of one path while it comes to rest: a tuple of arrays, so that kernels pass it on whole.
+"""One path while it is relaxed: its particles and contacts, when to stop, what it costs and how it ended.
 
-A state is (X, uv, frames, normal, touching, clear): positions (n, 3); parameters (n, 2) of the particle or of its
-foot; surface frames (n, 6, 3) and outward normals (n, 3) there; whether the particle touches (n,); and for the
-lifted ones a lower bound of the gap (n,).  Copies run in plain loops: they compile ten times as fast as slices.
+Records are passed on whole.  Copies run in plain loops: they compile ten times as fast as slices.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
+from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.path.kernels.status import Status
 from meshwind.surface.evaluate import S, frame, unit_normal
+
+EVALUATIONS, FEET, SOLVES, ITERATIONS = range(4)
+"""Columns of a path's counters: surface evaluations, foot points, linear solves and iterations."""
+
+CONVERGED, SLID_OFF_START, SLID_OFF_END, UNSTABLE, STALLED, LEFT_CHART, TOO_COARSE = (int(each) for each in Status)
+NEEDS_TREE = -1
+"""The fibre leaves the surface and no search tree was given: start again with one.
+
+No result ever has it, and no `Status` may have its number.
+"""
+
+
+class State(NamedTuple):
+    """Particles of one path.
+
+    X (n, 3): positions; uv (n, 2): parameters of the particle or of its foot; frames (n, 6, 3) and outward normals
+    (n, 3) of the surface there; touching (n,): whether the particle touches; clear (n,): a lower bound of the gap of
+    those that do not.
+    """
+
+    X: Floats
+    uv: Floats
+    frames: Floats
+    normal: Floats
+    touching: Bools
+    clear: Floats
+
+
+class Contacts(NamedTuple):
+    """Touching particles of one path.
+
+    inner (n,): those between the ends in order, of which there are as many as the assembly counted; before, after
+    (n,): each one's nearest touching neighbours.
+    """
+
+    inner: Ints
+    before: Ints
+    after: Ints
+
+
+class Limits(NamedTuple):
+    """When a particle leaves the surface, and when the iteration ends.
+
+    pull_off: angle (radians) of the pull that lifts a particle, infinite for a fibre that cannot leave the surface;
+    tolerance: largest unbalanced force over the tension (radians) of a converged path; iterations: maximum number.
+    """
+
+    pull_off: float
+    tolerance: float
+    iterations: int
 
 
 @njit(cache=True)
 def blank(n):
     """A state of n particles, all touching somewhere; their normals, not yet known, are zero."""
-    return (
+    return State(
         np.empty((n, 3)),
         np.empty((n, 2)),
         np.empty((n, 6, 3)),
@@ -25,9 +77,21 @@ def blank(n):
 
 
 @njit(cache=True)
+def no_contacts(n):
+    """Room for the contacts of n particles."""
+    return Contacts(np.empty(n, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int64))
+
+
+@njit(cache=True)
+def state_of(batch, path, frames):
+    """The state of one path of a batch, which it shares; frames (n, 6, 3) are work space."""
+    return State(batch.X[path], batch.uv[path], frames, batch.normal[path], batch.touching[path], batch.gap[path])
+
+
+@njit(cache=True)
 def copy(source, target):
     """Copy a state into another."""
-    for i in range(len(source[0])):
+    for i in range(len(source.X)):
         copy_particle(source, target, i)
 
 
@@ -35,30 +99,31 @@ def copy(source, target):
 def copy_particle(source, target, i):
     """Copy particle i of a state into another."""
     for k in range(3):
-        target[0][i, k] = source[0][i, k]
-        target[3][i, k] = source[3][i, k]
+        target.X[i, k] = source.X[i, k]
+        target.normal[i, k] = source.normal[i, k]
         for row in range(6):
-            target[2][i, row, k] = source[2][i, row, k]
-    target[1][i, 0], target[1][i, 1] = source[1][i, 0], source[1][i, 1]
-    target[4][i] = source[4][i]
-    target[5][i] = source[5][i]
+            target.frames[i, row, k] = source.frames[i, row, k]
+    target.uv[i, 0], target.uv[i, 1] = source.uv[i, 0], source.uv[i, 1]
+    target.touching[i] = source.touching[i]
+    target.clear[i] = source.clear[i]
 
 
 @njit(cache=True)
 def copy_lifted(source, target, i):
-    """Copy lifted particle i of a state into another, but for its frame: whoever wants that asks for the foot."""
+    """Copy lifted particle i of a state into another, but for its frame, which is that of its foot if needed."""
     for k in range(3):
-        target[0][i, k] = source[0][i, k]
-        target[3][i, k] = source[3][i, k]
-    target[1][i, 0], target[1][i, 1] = source[1][i, 0], source[1][i, 1]
-    target[4][i] = source[4][i]
-    target[5][i] = source[5][i]
+        target.X[i, k] = source.X[i, k]
+        target.normal[i, k] = source.normal[i, k]
+    target.uv[i, 0], target.uv[i, 1] = source.uv[i, 0], source.uv[i, 1]
+    target.touching[i] = source.touching[i]
+    target.clear[i] = source.clear[i]
 
 
 @njit(cache=True)
-def touch_down(spline, state, i, u, v):
+def put_on_surface(spline, state, i, u, v):
     """Put particle i on the surface at (u, v)."""
-    X, uv, frames, normal, touching, clear = state
+    X, uv, frames, normal = state.X, state.uv, state.frames, state.normal
+    touching, clear = state.touching, state.clear
     uv[i, 0], uv[i, 1] = u, v
     frame(spline, u, v, frames[i])
     unit_normal(frames[i], normal[i])
@@ -66,14 +131,6 @@ def touch_down(spline, state, i, u, v):
         X[i, k] = frames[i, S, k]
     touching[i] = True
     clear[i] = 0.0
-
-
-@njit(cache=True)
-def place(spline, state):
-    """Put every particle on the surface at its own parameters."""
-    uv = state[1]
-    for i in range(len(uv)):
-        touch_down(spline, state, i, uv[i, 0], uv[i, 1])
 
 
 @njit(inline="always", cache=True)

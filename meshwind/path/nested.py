@@ -1,7 +1,7 @@
-"""From coarse to fine: a path is found with few particles, then refined; what fails is tried in other ways.
+"""Nested iteration: a path is found with few particles, then refined; what fails is tried in other ways.
 
-On every rung the answer of the one below is the start, so that the many particles of the last rung take a few steps
-only.  Which equilibrium a path takes, and whether there is one, is settled on the lowest rung.
+On every level the answer of the one below is the start, so that the many particles of the last level take a few steps
+only.  Which equilibrium a path takes, and whether there is one, is settled on the lowest level.
 """
 
 from dataclasses import replace
@@ -9,14 +9,15 @@ from dataclasses import replace
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
-from meshwind.path.batch import Batch, Setting, fresh, resampled
+from meshwind.path.batch import Batch, fresh, resampled
 from meshwind.path.friction import Friction, uniform
 from meshwind.path.kernels.lay import FEWEST, halvings, turn_of
 from meshwind.path.paths import EDGE, Status, sharpest_turn
+from meshwind.path.solver import Solver
 
 REST, CUT = int(Status.CONVERGED), int(Status.TOO_COARSE)
 MOST = 6401
-"""Particles of the highest rung where their number is left open."""
+"""Particles of the highest level where their number is left open."""
 TRIES = (0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0)
 """Coefficients of friction that are tried on a path that slides off."""
 RAMP = (6.0, 4.0, 3.0, 2.2, 1.7, 1.4, 1.2, 1.08, 1.0)
@@ -27,8 +28,8 @@ SHARES = 8
 """Steps in which the turn of a path that slides off is built up."""
 
 
-def climb(
-    setting: Setting, curves: Floats, particles: int | None, accuracy: float
+def solve_nested(
+    solver: Solver, curves: Floats, particles: int | None, accuracy: float
 ) -> tuple[Batch, tuple[Floats, Floats]]:
     """Bring paths to rest from their starting curves (p, k, 2), with `particles` or as many as `accuracy` needs.
 
@@ -36,64 +37,64 @@ def climb(
     where none does).
     """
     if particles is None:
-        return choose(setting, curves, accuracy)
+        return choose(solver, curves, accuracy)
     holds = np.zeros(len(curves)), np.zeros(len(curves))
     batch = fresh(curves, particles)
     rest = np.arange(len(curves))
-    if setting.friction.none:
-        setting.lay(batch)
+    if solver.friction.none:
+        solver.solve_simple(batch)
         rest = np.flatnonzero(failing(batch))
         if not len(rest) and not (batch.status == CUT).any():
             return batch, holds
     levels = np.array([halvings(curve, particles) for curve in curves[rest]], np.int64)
     for level in np.unique(levels):
         index = rest[levels == level]
-        work, found = climb_from(setting, batch.rows(index), int(level))
+        work, found = solve_from_level(solver, batch.rows(index), int(level))
         batch.put(index, work)
         for which, each in zip(holds, found, strict=True):
             which[index] = each
-    return even_out(setting, batch), holds
+    return even_out(solver, batch), holds
 
 
-def climb_from(setting: Setting, batch: Batch, level: int) -> tuple[Batch, tuple[Floats, Floats]]:
-    """Solve a batch anew, at first with its particles halved `level` times; returns what `climb` does."""
-    n = batch.X.shape[1]
+def solve_from_level(solver: Solver, batch: Batch, level: int) -> tuple[Batch, tuple[Floats, Floats]]:
+    """Solve a batch anew, at first with its particles halved `level` times; returns what `solve_nested` does."""
+    n = batch.particles
     work = fresh(batch.starts, ((n - 1) >> level) + 1)
-    work.tallies[:] = batch.tallies
-    first = setting.rough if level else setting
-    first.run(work, resume=False)
+    work.counters[:] = batch.counters
+    first = solver.coarse if level else solver
+    first.relax(work, resume=False)
     holds = rescue(first, work)
     for k in range(level - 1, -1, -1):
-        work = ascend(setting.rough if k else setting, work, ((n - 1) >> k) + 1)
+        work = ascend(solver.coarse if k else solver, work, ((n - 1) >> k) + 1)
     return work, holds
 
 
-def even_out(setting: Setting, batch: Batch) -> Batch:
+def even_out(solver: Solver, batch: Batch) -> Batch:
     """Solve frictionless paths that turn over sharp edges for equal tension; where that fails they stay as they are."""
     index = np.flatnonzero(batch.status == Status.TOO_COARSE)
-    if setting.friction.none and len(index):
+    if solver.friction.none and len(index):
         work = batch.rows(index)
-        work.place[:] = np.linspace(0.0, work.starts.shape[1] - 1.0, work.X.shape[1])
+        work.anchor[:] = np.linspace(0.0, work.starts.shape[1] - 1.0, work.particles)
         work.mode[:] = 1
-        replace(setting, even=True).run(work, resume=True)
+        replace(solver, equal_tension=True).relax(work, resume=True)
         again = np.flatnonzero(work.status != Status.CONVERGED)
         if len(again):
-            anew = fresh(work.starts[again], work.X.shape[1])
-            anew.tallies[:] = work.tallies[again]
-            replace(setting, even=True).run(anew, resume=False)
+            anew = fresh(work.starts[again], work.particles)
+            anew.counters[:] = work.counters[again]
+            replace(solver, equal_tension=True).relax(anew, resume=False)
             work.put(again, anew)
-        batch.tallies[index] = work.tallies
+        batch.counters[index] = work.counters
         done = np.flatnonzero(~failing(work))
         batch.put(index[done], work.rows(done))
     return batch
 
 
-def choose(setting: Setting, curves: Floats, accuracy: float) -> tuple[Batch, tuple[Floats, Floats]]:
-    """As `climb`, with particles doubled until the lengths' relative error falls below `accuracy`, by its estimate."""
-    batch, holds = climb(setting, curves, int(fewest(curves).max()) + 1, accuracy)
+def choose(solver: Solver, curves: Floats, accuracy: float) -> tuple[Batch, tuple[Floats, Floats]]:
+    """As `solve_nested`, with particles doubled until the estimated relative error of lengths is below `accuracy`."""
+    batch, holds = solve_nested(solver, curves, int(fewest(curves).max()) + 1, accuracy)
     length = lengths(batch)
-    while batch.X.shape[1] < MOST:
-        batch = even_out(setting, ascend(setting, batch, 2 * batch.X.shape[1] - 1))
+    while batch.particles < MOST:
+        batch = even_out(solver, ascend(solver, batch, 2 * batch.particles - 1))
         before, length = length, lengths(batch)
         done = ~failing(batch)
         if (batch.status == Status.TOO_COARSE).any() or (
@@ -107,7 +108,7 @@ def choose(setting: Setting, curves: Floats, accuracy: float) -> tuple[Batch, tu
 
 
 def fewest(curves: Floats) -> Ints:
-    """Segments of the lowest rung of each path (p,): enough for its turn."""
+    """Segments of the lowest level of each path (p,): enough for its turn."""
     return np.array([FEWEST * max(1.0, turn_of(curve)) for curve in curves], dtype=np.int64)
 
 
@@ -116,7 +117,7 @@ def lengths(batch: Batch) -> Floats:
     return np.asarray(np.linalg.norm(np.diff(batch.X, axis=1), axis=2).sum(axis=1))
 
 
-def ascend(setting: Setting, batch: Batch, particles: int) -> Batch:
+def ascend(solver: Solver, batch: Batch, particles: int) -> Batch:
     """The batch with more particles; a path that stalls, below or here, starts anew from its curve.
 
     A path that slid off is only drawn with more particles: it has no answer to refine.
@@ -125,19 +126,19 @@ def ascend(setting: Setting, batch: Batch, particles: int) -> Batch:
     gone = failing(batch) & (batch.status != Status.STALLED)
     held, loose = np.flatnonzero(~failing(batch)), np.flatnonzero(gone)
     taut = fine.rows(held)
-    setting.run(taut, resume=True)
+    solver.relax(taut, resume=True)
     fine.put(held, taut)
     if len(loose):
         drawn = fine.rows(loose)
-        replace(setting, iterations=0).run(drawn, resume=True)
+        replace(solver, iterations=0).relax(drawn, resume=True)
         drawn.status[:], drawn.residual[:] = batch.status[loose], batch.residual[loose]
         fine.put(loose, drawn)
     lost = np.flatnonzero((failing(fine) | failing(batch)) & ~gone)
     if len(lost):
         anew = fresh(fine.starts[lost], particles)
-        anew.tallies[:] = fine.tallies[lost]
-        setting.run(anew, resume=False)
-        search(setting, anew)
+        anew.counters[:] = fine.counters[lost]
+        solver.relax(anew, resume=False)
+        search(solver, anew)
         fine.put(lost, anew)
     return fine
 
@@ -147,103 +148,103 @@ def failing(batch: Batch) -> Bools:
     return np.asarray((batch.status != REST) & (batch.status != CUT))
 
 
-def rescue(setting: Setting, batch: Batch) -> tuple[Floats, Floats]:
+def rescue(solver: Solver, batch: Batch) -> tuple[Floats, Floats]:
     """Look for the equilibria that a direct start missed, and for what would hold the paths that have none."""
-    coefficients = np.zeros(len(batch))
-    turns = search(setting, batch)
+    coefficients = np.zeros(batch.paths)
+    turns = search(solver, batch)
     index = np.flatnonzero(failing(batch))
     for mu in TRIES:
         rest = index[coefficients[index] == 0.0]
-        if mu <= setting.friction.largest or not len(rest):
+        if mu <= solver.friction.largest or not len(rest):
             continue
-        rougher = replace(setting, friction=uniform(mu))
-        probe = fresh(batch.starts[rest], batch.X.shape[1])
-        rougher.run(probe, resume=False)
-        batch.tallies[rest] += probe.tallies
+        rougher = replace(solver, friction=uniform(mu))
+        probe = fresh(batch.starts[rest], batch.particles)
+        rougher.relax(probe, resume=False)
+        batch.counters[rest] += probe.counters
         coefficients[rest[~failing(probe)]] = mu
     return turns, coefficients
 
 
-def search(setting: Setting, batch: Batch) -> Floats:
+def search(solver: Solver, batch: Batch) -> Floats:
     """Try the paths that are not at rest in other ways, in place; returns the change of u that holds, 0 if unknown."""
-    turns = np.zeros(len(batch))
-    others = (wind_up, wind_back) if setting.friction.none else (from_smooth, from_rough)
+    turns = np.zeros(batch.paths)
+    others = (wind_up, wind_back) if solver.friction.none else (from_smooth, from_rough)
     for start in (from_few, from_back, *others):
         index = np.flatnonzero(failing(batch))
         if len(index):
-            work, held = start(setting, batch.rows(index))
+            work, held = start(solver, batch.rows(index))
             turns[index] = np.maximum(turns[index], held)
-            batch.tallies[index] = work.tallies
+            batch.counters[index] = work.counters
             done = np.flatnonzero(~failing(work))
             batch.put(index[done], work.rows(done))
     return turns
 
 
-def from_few(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
+def from_few(solver: Solver, part: Batch) -> tuple[Batch, Floats]:
     """Try again from the answer with half the particles, to which small dents are nothing."""
-    n = part.X.shape[1]
+    n = part.particles
     few = fresh(part.starts, (n - 1) // 2 + 1)
-    few.tallies[:] = part.tallies
-    setting.rough.run(few, resume=False)
+    few.counters[:] = part.counters
+    solver.coarse.relax(few, resume=False)
     work = few.refined(n)
     found = np.flatnonzero(~failing(few))
     taut = work.rows(found)
-    setting.run(taut, resume=True)
+    solver.relax(taut, resume=True)
     work.status[:] = few.status
     work.put(found, taut)
-    return work, np.zeros(len(few))
+    return work, np.zeros(few.paths)
 
 
-def from_smooth(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
+def from_smooth(solver: Solver, part: Batch) -> tuple[Batch, Floats]:
     """Try again from where the fibres would rest without friction: at once, and then by raising it step by step."""
-    n = part.X.shape[1]
+    n = part.particles
     smooth = fresh(part.starts, n)
-    smooth.tallies[:] = part.tallies
-    free = replace(setting, friction=uniform(0.0))
-    free.run(smooth, resume=False)
+    smooth.counters[:] = part.counters
+    free = replace(solver, friction=uniform(0.0))
+    free.relax(smooth, resume=False)
     search(free, smooth)
-    smooth.place[:] = np.linspace(0.0, part.starts.shape[1] - 1.0, n)
+    smooth.anchor[:] = np.linspace(0.0, part.starts.shape[1] - 1.0, n)
     smooth.mode[:] = 1
-    best = smooth.rows(np.arange(len(part)))
+    best = smooth.rows(np.arange(part.paths))
     best.status[:] = part.status
     left = np.flatnonzero(~failing(smooth))
     for steps in (1, RISES):
         if not len(left):
             break
         work = smooth.rows(left)
-        work.tallies[:] = best.tallies[left]
+        work.counters[:] = best.counters[left]
         for k in range(1, steps + 1):
-            table = setting.friction.table * (k / steps)
-            replace(setting, friction=Friction(table), final=k == steps and setting.final).run(work, resume=True)
+            table = solver.friction.table * (k / steps)
+            replace(solver, friction=Friction(table), final=k == steps and solver.final).relax(work, resume=True)
         best.put(left, work)
         left = left[failing(work)]
-    return best, np.zeros(len(best))
+    return best, np.zeros(best.paths)
 
 
-def from_back(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
+def from_back(solver: Solver, part: Batch) -> tuple[Batch, Floats]:
     """Try again with start and end exchanged: what a search meets first can decide where it ends."""
     work = part.reversed()
-    setting.run(work, resume=False)
-    return work.reversed(), np.zeros(len(work))
+    solver.relax(work, resume=False)
+    return work.reversed(), np.zeros(work.paths)
 
 
-def from_rough(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
+def from_rough(solver: Solver, part: Batch) -> tuple[Batch, Floats]:
     """Try again from higher friction, lowered step by step, so that few particles let go at a time."""
-    work = fresh(part.starts, part.X.shape[1])
-    work.tallies[:] = part.tallies
+    work = fresh(part.starts, part.particles)
+    work.counters[:] = part.counters
     for k, factor in enumerate(RAMP):
-        replace(setting, friction=Friction(setting.friction.table * factor)).run(work, resume=k > 0)
-    return work, np.zeros(len(work))
+        replace(solver, friction=Friction(solver.friction.table * factor)).relax(work, resume=k > 0)
+    return work, np.zeros(work.paths)
 
 
-def wind_up(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
+def wind_up(solver: Solver, part: Batch) -> tuple[Batch, Floats]:
     """Build up the paths' turn in steps, each from the answer of the one before, as far as they hold.
 
     Returns the batch at full turn, in which those that do not hold have no CONVERGED status, and the largest turn
     that held.
     """
-    n = part.X.shape[1]
-    count = len(part)
+    n = part.particles
+    count = part.paths
     turn = part.starts[:, -1, 0] - part.starts[:, 0, 0]
     ramp = np.linspace(0.0, 1.0, n)[None, :]
     share = np.zeros(count)
@@ -251,7 +252,7 @@ def wind_up(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
     work = fresh(part.starts, n)
     work.uv[:] = resampled(part.starts, n)
     work.uv[:, :, 0] -= turn[:, None] * ramp * (1.0 - goal)[:, None]
-    work.tallies[:] = part.tallies
+    work.counters[:] = part.counters
     best = work.rows(np.arange(count))
     best.status[:] = Status.STALLED
     step = np.full(count, 1.0 / SHARES)
@@ -265,9 +266,9 @@ def wind_up(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
         shift = turn[open_, None] * ramp * change[:, None]
         trial.uv[:, :, 0] += shift
         trial.touching[:] = True  # from the surface again: a lifted part may not carry over
-        trial.tallies[:] = work.tallies[open_]
-        setting.run(trial, resume=True)
-        work.tallies[open_] = trial.tallies
+        trial.counters[:] = work.counters[open_]
+        solver.relax(trial, resume=True)
+        work.counters[open_] = trial.counters
         held = trial.status == Status.CONVERGED
         kept = open_[held]
         best.put(kept, trial.rows(np.flatnonzero(held)))
@@ -279,11 +280,11 @@ def wind_up(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
         step[never] = 0.0  # not even the first step holds
         goal = np.minimum(share + step, 1.0)
     best.status[share < 1.0] = part.status[share < 1.0]
-    best.tallies[:] = work.tallies
+    best.counters[:] = work.counters
     return best, share * np.abs(turn)
 
 
-def wind_back(setting: Setting, part: Batch) -> tuple[Batch, Floats]:
+def wind_back(solver: Solver, part: Batch) -> tuple[Batch, Floats]:
     """As `wind_up`, with the start turning and the end held: on a part that is not round the way there differs."""
-    work, held = wind_up(setting, part.reversed())
+    work, held = wind_up(solver, part.reversed())
     return work.reversed(), held

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from dataclasses import fields
 from hashlib import sha256
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -83,7 +84,7 @@ def test_a_path_does_not_depend_on_its_neighbours() -> None:
 LAY = """
 import json, sys
 sys.path.insert(0, {tests!r})
-from test_ladder import digest
+from test_path_nested import digest
 print(json.dumps(digest()))
 """
 
@@ -104,7 +105,9 @@ def digest() -> dict[str, str]:
 
 
 def python(code: str, threads: int) -> str:
-    environment = dict(os.environ) | {"NUMBA_NUM_THREADS": str(threads)}
+    examples = str(Path(__file__).parents[1] / "examples")
+    known = os.pathsep.join(filter(None, (examples, os.environ.get("PYTHONPATH"))))
+    environment = dict(os.environ) | {"NUMBA_NUM_THREADS": str(threads), "PYTHONPATH": known}
     done = subprocess.run(
         [sys.executable, "-W", "error", "-c", code], env=environment, capture_output=True, text=True, check=False
     )
@@ -122,7 +125,7 @@ def test_threads_do_not_change_a_bit() -> None:
 FRUGAL = """
 from comparison.problems import barrel, sphere
 from meshwind.path import solve
-from meshwind.path.kernels.hold import hold_all
+from meshwind.path.kernels.relax_with_friction import relax_all_with_friction
 from meshwind.surface import tree
 
 for surface in (barrel(), sphere()):
@@ -132,9 +135,9 @@ for surface in (barrel(), sphere()):
         assert paths.counters.feet == 0
     assert "tree" not in vars(surface) and "tree" not in vars(surface.centred)
 assert not tree.build.signatures
-assert not hold_all.signatures
+assert not relax_all_with_friction.signatures
 solve(barrel(), [(0, 0)], [(0.2, 1)], friction=0.1)
-assert hold_all.signatures
+assert relax_all_with_friction.signatures
 print("frugal")
 """
 

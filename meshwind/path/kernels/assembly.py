@@ -1,0 +1,69 @@
+"""Newton's linear system for the touching particles of a frictionless path, in the parametric plane."""
+
+import numpy as np
+from numba import njit
+
+from meshwind.path.kernels.contact import held, pull
+from meshwind.path.kernels.geometry import derivative, dot
+from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV
+
+
+@njit(cache=True)
+def assemble(state, periodic, contacts, system):
+    """Hessian and force of the energy over the touching particles (5.2) in the parametric plane.
+
+    The diagonal block is J'J's share of (4.16) less F . s_ab, which makes the step Newton's.  Returns the number
+    of blocks, the largest unbalanced force in the tangent plane, and the last particle held at a rim or edge (0: none).
+    """
+    X, uv, frames = state.X, state.uv, state.frames
+    index, before, after = contacts.inner, contacts.before, contacts.after
+    diagonal, upper, metric, right = system.diagonal, system.upper, system.metric, system.right
+    n = len(X)
+    count = 0
+    worst = 0.0
+    last = leaning = 0
+    i = after[0]
+    while i < n - 1:
+        index[count] = i
+        force = pull(X, i, before[i], after[i])
+        weight = 1.0 / (i - before[i]) + 1.0 / (after[i] - i)
+        su, sv = derivative(frames, i, SU), derivative(frames, i, SV)
+        auu, auv, avv = dot(su, su), dot(su, sv), dot(sv, sv)
+        fu, fv = dot(force, su), dot(force, sv)
+        fuu, fuv = dot(force, derivative(frames, i, SUU)), dot(force, derivative(frames, i, SUV))
+        fvv = dot(force, derivative(frames, i, SVV))
+        bits = held(uv, i, periodic, fu, fv)
+        diagonal[count, 0] = weight * auu - fuu
+        diagonal[count, 1] = weight * auv - fuv
+        diagonal[count, 2] = weight * avv - fvv
+        if count > 0:
+            couple(frames, before[i], i, last, bits, upper[count - 1])
+        if bits:  # a held direction drops out of the system
+            leaning = i
+            auv = 0.0
+            diagonal[count, 1] = 0.0
+            if bits & 1:
+                fu = 0.0
+                diagonal[count, 0] = weight * auu
+            if bits & 2:
+                fv = 0.0
+                diagonal[count, 2] = weight * avv
+        metric[count, 0], metric[count, 1], metric[count, 2] = auu, auv, avv
+        right[count, 0], right[count, 1] = fu, fv
+        det = auu * avv - auv * auv
+        if det > 0.0:
+            worst = max(worst, (fu * fu * avv - 2.0 * fu * fv * auv + fv * fv * auu) / det)
+        last = bits
+        count += 1
+        i = after[i]
+    return count, np.sqrt(worst), leaning
+
+
+@njit(cache=True)
+def couple(frames, p, i, held_p, held_i, block):
+    """Write the block (2, 2) that couples particle p to i, without the directions that are held."""
+    for a in range(2):
+        for b in range(2):
+            block[a, b] = 0.0
+            if not ((held_p >> a) & 1 or (held_i >> b) & 1):
+                block[a, b] = -dot(derivative(frames, p, SU + a), derivative(frames, i, SU + b)) / (i - p)

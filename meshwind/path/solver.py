@@ -1,0 +1,98 @@
+"""The compiled solvers as one object: what all paths of a solve have in common, and batches brought to equilibrium."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from meshwind.core.cast import Ints
+from meshwind.core.threads import parallel_for
+from meshwind.path.batch import Batch, fresh
+from meshwind.path.friction import Friction
+from meshwind.path.kernels.certificate import PULL
+from meshwind.path.kernels.coulomb import RoughBody
+from meshwind.path.kernels.lay import solve_without_friction
+from meshwind.path.kernels.relax import relax_all
+from meshwind.path.kernels.relax_with_friction import relax_all_with_friction
+from meshwind.path.kernels.state import NEEDS_TREE, Limits
+from meshwind.surface.surface import Surface
+from meshwind.surface.tree import Body
+
+COARSE = 1e-6
+"""Unbalanced force that is left on the levels below the finest."""
+
+
+@dataclass(frozen=True)
+class Solver:
+    """What all paths of a solve have in common, and the solvers that it selects.
+
+    final: whether answers need their certificate.  equal_tension: whether frictionless paths, too, are solved for equal
+    tension, as those with friction are; it costs more and matters at edges alone, where the springs' own balance crowds
+    the particles on one side.  Solved in coordinates about the surface's middle, so that a part far from the origin
+    loses no digits.
+    """
+
+    surface: Surface
+    friction: Friction
+    bridging: bool
+    tolerance: float
+    iterations: int
+    final: bool = True
+    equal_tension: bool = False
+
+    @property
+    def _limits(self) -> Limits:
+        return Limits(PULL if self.bridging else np.inf, self.tolerance, self.iterations)
+
+    @property
+    def coarse(self) -> "Solver":
+        """The solver for a level below the finest: a looser balance, no certificate."""
+        return replace(self, tolerance=max(self.tolerance, COARSE), final=False)
+
+    def solve_simple(self, batch: Batch) -> None:
+        """Bring the frictionless paths of a fresh batch to equilibrium, where that is simple.
+
+        The others have a status other than CONVERGED.  A part that presses everywhere never pays for the search tree.
+        """
+        surface = self.surface.centred
+        if "tree" in vars(surface):
+            self._solve_simple(batch, surface.body)
+            return
+        self._solve_simple(batch, surface.body_without_tree)
+        lifted = np.flatnonzero(batch.status == NEEDS_TREE)
+        if len(lifted):
+            part = fresh(batch.starts[lifted], batch.particles)  # counted as if the tree had been there
+            self._solve_simple(part, surface.body)
+            batch.put(lifted, part)
+
+    def _solve_simple(self, batch: Batch, body: Body) -> None:
+        parallel_for(solve_without_friction, batch.paths, 1, body, self._limits, max(self.tolerance, COARSE), batch)
+
+    def relax(self, batch: Batch, resume: bool) -> None:
+        """Bring the batch to equilibrium, from its starting curves or, with `resume`, from where it is.
+
+        A part that presses everywhere never pays for the search tree, and a frictionless one none for friction.
+        """
+        aloft = ~batch.touching.all(axis=1) if resume else np.zeros(batch.paths, np.bool_)
+        low = np.flatnonzero(~aloft)
+        self._relax(batch, low, resume, tree=False)
+        lifted = low[batch.status[low] == NEEDS_TREE]
+        self._relax(batch, np.sort(np.concatenate([np.flatnonzero(aloft), lifted])), resume, tree=True)
+
+    def _relax(self, batch: Batch, index: Ints, resume: bool, tree: bool) -> None:
+        """Relax some of the paths; those that turn out to need a tree, and have none, are left as they were."""
+        if not len(index):
+            return
+        surface = self.surface.centred
+        part = batch if len(index) == batch.paths else batch.rows(index)
+        before = None if tree else part.copied()
+        body = surface.body if tree else surface.body_without_tree
+        if self.friction.none and not self.equal_tension:
+            parallel_for(relax_all, part.paths, 1, body, self._limits, resume, self.final, part)
+        else:
+            rough = RoughBody(body, self.friction.table)
+            parallel_for(relax_all_with_friction, part.paths, 1, rough, self._limits, resume, self.final, part)
+        if before is not None and (rerun := part.status == NEEDS_TREE).any():
+            for name in ("X", "uv", "touching", "anchor", "mode"):
+                getattr(part, name)[rerun] = getattr(before, name)[rerun]
+        if part is not batch:
+            batch.put(index, part)
