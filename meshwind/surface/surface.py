@@ -28,6 +28,13 @@ class FitError:
         mesh's units.
     diagonal : float
         Diagonal of the mesh's bounding box, in the mesh's units.
+    data : str
+        What led the fit: "vertices"; or "facets" where the vertices do not lie on the part, or do not determine a net;
+        or "curved facets", smooth triangles through vertices that do.
+    noise : float
+        Root mean square noise found in the vertices, in the mesh's units.
+    sagitta : float
+        Root mean square distance of the facets from a smooth part that they straddle, in the mesh's units.
 
     Examples
     --------
@@ -42,6 +49,9 @@ class FitError:
     to_mesh_rms: float
     to_mesh_max: float
     diagonal: float
+    data: str = "vertices"
+    noise: float = 0.0
+    sagitta: float = 0.0
 
     @property
     def rms(self) -> float:
@@ -74,6 +84,9 @@ class Surface(PicklableRecord):
         Whether the surface closes in u.  It has nu spans over u in [0, 1) if so, otherwise nu - 3; v has nv - 3.
     error : FitError, optional
         Error of the fit.  None, the default, for a surface that was not fitted to a mesh.
+    uncertainty : ndarray of float, shape (rows, columns), optional
+        How far the surface may lie off the true part, in its units, in equal cells over u and v.  None, the default,
+        for a surface that is exact.
 
     Raises
     ------
@@ -98,6 +111,7 @@ class Surface(PicklableRecord):
     control_points: Floats
     periodic: bool = True
     error: FitError | None = None
+    uncertainty: Floats | None = None
 
     def __post_init__(self) -> None:
         points = floats(self.control_points, "control_points", -1, -1, 3)
@@ -160,6 +174,31 @@ class Surface(PicklableRecord):
     def size(self) -> float:
         """Diagonal of the control net's bounding box, the length that tolerances are relative to."""
         return float(np.linalg.norm(np.ptp(self.control_points.reshape(-1, 3), axis=0)))
+
+    def uncertainty_at(self, uv: ArrayLike) -> Floats:
+        """How far the surface may lie off the true part, bilinear between the cells of `uncertainty`.
+
+        Parameters
+        ----------
+        uv : array_like of float, shape (n, 2)
+            Parametric positions.
+
+        Returns
+        -------
+        ndarray of float, shape (n,)
+            Lengths in the surface's unit, 0 where the surface is exact.
+        """
+        where, table = floats(uv, "uv", -1, 2), self.uncertainty
+        if table is None:
+            return np.zeros(len(where))
+        rows, columns = table.shape
+        x, y = where[:, 0] * rows - 0.5, np.clip(where[:, 1] * columns - 0.5, 0.0, columns - 1.0)
+        if not self.periodic:
+            x = np.clip(x, 0.0, rows - 1.0)
+        i, j = np.floor(x).astype(np.int64), np.minimum(y.astype(np.int64), max(columns - 2, 0))
+        x, y = x - i, y - j
+        near = [table[(i + a) % rows, np.minimum(j + b, columns - 1)] for a in (0, 1) for b in (0, 1)]
+        return np.asarray((1 - x) * ((1 - y) * near[0] + y * near[1]) + x * ((1 - y) * near[2] + y * near[3]))
 
     def frames(self, uv: ArrayLike) -> Floats:
         """Evaluate position and derivatives.

@@ -29,7 +29,7 @@ def infill(corners: Floats, normals: Floats, corner_uv: Floats, pieces: Int8s) -
     Each triangle has corners (c, 3, 3) in space, normals (c, 3, 3) there and corner_uv (c, 3, 2) in the plane.  It gets
     a lattice that divides its edges into `pieces` (c,), without the corners.
     """
-    tangent = _tangent_normals(corners, normals)
+    tangent = tangent_normals(corners, normals)
     found = []
     for count in np.unique(pieces):
         chosen = np.flatnonzero(pieces == count)
@@ -66,7 +66,7 @@ def _lattice(corners: Floats, normals: Floats, corner_uv: Floats, pieces: int) -
     return uv.reshape(-1, 2), points.reshape(-1, 3)
 
 
-def _tangent_normals(corners: Floats, normals: Floats) -> Floats:
+def tangent_normals(corners: Floats, normals: Floats) -> Floats:
     """Corner normals (m, 3, 3); the facet's own wherever one of its corners lies at a crease."""
     flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     flat /= np.linalg.norm(flat, axis=1, keepdims=True)

@@ -60,7 +60,7 @@ def _gram(order: int) -> Floats:
 _GRAMS = [_gram(order) for order in range(3)]
 
 
-def _bands(spans: int, order: int, periodic: bool) -> Floats:
+def gram_bands(spans: int, periodic: bool, order: int = 0) -> Floats:
     """The 1-D Gram matrix in parameter units as rows of 7 (offset -3 to 3), (n, 7)."""
     n = spans if periodic else spans + REACH
     out = np.zeros((n, 2 * REACH + 1))
@@ -73,13 +73,19 @@ def _bands(spans: int, order: int, periodic: bool) -> Floats:
 
 def thin_plate(spans_u: int, spans_v: int, length_u: float, length_v: float) -> Floats:
     """Stencil (nu, nv, 4, 7) of the bending energy of a net that measures length_u by length_v on the part."""
-    u = [_bands(spans_u, order, True)[:, REACH:] for order in range(3)]
-    v = [_bands(spans_v, order, False) for order in range(3)]
+    u = [gram_bands(spans_u, True, order)[:, REACH:] for order in range(3)]
+    v = [gram_bands(spans_v, False, order) for order in range(3)]
     out = np.zeros((spans_u, spans_v + REACH, REACH + 1, 2 * REACH + 1))
     for a, b, factor in ((2, 0, 1.0), (1, 1, 2.0), (0, 2, 1.0)):
         scale = factor * length_u ** (1 - 2 * a) * length_v ** (1 - 2 * b)
         out += (scale * u[a])[:, None, :, None] * v[b][None, :, None, :]
     return out
+
+
+def bending(spans: tuple[int, int], lengths: tuple[float, float], weight: float) -> Floats:
+    """`thin_plate` with the weight at which it counts, at the net's own wave length, as data of that density do."""
+    pitch = lengths[0] / spans[0] * lengths[1] / spans[1]
+    return thin_plate(*spans, *lengths) * (weight * pitch**2 / (2 * np.pi) ** 4)
 
 
 def _fold(rows: int) -> Ints:
@@ -107,7 +113,7 @@ def _fill(stencil, number, band):
 
 
 def solve(stencil: Floats, right: Floats) -> Floats:
-    """Solve for the net (nu, nv, 3) by banded Cholesky factorisation, the periodic rows folded to keep the band.
+    """Solve for nets (nu, nv, m) by banded Cholesky factorisation, the periodic rows folded to keep the band.
 
     The unknowns are numbered along the direction that makes the band narrower; the cost is nu nv band^2.
     """
@@ -119,7 +125,7 @@ def solve(stencil: Floats, right: Floats) -> Floats:
         number, width = along * nu + fold, REACH * nu + 2 * REACH + 1
     band = np.zeros((nu * nv, width))
     _fill(stencil, number, band)
-    flat = np.empty((nu * nv, 3), order="F")
-    flat[number.ravel()] = right.reshape(-1, 3)
+    flat = np.empty((nu * nv, right.shape[2]), order="F")
+    flat[number.ravel()] = right.reshape(nu * nv, -1)
     net = solveh_banded(band.T, flat, lower=True, overwrite_ab=True, overwrite_b=True, check_finite=False)
     return np.asarray(net[number])

@@ -1,0 +1,152 @@
+"""What the data of a fit are worth: how far vertices and facets lie off the true part, as far as the mesh shows it.
+
+A mesh whose vertices were sampled from a smooth part has them on it and its facets off by their sagitta.  A decimated
+mesh has it the other way round: its facets straddle the part, and its vertices stand out of it by a share of the
+local sagitta, which their distances from a smooth surface through them give away.  On a noisy scan both are off at
+random.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import igl
+import numpy as np
+import scipy.sparse as sparse
+
+from meshwind.core.cast import Bools, Floats
+from meshwind.core.threads import parallel_for
+from meshwind.surface.fitting.infill import CREASE, spans_across
+from meshwind.surface.fitting.quadrature import FacetPoints, facet_points
+from meshwind.surface.fitting.samples import Samples
+from meshwind.surface.fitting.vertex_fit import VertexFit
+from meshwind.surface.surface import Surface
+
+STANDING_OUT, SURE = 0.15, 4.0
+"""Correlation between how far vertices stand out and their local sagitta, and its statistic t, that only decimation
+leaves: meshes sampled from smooth parts show -0.1 to 0.07, decimated ones 0.26 and more."""
+BARE, ACROSS = 0.02, 2
+"""A net whose facets cross more than so many spans over this share of the area is not held by vertices there."""
+STRAY = 0.01
+"""Share of the area over which a surface may lie further off the facets than twice their own sagitta."""
+RESOLVED = 0.1
+"""Vertices that a net predicts to this share of the mesh's own elevation are resolved by it, whatever their noise."""
+
+
+@dataclass(frozen=True)
+class Neighbourhoods:
+    """Means over the neighbours of each vertex, and over the facets about each facet, of an annulus's mesh."""
+
+    samples: Samples
+
+    @cached_property
+    def _around(self) -> sparse.csr_matrix:
+        faces, count = self.samples.facets.faces, len(self.samples.points)
+        i, j = faces.ravel(), faces[:, [1, 2, 0]].ravel()
+        near = sparse.coo_matrix((np.ones(2 * len(i)), (np.r_[i, j], np.r_[j, i])), shape=(count, count)).tocsr()
+        near.data[:] = 1.0
+        return sparse.diags(1.0 / np.maximum(np.asarray(near.sum(axis=1)).ravel(), 1.0)) @ near
+
+    def mean(self, values: Floats) -> Floats:
+        """Mean of values at the vertices (n, ...) over each one's neighbours."""
+        return np.asarray(self._around @ values)
+
+    def facet_mean(self, values: Floats) -> Floats:
+        """Mean of values of the facets (m,) over the facets that share a vertex with each."""
+        faces, count = self.samples.facets.faces, len(self.samples.points)
+        total = np.bincount(faces.ravel(), np.repeat(values, 3), count)
+        mean = total / np.maximum(np.bincount(faces.ravel(), minlength=count), 1)
+        return np.asarray(mean[faces].mean(axis=1))
+
+
+@dataclass(frozen=True)
+class Standing:
+    """How the vertices stand to a surface that was fitted to them.
+
+    elevation: rms height of a vertex over the mean of its neighbours, on the surface; correlation and t: between
+    the vertices' distances from the surface and that height, both less their neighbours' means.
+    """
+
+    elevation: float
+    correlation: float
+    t: float
+
+    @property
+    def decimated(self) -> bool:
+        """Whether the vertices stand out of the part as only decimation leaves them."""
+        return self.correlation > STANDING_OUT and self.t > SURE
+
+
+def vertices_lead(fitted: VertexFit, found: Standing) -> bool:
+    """Whether the vertices, noisy or not, are truer than the facets, and hold the net that was fitted to them."""
+    surface, samples = fitted.surface, fitted.samples
+    resolved = fitted.settled or fitted.expected < RESOLVED * found.elevation
+    return resolved and not (found.decimated or bare(samples, surface.spans) or strays(fitted))
+
+
+def standing(surface: Surface, samples: Samples, near: Neighbourhoods) -> Standing:
+    """How the inner vertices of the part stand to a surface on whose feet they are."""
+    inner = samples.trusted & ~samples.rim
+    feet, normals = surface.points(samples.uv), surface.normals(samples.uv)
+    off = ((samples.points - feet) * normals).sum(axis=1)
+    elevation = ((feet - near.mean(feet)) * normals).sum(axis=1)
+    rough, uneven = (off - near.mean(off))[inner], (elevation - near.mean(elevation))[inner]
+    scale = float(np.sqrt((rough**2).sum() * (uneven**2).sum()))
+    correlation = float((rough * uneven).sum() / scale) if scale > 0.0 else 0.0
+    height = float(np.sqrt(np.mean(elevation[inner] ** 2))) if inner.any() else 0.0
+    return Standing(height, correlation, correlation * float(np.sqrt(max(inner.sum(), 1))))
+
+
+def strays(fitted: VertexFit) -> bool:
+    """Whether a surface leaves the facets, somewhere, by more than their corners' normals and noise account for."""
+    surface, samples = fitted.surface, fitted.samples
+    faces, normals = samples.facets.faces, samples.facets.normals
+    allowed = np.zeros(len(faces))
+    for k in range(3):
+        i, j = faces[:, k], faces[:, (k + 1) % 3]
+        angle = np.arccos(np.clip((normals[i] * normals[j]).sum(axis=1), -1.0, 1.0))
+        allowed = np.maximum(allowed, np.linalg.norm(samples.points[i] - samples.points[j], axis=1) * angle / 8.0)
+    points = facet_points(samples, (1, 1))
+    uv = points.places(samples.uv)
+    off = ((points.between(samples.points) - surface.points(uv)) * surface.normals(uv)).sum(axis=1)
+    off = np.sqrt(points.per_facet(off**2, len(faces)))
+    area = igl.doublearea(samples.points, faces)
+    return bool(area[off > 2.0 * allowed + 0.1 * np.median(allowed) + 3.0 * fitted.noise].sum() > STRAY * area.sum())
+
+
+def bare(samples: Samples, spans: tuple[int, int]) -> bool:
+    """Whether a net lies free of vertices over more of the part than can be bridged from the vertices about it."""
+    faces = samples.facets.faces
+    across = np.empty(len(faces), dtype=np.int8)
+    parallel_for(spans_across, len(faces), 20_000, faces, samples.uv, samples.turns, spans, across)
+    area = igl.doublearea(samples.points, faces)
+    return bool(area[across > ACROSS].sum() > BARE * area.sum())
+
+
+def straddling(surface: Surface, samples: Samples, points: FacetPoints, near: Neighbourhoods) -> Floats:
+    """How far points on facets (k,) would lie off the part where facets straddle it, were `surface` the part.
+
+    The surface's height over its own triangles, less the mean about each of them.
+    """
+    chord = points.between(surface.points(samples.uv))
+    uv = points.places(samples.uv)
+    height = ((surface.points(uv) - chord) * surface.normals(uv)).sum(axis=1)
+    level = near.facet_mean(points.per_facet(height, len(samples.facets.faces)))
+    return np.asarray(height - level[points.facet])
+
+
+def sagitta(surface: Surface, samples: Samples, points: FacetPoints, near: Neighbourhoods) -> float:
+    """Rms of `straddling`, away from creases."""
+    smooth = _smooth(samples)[points.facet]
+    if not smooth.any():
+        return 0.0
+    off = straddling(surface, samples, points, near)
+    return float(np.sqrt(np.average(off[smooth] ** 2, weights=points.area[smooth])))
+
+
+def _smooth(samples: Samples) -> Bools:
+    """Which facets (m,) have no corner at a crease."""
+    faces, normals = samples.facets.faces, samples.facets.normals
+    a, b, c = (samples.points[faces[:, k]] for k in range(3))
+    flat = np.cross(b - a, c - a)
+    flat /= np.maximum(np.linalg.norm(flat, axis=1, keepdims=True), 1e-300)
+    return np.asarray(((normals[faces] * flat[:, None]).sum(axis=2) > CREASE).all(axis=1))

@@ -1,0 +1,125 @@
+"""Points spread evenly over the facets: the integral over the polyhedron that a net is fitted to."""
+
+from dataclasses import dataclass
+
+import igl
+import numpy as np
+from numba import njit
+
+from meshwind.core.cast import Floats, Ints
+from meshwind.core.threads import parallel_for
+from meshwind.surface.fitting.infill import spans_across, tangent_normals
+from meshwind.surface.fitting.samples import Samples
+
+FEWEST, FINEST = 2, 24
+"""Pieces that the edge of a facet is divided into: one more than the spans that it crosses, within these bounds."""
+
+
+@dataclass(frozen=True)
+class FacetPoints:
+    """Points on the facets: facet (k,), barycentric shares of its corners (k, 3), and the area (k,) of each point.
+
+    corners (k, 3) are the vertices at the facet's corners; turns (k, 3) the turns of u by which they lie off their
+    vertices' places in the plane.
+    """
+
+    facet: Ints
+    corners: Ints
+    share: Floats
+    turns: Floats
+    area: Floats
+
+    def between(self, values: Floats) -> Floats:
+        """Values (n, d) at the vertices, linear over the facets, at the points: (k, d)."""
+        out = np.empty((len(self.facet), values.shape[1]))
+        parallel_for(_between, len(out), 20_000, self.corners, self.share, values, out)
+        return out
+
+    def places(self, uv: Floats) -> Floats:
+        """The points' places in the plane (k, 2) from the vertices' (n, 2)."""
+        out = self.between(uv)
+        out[:, 0] += (self.share * self.turns).sum(axis=1)
+        return out
+
+    def curved(self, samples: Samples) -> Floats:
+        """The points (k, 3) on curved point-normal triangles, flat at creases, instead of on the facets."""
+        faces = samples.facets.faces
+        normals = tangent_normals(samples.points[faces], samples.facets.normals[faces])
+        out = np.empty((len(self.facet), 3))
+        parallel_for(_curved, len(out), 20_000, self.facet, self.corners, self.share, samples.points, normals, out)
+        return out
+
+    def per_facet(self, values: Floats, faces: int) -> Floats:
+        """Means (m,) over each of the facets of values (k,) at the points."""
+        total = np.bincount(self.facet, self.area * values, faces)
+        return np.asarray(total / np.maximum(np.bincount(self.facet, self.area, faces), 1e-300))
+
+
+def facet_points(samples: Samples, spans: tuple[int, int]) -> FacetPoints:
+    """Points on the facets of a mesh, several for each span of a net that a facet crosses."""
+    faces = samples.facets.faces
+    pieces = np.empty(len(faces), dtype=np.int8)
+    parallel_for(spans_across, len(pieces), 20_000, faces, samples.uv, samples.turns, spans, pieces)
+    pieces = np.clip(pieces + 1, FEWEST, FINEST).astype(np.int8)
+    first = np.zeros(len(faces) + 1, dtype=np.int64)
+    np.cumsum(pieces.astype(np.int64) ** 2, out=first[1:])
+    facet = np.repeat(np.arange(len(faces)), np.diff(first))
+    share = np.empty((first[-1], 3))
+    parallel_for(_divide, len(faces), 10_000, pieces, first, share)
+    area = igl.doublearea(samples.points, faces) / 2
+    area = area[facet] / (pieces.astype(np.float64) ** 2)[facet]
+    return FacetPoints(facet, faces[facet], share, samples.turns[facet].astype(np.float64), area)
+
+
+@njit(nogil=True, cache=True)
+def _divide(first, last, pieces, start, share):
+    """Write the centres of the like parts of triangles first to last, as shares of their corners."""
+    for m in range(first, last):
+        n, k = pieces[m], start[m]
+        for i in range(n):
+            for j in range(n - i):
+                for turned in range(2 if i + j < n - 1 else 1):
+                    offset = (1 + turned) / 3.0
+                    share[k, 0], share[k, 1] = (i + offset) / n, (j + offset) / n
+                    share[k, 2] = 1.0 - share[k, 0] - share[k, 1]
+                    k += 1
+
+
+@njit(nogil=True, cache=True)
+def _between(first, last, corners, share, values, out):
+    """Interpolate values at the corners at points first to last."""
+    for k in range(first, last):
+        for d in range(values.shape[1]):
+            total = 0.0
+            for c in range(3):
+                total += share[k, c] * values[corners[k, c], d]
+            out[k, d] = total
+
+
+@njit(nogil=True, cache=True)
+def _curved(first, last, facet, corners, share, points, normals, out):
+    """Move points first to last from their facets to cubic point-normal triangles (Vlachos et al. 2001)."""
+    edge, middle = np.empty((3, 3, 3)), np.empty(3)
+    for k in range(first, last):
+        middle[:] = 0.0
+        for a in range(3):
+            for b in range(3):
+                if a == b:
+                    continue
+                p, q = points[corners[k, a]], points[corners[k, b]]
+                n, rise = normals[facet[k], a], 0.0
+                for d in range(3):
+                    rise += (q[d] - p[d]) * n[d]
+                for d in range(3):
+                    edge[a, b, d] = (2.0 * p[d] + q[d] - rise * n[d]) / 3.0
+                    middle[d] += edge[a, b, d] / 4.0
+        for d in range(3):
+            total, mean = 0.0, 0.0
+            for a in range(3):
+                w, p = share[k, a], points[corners[k, a], d]
+                total += w * w * w * p
+                mean += p / 6.0
+                for b in range(3):
+                    if a != b:
+                        total += 3.0 * w * w * share[k, b] * edge[a, b, d]
+            out[k, d] = total + 6.0 * share[k, 0] * share[k, 1] * share[k, 2] * (middle[d] - mean)

@@ -1,0 +1,82 @@
+"""How far a fitted surface may lie off the true part, from place to place: its own error, found from its data.
+
+What the data leave is gathered span by span and smoothed over the reach of a control point: where the part's
+curvature jumps, a spline swings about its data, and there they lie off it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from meshwind.core.cast import Floats, frozen
+from meshwind.surface.fitting.evidence import Neighbourhoods, sagitta, straddling
+from meshwind.surface.fitting.facet_fit import FacetFit
+from meshwind.surface.fitting.quadrature import facet_points
+from meshwind.surface.fitting.vertex_fit import VertexFit
+
+REACH = 2.0
+"""Spans over which what the data leave is smoothed: a control point moves the surface two spans either way."""
+COVER = 3.0
+"""The stated uncertainty over the rms of what is left: 99 in 100 places of vessels whose curvature jumps lie within."""
+FLOOR = 0.1
+"""Least local uncertainty over that of the whole: a few data may lie well by chance."""
+PULL = 1e-3
+"""Weight of the whole's mean against a usual span's data."""
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """What is known of a surface's own error: table (rows, columns) over u and v, a length in each span.
+
+    data: what led the fit, "vertices" or "facets"; noise: rms noise of the vertices; sagitta: rms distance of the
+    facets from the part where they straddle it.
+    """
+
+    data: str
+    table: Floats
+    noise: float
+    sagitta: float
+
+
+def of_vertices(fitted: VertexFit, near: Neighbourhoods) -> Doubt:
+    """What the vertices leave, where they led."""
+    surface, samples = fitted.surface, fitted.samples
+    off = ((samples.points - surface.points(samples.uv)) * surface.normals(samples.uv)).sum(axis=1)
+    weight = samples.trusted.astype(np.float64) / max(1.0 - fitted.kept, 1e-3)
+    table = _table(surface.spans, samples.uv, weight * off**2, samples.trusted.astype(np.float64))
+    own = sagitta(surface, samples, facet_points(samples, surface.spans), near)
+    return Doubt("vertices", table, fitted.noise, own)
+
+
+def of_facets(fitted: FacetFit, near: Neighbourhoods) -> Doubt:
+    """What the facets leave and how far they straddle the part, where they led."""
+    surface, samples, points = fitted.surface, fitted.samples, fitted.points
+    uv = points.places(samples.uv)
+    data = points.curved(samples) if fitted.curved else points.between(samples.points)
+    square = ((data - surface.points(uv)) * surface.normals(uv)).sum(axis=1) ** 2
+    if not fitted.curved:
+        square += straddling(surface, samples, points, near) ** 2
+    table = _table(surface.spans, uv, points.area * square, points.area)
+    stands = ((samples.points - surface.points(samples.uv)) * surface.normals(samples.uv)).sum(axis=1)
+    noise = float(np.sqrt(np.mean(stands[samples.trusted] ** 2)))
+    return Doubt("curved facets" if fitted.curved else "facets", table, noise, sagitta(surface, samples, points, near))
+
+
+def _table(spans: tuple[int, int], uv: Floats, square: Floats, weight: Floats) -> Floats:
+    """Uncertainty in the spans of a net from weighted squared distances (k,) of data at places uv (k, 2)."""
+    rows, columns = spans
+    i = np.floor((uv[:, 0] - np.floor(uv[:, 0])) * rows).astype(np.int64) % rows
+    j = np.clip((uv[:, 1] * columns).astype(np.int64), 0, columns - 1)
+    cell = i * columns + j
+    total = np.asarray(np.bincount(cell, square, rows * columns), dtype=np.float64).reshape(spans)
+    count = np.asarray(np.bincount(cell, weight, rows * columns), dtype=np.float64).reshape(spans)
+    mean, usual = float(total.sum() / max(count.sum(), 1e-300)), max(float(count.mean()), 1e-300)
+    # a slight pull to the mean of the whole, for spans that hold next to no data
+    total, count = _smooth(total) + PULL * mean * usual, _smooth(count) + PULL * usual
+    return frozen(COVER * np.sqrt(np.maximum(total / count, FLOOR**2 * mean)))
+
+
+def _smooth(table: Floats) -> Floats:
+    around = gaussian_filter1d(table, REACH, axis=0, mode="wrap")
+    return np.asarray(gaussian_filter1d(around, REACH, axis=1, mode="nearest"))

@@ -1,0 +1,114 @@
+"""Fit a net to the vertices: least squares with parameter correction (Hoschek), on nets refined while they predict.
+
+How many control points the vertices support is found by generalised cross-validation (Craven and Wahba 1979) with the
+effective degrees of freedom: the share of a random noise that a fit keeps.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from meshwind.core.cast import Floats
+from meshwind.surface.evaluate import DEGREE
+from meshwind.surface.fitting import normal_equations
+from meshwind.surface.fitting.samples import Samples
+from meshwind.surface.surface import Surface
+
+ROUNDS = 4
+"""Refits after moving every vertex's parameters to its foot; the error settles in 3 or 4."""
+SMOOTHING = 1e-4
+"""Bending energy against data at the net's own wave length: small beside the spline's error, of the same order."""
+GAIN = 0.95
+"""A finer net must bring the expected error below this share of the best so far, or the mesh supports no finer."""
+SUPPORT = 0.5
+"""Most control points per vertex where vertices alone are followed."""
+NEAR = 1e-3
+"""Of the part's size: a net that is further off somewhere than this is not yet held by vertices alone."""
+IDLE_NETS = 2
+"""So many finer nets in a row without that gain end the search: one alone may be bad luck."""
+PROBES = 3
+"""Random right sides that measure how much of a noise a net keeps (Hutchinson 1990)."""
+
+
+@dataclass(frozen=True)
+class VertexFit:
+    """One net's fit to the vertices: the surface about the samples' middle, the samples at their feet, distances.
+
+    rms, largest: distances of the trusted vertices from the surface; kept: the share of a noise's energy that the fit
+    keeps; settled: whether finer nets leave the same noise, so that all else is resolved.
+    """
+
+    surface: Surface
+    samples: Samples
+    rms: float
+    largest: float
+    kept: float
+    settled: bool = False
+
+    @property
+    def expected(self) -> float:
+        """Rms distance to be expected of vertices that were not fitted: it grows where a net follows noise."""
+        return self.rms / max(1.0 - self.kept, 1e-3)
+
+    @property
+    def noise(self) -> float:
+        """Rms noise of the vertices, were all that is left of them noise."""
+        return self.rms / float(np.sqrt(max(1.0 - self.kept, 1e-3)))
+
+
+def fit_vertices(
+    samples: Samples, nets: list[tuple[int, int]], lengths: tuple[float, float], tolerance: float
+) -> VertexFit:
+    """The net of least expected error, or the coarsest that meets the tolerance, a length.
+
+    nets: spans in u and v, from coarse to fine; lengths: of the part around and from end to end.
+    """
+    best, *finer = nets
+    fitted = _fit(samples, best, lengths)
+    noise, idle, level = fitted.noise, 0, 0
+    for spans in finer:
+        size = spans[0] * (spans[1] + DEGREE)
+        if fitted.largest <= tolerance or size > SUPPORT * len(samples.points) or idle >= IDLE_NETS:
+            break
+        trial = _fit(fitted.samples, spans, lengths)
+        level = level + 1 if trial.noise > GAIN * noise else 0
+        noise = min(noise, trial.noise)
+        idle = 0 if trial.expected < GAIN * fitted.expected else idle + 1
+        if trial.expected < fitted.expected:
+            fitted = trial
+    return replace(fitted, settled=level >= IDLE_NETS)
+
+
+def _fit(samples: Samples, spans: tuple[int, int], lengths: tuple[float, float]) -> VertexFit:
+    """Fit one net, correcting the samples' parameters between the rounds."""
+    density = samples.weight.sum() / (lengths[0] * lengths[1])
+    bending = normal_equations.bending(spans, lengths, SMOOTHING * density)
+    for _ in range(ROUNDS - 1):
+        surface = Surface(normal_equations.solve(*_equations(samples, spans, bending)))
+        samples, _ = samples.corrected(surface)
+    stencil, right = _equations(samples, spans, bending)
+    noise = np.random.default_rng(0).standard_normal((len(samples.points), PROBES))
+    probe = np.zeros((*right.shape[:2], PROBES))
+    normal_equations.accumulate(samples.uv, noise, samples.weight, *spans, np.zeros_like(stencil), probe)
+    net = normal_equations.solve(stencil, np.concatenate([right, probe], axis=2))
+    kept = _share_kept(noise, Surface(net[..., 3:]).points(samples.uv), samples.weight)
+    surface = Surface(net[..., :3])
+    samples, distance = samples.corrected(surface)
+    distance = distance[samples.trusted]
+    largest = float(distance.max())
+    near = largest <= NEAR * float(np.linalg.norm(np.ptp(samples.points, axis=0)))
+    return VertexFit(surface, replace(samples, near=near), float(np.sqrt(np.mean(distance**2))), largest, kept)
+
+
+def _equations(samples: Samples, spans: tuple[int, int], bending: Floats) -> tuple[Floats, Floats]:
+    """Stencil and right side of a net's normal equations: the vertices, points between them, and the bending energy."""
+    stencil, right = bending.copy(), np.zeros((spans[0], spans[1] + DEGREE, 3))
+    normal_equations.accumulate(samples.uv, samples.points, samples.weight, *spans, stencil, right)
+    inner, points, weight = samples.between(spans)
+    normal_equations.accumulate(inner, points, weight, *spans, stencil, right)
+    return stencil, right
+
+
+def _share_kept(noise: Floats, answer: Floats, weight: Floats) -> float:
+    """The share of a noise's energy that a fit keeps: its effective degrees of freedom over the data."""
+    return float((weight[:, None] * noise * answer).sum() / (weight[:, None] * noise**2).sum())
