@@ -166,6 +166,9 @@ MAPS: dict[str, Look] = {
     schema.GAUSSIAN_CURVATURE: Look("Gaussian curvature", "Gaussian\ncurvature", "1/{u}²", DIVERGING, both_ways),
     schema.MEAN_CURVATURE: Look("mean curvature", "mean curvature", schema.MEAN_CURVATURE.unit, DIVERGING, both_ways),
     schema.STRETCH: Look("stretch of the chart", "area scale\nover its mean", "", SEQUENTIAL, from_zero),
+    schema.UNCERTAINTY: Look(
+        "uncertainty", "may lie off\nthe part", schema.LENGTHS, "distance", decades, log=True
+    ),
     schema.FIT_ERROR: Look("fit error", "distance\nto the mesh", schema.LENGTHS, "distance", decades, log=True),
 }  # fmt: skip
 """The scalar maps of surface.vtu."""

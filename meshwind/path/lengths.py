@@ -4,6 +4,7 @@ The polyline through the particles is shorter than the fibre itself, whose lengt
 """
 
 from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,13 +17,14 @@ from meshwind.path.paths import Paths
 class Lengths:
     """Of p paths of n particles: arc_length (p, n) from the start; the others (p,).
 
-    Lengths are those of polylines, in the mesh's units; bridged_length is that of all segments with an end off the
-    surface.
+    Lengths are those of polylines, in the mesh's units.  bridged_length is that of the segments with an end off the
+    surface, in spans that its uncertainty resolves; unresolved_length that in other spans; max_gap counts the former.
     """
 
     arc_length: Floats
     polyline_length: Floats
     bridged_length: Floats
+    unresolved_length: Floats
     max_gap: Floats
     max_slip: Floats
 
@@ -31,8 +33,9 @@ class Lengths:
 class Bridges:
     """The b spans off the surface: of `path` (b,), from particle `first` to `last` (b,), both included.
 
-    Both lie on the surface, unless the span reaches an end of its path.  ends (b, 2, 3) are the points, between
-    particles, where the fibre leaves the surface and comes back: tangent to it, to second order.
+    Both lie on the surface, unless the span reaches an end of its path.  resolved (b,): whether the fibre lies further
+    off the surface somewhere than this may lie off the part (`Surface.uncertainty`).  ends (b, 2, 3) are the points,
+    between particles, where the fibre leaves the surface and comes back: tangent to it, to second order.
     """
 
     path: Ints
@@ -40,15 +43,15 @@ class Bridges:
     last: Ints
     length: Floats
     max_gap: Floats
+    resolved: Bools
     ends: Floats
 
     def __len__(self) -> int:
         return len(self.path)
 
-    def of(self, paths: Bools) -> "Bridges":
-        """The spans of some of the paths (p,)."""
-        mine = paths[self.path]
-        return Bridges(*(frozen(getattr(self, field.name)[mine]) for field in fields(self)))
+    def where(self, chosen: Bools) -> "Bridges":
+        """Some of the spans (b,)."""
+        return Bridges(*(frozen(getattr(self, field.name)[chosen]) for field in fields(self)))
 
 
 def lengths(paths: Paths) -> Lengths:
@@ -56,13 +59,18 @@ def lengths(paths: Paths) -> Lengths:
     steps = np.linalg.norm(np.diff(paths.points, axis=1), axis=2)
     arc = np.zeros(paths.gap.shape)
     np.cumsum(steps, axis=1, out=arc[:, 1:])
+    spans = _spans(paths)
+    off = np.zeros(paths.gap.shape, dtype=bool)
+    _mark(off, spans, _resolved(paths, spans))
     clear = ~(paths.on_surface[:, :-1] & paths.on_surface[:, 1:])
+    bridged = clear & (off[:, :-1] | off[:, 1:])
     slip = np.fmax.reduce(paths.slip, axis=1, initial=0.0)  # fmax passes over NaN
     return Lengths(
         arc_length=frozen(arc),
         polyline_length=frozen(arc[:, -1]),
-        bridged_length=frozen((steps * clear).sum(axis=1)),
-        max_gap=frozen(paths.gap.max(axis=1, initial=0.0)),
+        bridged_length=frozen((steps * bridged).sum(axis=1)),
+        unresolved_length=frozen((steps * (clear & ~bridged)).sum(axis=1)),
+        max_gap=frozen((paths.gap * off).max(axis=1, initial=0.0)),
         max_slip=frozen(slip),
     )
 
@@ -76,6 +84,12 @@ def bridged_share(*counted: tuple[Lengths, Bools]) -> float:
     return bridged / total if total > 0.0 else 0.0
 
 
+def unresolved_share(*counted: tuple[Lengths, Bools]) -> float:
+    """As `bridged_share`, in spans that the surface's uncertainty does not resolve."""
+    total = sum(float(each.polyline_length[mask].sum()) for each, mask in counted)
+    return sum(float(each.unresolved_length[mask].sum()) for each, mask in counted) / total if total > 0.0 else 0.0
+
+
 def lifted_share(gap: Floats, threshold: float) -> float:
     """Share of the particles (p, n) that lie further off the surface than a threshold.
 
@@ -84,19 +98,54 @@ def lifted_share(gap: Floats, threshold: float) -> float:
     return float((gap > threshold).mean())
 
 
-def bridges(paths: Paths) -> Bridges:
-    """Find every span of particles off the surface, path by path from the start."""
+class _Spans(NamedTuple):
+    """Spans of particles off the surface: of path (b,), from particle start to before stop (b,)."""
+
+    path: Ints
+    start: Ints
+    stop: Ints
+
+
+def _spans(paths: Paths) -> _Spans:
     touching = np.pad(paths.on_surface, ((0, 0), (1, 1)), constant_values=True).astype(np.int8)
     change = np.diff(touching, axis=1)
     path, start = np.nonzero(change == -1)
-    _, stop = np.nonzero(change == 1)
-    first, last = np.maximum(start - 1, 0), np.minimum(stop, paths.gap.shape[1] - 1)
+    return _Spans(path, start, np.nonzero(change == 1)[1])
+
+
+def _largest(values: Floats, spans: _Spans) -> Floats:
+    """Largest of values (p, n) at the particles of each span."""
+    count = values.shape[1] + 1
+    bounds = np.stack([spans.path * count + spans.start, spans.path * count + spans.stop], axis=1).ravel()
+    padded = np.pad(values, ((0, 0), (0, 1)), constant_values=-np.inf).ravel()
+    # from each start to each stop; every other range is one between spans
+    return np.maximum.reduceat(padded, bounds)[::2] if len(bounds) else np.zeros(0)
+
+
+def _resolved(paths: Paths, spans: _Spans) -> Bools:
+    """Whether each span lies further off the surface somewhere than this may lie off the part."""
+    if not len(spans.path):
+        return np.zeros(0, dtype=bool)
+    excess = np.zeros(paths.gap.shape)
+    aloft = ~paths.on_surface
+    excess[aloft] = paths.gap[aloft] - paths.surface.uncertainty_at(paths.uv[aloft])
+    return np.asarray(_largest(excess, spans) > 0.0)
+
+
+def _mark(mask: Bools, spans: _Spans, chosen: Bools) -> None:
+    """Set the mask (p, n) at the particles of the chosen spans."""
+    change = np.zeros((mask.shape[0], mask.shape[1] + 1), dtype=np.int64)
+    change[spans.path[chosen], spans.start[chosen]] = 1
+    change[spans.path[chosen], spans.stop[chosen]] = -1
+    mask |= np.cumsum(change, axis=1)[:, :-1] > 0
+
+
+def bridges(paths: Paths) -> Bridges:
+    """Find every span of particles off the surface, path by path from the start."""
+    spans = _spans(paths)
+    first, last = np.maximum(spans.start - 1, 0), np.minimum(spans.stop, paths.gap.shape[1] - 1)
     arc = lengths(paths).arc_length
-    # gaps from each start to each stop; every other range is one between bridges
-    count = paths.gap.shape[1] + 1
-    bounds = np.stack([path * count + start, path * count + stop], axis=1).ravel()
-    padded = np.pad(paths.gap, ((0, 0), (0, 1)), constant_values=0.0).ravel()
-    gap = np.maximum.reduceat(padded, bounds)[::2] if len(bounds) else np.zeros(0)
-    length = arc[path, last] - arc[path, first]
-    ends, _ = touchdowns(paths.surface, paths.points, paths.uv, path, first, last)
-    return Bridges(frozen(path), frozen(first), frozen(last), frozen(length), frozen(gap), frozen(ends))
+    length = arc[spans.path, last] - arc[spans.path, first]
+    ends, _ = touchdowns(paths.surface, paths.points, paths.uv, spans.path, first, last)
+    found = spans.path, first, last, length, _largest(paths.gap, spans), _resolved(paths, spans), ends
+    return Bridges(*(frozen(each) for each in found))

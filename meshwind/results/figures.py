@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from meshwind.core.cast import Bools, frozen
-from meshwind.path.lengths import Bridges, bridged_share, bridges, lengths
+from meshwind.path.lengths import Bridges, bridged_share, bridges, lengths, unresolved_share
 from meshwind.path.paths import Paths, Status, converged_or_all
 
 
@@ -12,8 +12,9 @@ class PathFigures:
     """Figures of the paths that converged, or of all where none did: `counted` (p,) says which.
 
     converged: how many did; fibre_length: the total; bridged_share: share of the polylines' length off the surface;
-    spans: the bridges.  Lengths are in the mesh's units, max_slip is the required friction |kg| / kn, max_residual is
-    over the tension.
+    spans: the bridges whose gap the surface's uncertainty resolves; unresolved: the others, which count as contact, and
+    unresolved_share: their share of the length.  Lengths are in the mesh's units, max_slip is the required friction
+    |kg| / kn, max_residual is over the tension.
     """
 
     counted: Bools
@@ -21,6 +22,8 @@ class PathFigures:
     fibre_length: float
     bridged_share: float
     spans: Bridges
+    unresolved: Bridges
+    unresolved_share: float
     max_gap: float
     max_slip: float
     max_residual: float
@@ -39,12 +42,16 @@ class PathFigures:
 def path_figures(paths: Paths) -> PathFigures:
     """Measure the paths that converged, or all where none did."""
     counted, each = converged_or_all(paths.status), lengths(paths)
+    spans = bridges(paths)
+    spans = spans.where(counted[spans.path])
     return PathFigures(
         counted=frozen(counted),
         converged=int((paths.status == Status.CONVERGED).sum()),
         fibre_length=float(paths.length[counted].sum()),
         bridged_share=bridged_share((each, counted)),
-        spans=bridges(paths).of(counted),
+        spans=spans.where(spans.resolved),
+        unresolved=spans.where(~spans.resolved),
+        unresolved_share=unresolved_share((each, counted)),
         max_gap=float(each.max_gap[counted].max(initial=0.0)),
         max_slip=float(each.max_slip[counted].max(initial=0.0)),
         max_residual=float(paths.residual[counted].max(initial=0.0)),

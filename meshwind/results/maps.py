@@ -27,6 +27,8 @@ def maps(on: Grid, layup: Layup, fit_error: Floats | None = None) -> dict[schema
         schema.LAYERS: layup.bands.at(on.uv),
         schema.STRETCH: _stretch(on),
     }
+    if on.surface.uncertainty is not None:
+        data[schema.UNCERTAINTY] = on.surface.uncertainty_at(on.uv)
     return data if fit_error is None else data | {schema.FIT_ERROR: fit_error}
 
 

@@ -172,12 +172,14 @@ def _surface(path: Path, report: Report) -> Surface:
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as held:
             control, periodic = held[schema.CONTROL_POINTS], bool(held[schema.PERIODIC_U])
+            doubt = held.get(schema.UNCERTAINTY)
     except (OSError, EOFError, ValueError, LookupError, TypeError, AttributeError, zipfile.BadZipFile) as error:
         raise _spoilt(path, error) from error
     points = floats(control, f"{schema.CONTROL_POINTS} of {path.name}", -1, -1, 3)
     if np.abs(points).max(initial=0.0) > _FARTHEST:
         raise _spoilt(path, f"it reaches beyond {_FARTHEST:g}")
-    return Surface(points, periodic, _fit_error(report))
+    table = None if doubt is None else frozen(floats(doubt, f"{schema.UNCERTAINTY} of {path.name}", -1, -1))
+    return Surface(points, periodic, _fit_error(report), table)
 
 
 def _fit_error(report: Report) -> FitError | None:
@@ -189,7 +191,18 @@ def _fit_error(report: Report) -> FitError | None:
     }
     if diagonal is None or None in found.values():
         return None
-    return FitError(**{name: float(value) for name, value in found.items()}, diagonal=float(diagonal))
+    distances = {name: float(value) for name, value in found.items()}
+    evidence = _under(report, "surface", "evidence") or {"data": "vertices", "noise": 0.0, "sagitta": 0.0}
+    return FitError(
+        diagonal=float(diagonal),
+        data=str(evidence["data"]),
+        noise=float(evidence["noise"]),
+        sagitta=float(evidence["sagitta"]),
+        to_surface_rms=distances["to_surface_rms"],
+        to_surface_max=distances["to_surface_max"],
+        to_mesh_rms=distances["to_mesh_rms"],
+        to_mesh_max=distances["to_mesh_max"],
+    )
 
 
 def _paths(path: Path, surface: Surface, report: Report) -> Paths:

@@ -28,6 +28,7 @@ from meshwind.results.layup_figures import (
     windability_figures,
 )
 from meshwind.results.report_types import (
+    Distances,
     Failure,
     FitFigures,
     MeshFigures,
@@ -134,12 +135,19 @@ def _surface(surface: Surface, chart: Chart | None, tolerance: float | None) -> 
             "to_surface": {"rms": error.to_surface_rms, "max": error.to_surface_max},
             "to_mesh": {"rms": error.to_mesh_rms, "max": error.to_mesh_max},
         }
-    return {
+    figures: SurfaceFigures = {
         "control_points": list(surface.control_points.shape[:2]),
         "tolerance": tolerance,
         "fit_error": fit,
         "flipped_triangles": 0 if chart is None else chart.flipped,
     }
+    if error is not None and surface.uncertainty is not None:
+        table = surface.uncertainty
+        doubt: Distances = {"rms": float(np.sqrt(np.mean(table**2))), "max": float(table.max())}
+        figures["evidence"] = {
+            "data": error.data, "noise": error.noise, "sagitta": error.sagitta, "uncertainty": doubt,
+        }  # fmt: skip
+    return figures
 
 
 def _winding(paths: Paths, revolutions: float) -> WindingFigures:
@@ -161,6 +169,11 @@ def _paths(paths: Paths) -> PathsFigures:
         "bridged_fraction": figures.bridged_share,
         "bridges": len(figures.spans),
         "longest_bridge": figures.longest_bridge,
+        "unresolved": {
+            "bridges": len(figures.unresolved),
+            "fraction": figures.unresolved_share,
+            "max_gap": float(figures.unresolved.max_gap.max(initial=0.0)),
+        },
         "max_gap": figures.max_gap,
         "max_slip": figures.max_slip,
         "max_residual": figures.max_residual,

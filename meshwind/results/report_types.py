@@ -45,12 +45,22 @@ class FitFigures(TypedDict):
     to_mesh: NotRequired[Distances]
 
 
+class EvidenceFigures(TypedDict):
+    """What led the fit, what noise and sagitta were found in the mesh, and how far the surface may lie off the part."""
+
+    data: str
+    noise: float
+    sagitta: float
+    uncertainty: Distances
+
+
 class SurfaceFigures(TypedDict):
     """The fitted surface: control points around and along, tolerance and error of the fit."""
 
     control_points: list[int]
     tolerance: float | None
     fit_error: FitFigures
+    evidence: NotRequired[EvidenceFigures]
     flipped_triangles: int
 
 
@@ -72,6 +82,14 @@ class Failure(TypedDict):
     why: str
 
 
+class UnresolvedFigures(TypedDict):
+    """Bridges thinner than the surface's own uncertainty, which count as contact: how many, of what length and gap."""
+
+    bridges: int
+    fraction: float
+    max_gap: float
+
+
 class PathsFigures(TypedDict):
     """The paths; lengths, bridges and maxima are over those that `figures_over` names, residuals over the tension."""
 
@@ -82,6 +100,7 @@ class PathsFigures(TypedDict):
     bridged_fraction: float
     bridges: int
     longest_bridge: float
+    unresolved: UnresolvedFigures
     max_gap: float
     max_slip: float
     max_residual: float

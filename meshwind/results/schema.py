@@ -76,7 +76,9 @@ PATHS = File(
     point_data=(UV, ON_SURFACE, GAP, NORMAL, SLIP, ARC_LENGTH),
     cell_data=(PATH, FAMILY, LENGTH, FIBRE_LENGTH, BRIDGED_LENGTH, MAX_GAP, MAX_SLIP, STATUS),
 )
-BRIDGES = File("bridges.vtp", point_data=(GAP,), cell_data=(PATH, LENGTH, MAX_GAP))
+RESOLVED = Field("resolved", dtype="uint8")
+"""Whether a bridge lies further off the surface somewhere than this may lie off the part."""
+BRIDGES = File("bridges.vtp", point_data=(GAP,), cell_data=(PATH, LENGTH, MAX_GAP, RESOLVED))
 
 PATH_A = Field("path_a", dtype="int64")
 PATH_B = Field("path_b", dtype="int64")
@@ -98,12 +100,14 @@ COVERAGE = Field("coverage")
 LAYERS = Field("layers", dtype="int64")
 STRETCH = Field("stretch")
 FIT_ERROR = Field("fit_error", LENGTHS)
-"""Present if the mesh is known."""
+"""Only where the mesh is known."""
+UNCERTAINTY = Field("uncertainty", LENGTHS)
+"""Only of a surface that was fitted; on cells in surface.npz, at points in surface.vtu."""
 SURFACE = File(
     "surface.vtu",
     point_data=(
         UV, NORMAL, GAUSSIAN_CURVATURE, MEAN_CURVATURE, WINDABILITY, CLASS, PRESS_DIRECTION, PRESS_REACH, ANGLE,
-        COVERAGE, LAYERS, STRETCH, FIT_ERROR,
+        COVERAGE, LAYERS, STRETCH, UNCERTAINTY, FIT_ERROR,
     ),
 )  # fmt: skip
 
@@ -112,7 +116,7 @@ KNOTS_U, KNOTS_V = Field("knots_u"), Field("knots_v")
 DEGREE = Field("degree", dtype="int64")
 PERIODIC_U = Field("periodic_u", dtype="bool")
 UNITS = Field("units", dtype="str")
-SPLINE = File("surface.npz", point_data=(CONTROL_POINTS, KNOTS_U, KNOTS_V, DEGREE, PERIODIC_U, UNITS))
+SPLINE = File("surface.npz", point_data=(CONTROL_POINTS, KNOTS_U, KNOTS_V, DEGREE, PERIODIC_U, UNITS, UNCERTAINTY))
 CHART = File("chart.png")
 
 # a redesign

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshwind.core.cast import Floats
 from meshwind.core.units import lengths_in
@@ -74,7 +75,12 @@ def write_bridges(path: Path, paths: Paths, units: str = "") -> None:
     starts = np.concatenate([[0], np.cumsum(sizes)])
     row = np.repeat(spans.path, sizes)
     column = np.arange(starts[-1]) - np.repeat(starts[:-1] - spans.first, sizes)
-    cell_data = {schema.PATH: spans.path, schema.LENGTH: spans.length, schema.MAX_GAP: spans.max_gap}
+    cell_data: dict[schema.Field, NDArray[Any]] = {
+        schema.PATH: spans.path,
+        schema.LENGTH: spans.length,
+        schema.MAX_GAP: spans.max_gap,
+        schema.RESOLVED: spans.resolved.astype(np.uint8),
+    }
     points = paths.points[row, column]
     points[starts[:-1]], points[starts[1:] - 1] = spans.ends[:, 0], spans.ends[:, 1]
     write_lines(path, points, starts, {schema.GAP: paths.gap[row, column]}, cell_data, units)
@@ -124,6 +130,8 @@ def write_spline(path: Path, surface: Surface, units: str = "") -> None:
         schema.PERIODIC_U: np.bool_(surface.periodic),
         schema.UNITS: np.str_(units),
     }
+    if surface.uncertainty is not None:
+        arrays[schema.UNCERTAINTY] = surface.uncertainty
     with path.open("wb") as file:
         np.savez(file, **arrays)
 
