@@ -33,7 +33,7 @@ ORDER = [
 """A package may import those before it, never those after it."""
 OWN = "its own modules"
 WITHIN = {
-    "mesh": ["geometry", "repair", "io", "opening", OWN],
+    "mesh": ["geometry", "walls", "repair", "io", "opening", OWN],
     "surface": [OWN, "fitting"],
     "path": ["kernels", OWN],
 }

@@ -48,6 +48,22 @@ class Mesh(PicklableRecord):
 
 
 @dataclass(frozen=True)
+class Wall(PicklableRecord):
+    """The wall of a part, of which one skin is wound.
+
+    side: "outer" or "inner", the skin that is wound; thickness: median of the wall; left_out: share of the part's
+    surface that belongs to neither skin; skin: the one that is wound; opposite (k, 3): faces of the part's mesh on the
+    other one.
+    """
+
+    side: str
+    thickness: float
+    left_out: float
+    skin: Mesh
+    opposite: Ints
+
+
+@dataclass(frozen=True)
 class Annulus(PicklableRecord):
     """Mesh of genus 0 with exactly two boundary loops, its rims, oriented outwards.
 
@@ -66,6 +82,11 @@ class Annulus(PicklableRecord):
         False for vertices that trimming has made, which lie on the flat facets rather than on the part.
     ends : str
         How the ends were chosen, in words.
+    notes : tuple of str, default ()
+        What was decided for the user, in words: the skin of a part with a wall, a plane in place of a level line.
+    wall : Wall, optional
+        Wall of a part whose skin this is: its `side`, "outer" or "inner", and its median `thickness`.  None for other
+        parts.
 
     Examples
     --------
@@ -81,3 +102,5 @@ class Annulus(PicklableRecord):
     rims: tuple[Ints, Ints]
     trusted: Bools
     ends: str
+    notes: tuple[str, ...] = ()
+    wall: Wall | None = None

@@ -1,0 +1,127 @@
+"""Rays against a search tree of triangles: the triangle that each meets first, and how far away it is."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.threads import parallel_for
+from meshwind.mesh.geometry.facet_tree import GRAZE, LEAF, FacetTree
+
+_BLOCK = 500
+"""Fewest rays that are worth a thread."""
+
+
+def cast(tree: FacetTree, start: Floats, ray: Floats, least: float) -> tuple[Ints, Floats]:
+    """The face (k,) that each ray from `start` along the unit vectors `ray` (k, 3) meets first, and its distance (k,).
+
+    Faces nearer than `least` are passed through, as that of the start is; where nothing is met, -1 and infinity.
+    """
+    met = _Met(np.empty(len(start), np.int64), np.empty(len(start)))
+    boxes = _Boxes(tree.corners, tree.numbers, tree.boxes)
+    parallel_for(_cast, len(start), _BLOCK, boxes, _Rays(frozen(start), frozen(ray), least), met)
+    return met.face, met.distance
+
+
+class _Boxes(NamedTuple):
+    """The arrays of a FacetTree."""
+
+    corners: Floats
+    numbers: Ints
+    boxes: Floats
+
+
+class _Rays(NamedTuple):
+    """Starts (k, 3) and unit vectors (k, 3) of rays, and the distance within which they meet nothing."""
+
+    start: Floats
+    ray: Floats
+    least: float
+
+
+class _Met(NamedTuple):
+    """The face (k,) that each ray meets first and its distance (k,), to be filled in."""
+
+    face: Ints
+    distance: Floats
+
+
+@njit(inline="always", cache=True)
+def _enters(boxes: Floats, box: int, x: float, y: float, z: float, ax: float, ay: float, az: float) -> float:
+    """Distance at which the ray enters a box (Kay and Kajiya 1986), infinity where it misses; a: 1 over its vector."""
+    if boxes[box, 0] > boxes[box, 3]:  # a node without triangles
+        return np.inf
+    a, b = (boxes[box, 0] - x) * ax, (boxes[box, 3] - x) * ax
+    low, high = min(a, b), max(a, b)
+    a, b = (boxes[box, 1] - y) * ay, (boxes[box, 4] - y) * ay
+    low, high = max(low, min(a, b)), min(high, max(a, b))
+    a, b = (boxes[box, 2] - z) * az, (boxes[box, 5] - z) * az
+    low, high = max(low, min(a, b)), min(high, max(a, b))
+    # a billionth wider, so that round-off loses no flat box
+    return low if high >= 0.0 and low <= high + 1e-9 * abs(high) else np.inf
+
+
+@njit(inline="always", cache=True)
+def _inverse(d: float) -> float:
+    """1 over a component of the ray, finite so that 0 times it is a number."""
+    return 1.0 / d if abs(d) > 1e-100 else 1e100
+
+
+@njit(nogil=True, cache=True)
+def _meets(corners: Floats, m: int, x: float, y: float, z: float, dx: float, dy: float, dz: float) -> float:
+    """Distance along the ray at which it meets triangle m, or infinity (Moeller and Trumbore 1997)."""
+    ax, ay, az = (
+        corners[m, 1, 0] - corners[m, 0, 0], corners[m, 1, 1] - corners[m, 0, 1], corners[m, 1, 2] - corners[m, 0, 2],
+    )  # fmt: skip
+    bx, by, bz = (
+        corners[m, 2, 0] - corners[m, 0, 0], corners[m, 2, 1] - corners[m, 0, 1], corners[m, 2, 2] - corners[m, 0, 2],
+    )  # fmt: skip
+    nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+    volume = -(nx * dx + ny * dy + nz * dz)
+    if volume**2 <= GRAZE**2 * (nx * nx + ny * ny + nz * nz):
+        return np.inf
+    tx, ty, tz = x - corners[m, 0, 0], y - corners[m, 0, 1], z - corners[m, 0, 2]
+    qx, qy, qz = dy * tz - dz * ty, dz * tx - dx * tz, dx * ty - dy * tx
+    u, v = -(bx * qx + by * qy + bz * qz) / volume, (ax * qx + ay * qy + az * qz) / volume
+    # a billionth larger, so that no ray slips through between two triangles
+    if u < -1e-9 or v < -1e-9 or u + v > 1.0 + 1e-9:
+        return np.inf
+    return (nx * tx + ny * ty + nz * tz) / volume
+
+
+@njit(nogil=True, cache=True)
+def _cast(first: int, last: int, tree: _Boxes, rays: _Rays, met: _Met) -> None:
+    """The faces that the rays first to last meet first."""
+    corners, numbers, boxes = tree.corners, tree.numbers, tree.boxes
+    start, ray, least = rays.start, rays.ray, rays.least
+    face, distance = met.face, met.distance
+    leaves = len(boxes) // 2
+    stack, far = np.empty(64, np.int64), np.empty(64)
+    for i in range(first, last):
+        x, y, z, dx, dy, dz = start[i, 0], start[i, 1], start[i, 2], ray[i, 0], ray[i, 1], ray[i, 2]
+        ax, ay, az = _inverse(dx), _inverse(dy), _inverse(dz)
+        found, reach = -1, np.inf
+        stack[0], far[0], size = 1, 0.0, 1
+        while size > 0:
+            size -= 1
+            box = stack[size]
+            if far[size] >= reach:
+                continue
+            if box >= leaves:
+                for m in range((box - leaves) * LEAF, min((box - leaves + 1) * LEAF, len(corners))):
+                    t = _meets(corners, m, x, y, z, dx, dy, dz)
+                    if least < t < reach or (found >= 0 and t == reach and numbers[m] < numbers[found]):
+                        reach, found = t, m
+                continue
+            one, two = _enters(boxes, 2 * box, x, y, z, ax, ay, az), _enters(boxes, 2 * box + 1, x, y, z, ax, ay, az)
+            # the nearer half last, so that it is looked at first
+            swap = 1 if one < two else 0
+            if max(one, two) < reach:
+                stack[size], far[size] = 2 * box + swap, max(one, two)
+                size += 1
+            if min(one, two) < reach:
+                stack[size], far[size] = 2 * box + 1 - swap, min(one, two)
+                size += 1
+        face[i] = numbers[found] if found >= 0 else -1
+        distance[i] = reach
