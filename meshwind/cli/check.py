@@ -19,6 +19,9 @@ EXAMPLES = """
     # with two of its rims as the ends
     meshwind check part.stl --ends "loops 0 2"
 
+    # a pipe with a wall, wound on its inside
+    meshwind check pipe.stl --side inner
+
     # the numbers, for a script
     meshwind check part.stl --json
 """
@@ -27,14 +30,18 @@ _MOST = 12
 
 
 @with_records
-def check(mesh: MeshFile, options: Annotated[Options, Pick(("component", "ends", "opening"))], printed: Printed) -> int:
+def check(
+    mesh: MeshFile,
+    options: Annotated[Options, Pick(("component", "ends", "opening", "side", "opening_by"))],
+    printed: Printed,
+) -> int:
     """Describe MESH, its pieces, rims and faults, and what `wind` would do with it.  Writes nothing.
 
     Exit status: 0 it has two ends and can be wound; 2 it cannot, and one line says why.
     """
     from meshwind.mesh import inspect
 
-    findings = inspect(mesh, options.ends, options.opening, options.component)
+    findings = inspect(mesh, options.ends, options.opening, options.component, options.side, options.opening_by)
     print_report(_lines(findings), asdict(findings), printed)
     if findings.problem:
         raise BadInputError(findings.problem)
@@ -49,7 +56,7 @@ def _lines(found: "Findings") -> list[str]:
 def described(found: "Findings") -> list[str]:
     """The mesh as it is in its file."""
     size = " x ".join(f"{length:.4g}" for length in found.size)
-    rims = _count(len(found.rims), "open rim") if found.rims else "open"
+    rims = _count(len(found.rims), "open rim") if found.rims and not found.side else "open"
     shape = ["closed" if found.closed else rims]
     shape += [] if found.genus is None else [f"genus {found.genus}"]
     shape += ["one-sided"] if found.one_sided else []
@@ -66,7 +73,7 @@ def described(found: "Findings") -> list[str]:
         f"size      {size}, diagonal {found.diagonal:.4g}",
         *_listed("piece", [_piece(piece, found.component) for piece in found.pieces], found.piece_count),
         f"shape     {', '.join(shape)}",
-        *_listed("rim", [_rim(rim, found.diagonal) for rim in found.rims], len(found.rims)),
+        *_listed("rim", [_rim(rim, found) for rim in found.rims], len(found.rims)),
         *(f"fault     {fault}" for fault in faults),
     ]
 
@@ -77,6 +84,7 @@ def _verdict(found: "Findings") -> list[str]:
     lengths = " and ".join(f"{length:.4g}" for length in found.rim_lengths)
     return [
         f"ends      {found.ends}",
+        *(f"note      {note}" for note in found.notes),
         f"wound     {found.annulus_vertices} vertices, {found.annulus_faces} faces, rims {lengths} long",
         "verdict   can be wound",
     ]
@@ -88,11 +96,13 @@ def _piece(piece: "Piece", chosen: int) -> str:
     return f"{piece.number}: area {piece.area:.4g}, {_count(piece.faces, 'face')}, {kind}{taken}"
 
 
-def _rim(rim: "Rim", diagonal: float) -> str:
+def _rim(rim: "Rim", found: "Findings") -> str:
     from meshwind.mesh.opening.choose_ends import position_text
 
+    place = position_text(rim.place, found.diagonal)
+    skin = f" of the {found.side} skin" if found.side else ""
     use = f", {rim.use}" if rim.use else ""
-    return f"{rim.number}: at {position_text(rim.place, diagonal)}, {rim.length:.4g} long, {rim.vertices} vertices{use}"
+    return f"{rim.number}{skin}: at {place}, {rim.length:.4g} long, {rim.vertices} vertices{use}"
 
 
 def _listed(label: str, rows: list[str], count: int) -> list[str]:

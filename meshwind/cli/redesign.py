@@ -27,7 +27,9 @@ EXAMPLES = """
     # keep a part of four arms the same on each
     meshwind redesign part.stl --symmetry 4 --out four-arms
 """
-WINDING = "paths", "revolutions", "particles", "tolerance", "component", "ends", "opening"
+WINDING = (
+    "paths", "revolutions", "particles", "tolerance", "component", "ends", "opening", "side", "opening_by",
+)  # fmt: skip
 """Options of the winding that a redesign takes, in the order of meshwind.toml."""
 WindingOptions = Annotated[
     Options,

@@ -6,3 +6,7 @@ FIT_TOLERANCE = 1e-5
 """Largest distance of a vertex from the fitted surface, over the mesh's diagonal: no more than lengths are off by."""
 STEPS_PER_TURN = 8
 """Fewest steps of a path per turn: with fewer, a polyline does not show the course of the fibre."""
+SIDES = ("outer", "inner")
+"""Skins of a part with a wall; the first is wound by default."""
+OPENED_BY = ("auto", "level", "plane")
+"""How a closed end is opened: along a level line of the distance to its pole, or by a plane square to the axis."""

@@ -34,7 +34,8 @@ def displacement(chart: Chart, before: Surface, after: Surface) -> Floats:
 
     A vertex of the wound region moves as the surface does at its foot point, and keeps its distance to it.  Of the
     vertices that were cut away (caps, the lining of a cup), those next to their rim move as the extended surface does
-    and those far off stay.  Between, the field is biharmonic, so that it and its slope are continuous.
+    and those far off stay, as do those of the other skin of a part with a wall.  Between, the field is biharmonic, so
+    that it and its slope are continuous.
     """
     annulus = chart.annulus
     vertices = annulus.mesh.vertices
@@ -45,9 +46,12 @@ def displacement(chart: Chart, before: Surface, after: Surface) -> Floats:
     moved = np.zeros_like(vertices)
     moved[wound] = change.points(uv[nearest[wound]])
     if not wound.all() and np.abs(moved).max() > 0:
-        near, on = _next_to(annulus.mesh, before, wound, uv[nearest])
+        still = np.zeros_like(wound)
+        still[[] if annulus.wall is None else annulus.wall.opposite] = True
+        still &= ~wound
+        near, on = _next_to(annulus.mesh, before, wound | still, uv[nearest])
         moved[near] = _extended(change).points(on)
-        known = wound.copy()
+        known = wound | still
         known[near] = True
         moved = _blended(
             annulus.mesh, moved, wound, known, max(perimeter(annulus.vertices, rim) for rim in annulus.rims)

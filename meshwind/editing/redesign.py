@@ -132,6 +132,8 @@ def redesign(  # noqa: PLR0913
     component: int = Options.component,
     ends: str = Options.ends,
     opening: float | None = Options.opening,
+    side: str = Options.side,
+    opening_by: str = Options.opening_by,
     tolerance: float = Options.tolerance,
     progress: Progress | None = None,
 ) -> Redesign:
@@ -168,7 +170,7 @@ def redesign(  # noqa: PLR0913
     threshold : float, optional
         Ignore gaps up to this, in the mesh's units.  By default the largest distance of a vertex from the fitted
         surface.
-    component, ends, opening, tolerance : optional
+    component, ends, opening, side, opening_by, tolerance : optional
         As for `wind`.
     progress : callable, optional
         Called with one line before each stage and round.
@@ -197,7 +199,8 @@ def redesign(  # noqa: PLR0913
     """
     options = EditOptions(bound, frozen, symmetry, threshold, rounds, fairness, pressing)
     winding = Options(
-        paths, revolutions, particles, component=component, ends=ends, opening=opening, tolerance=tolerance
+        paths, revolutions, particles, component=component, ends=ends, opening=opening, side=side,
+        opening_by=opening_by, tolerance=tolerance,
     )  # fmt: skip
     if winding.particles is None:
         raise BadInputError("particles is None; give a whole number, the same for all rounds of an edit")
@@ -206,6 +209,7 @@ def redesign(  # noqa: PLR0913
     report("fit")
     source = read_source(mesh, winding)
     part = fit_part(source, winding, Clock())
+    region = region.on_skin(part.chart.annulus)
     chosen = chosen_revolutions(part.surface, winding, Clock(progress), further=False)
     if chosen is not None:
         winding = replace(winding, revolutions=chosen.choice)

@@ -1,7 +1,7 @@
 """What a redesign must not move: control points, or a region of the surface in words such as "v<0.1, z>20"."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -10,10 +10,11 @@ from meshwind.core.cast import Bools, Floats
 from meshwind.core.errors import BadInputError
 from meshwind.editing.freedom import Frozen
 from meshwind.editing.stencil import weights
+from meshwind.mesh import Annulus
 from meshwind.mesh.io.scalars import Scalars
 from meshwind.surface.surface import Surface
 from meshwind.workflow.options import FIELD
-from meshwind.workflow.part import MeshLike, read_field
+from meshwind.workflow.part import MeshLike, on_wound_skin, read_field
 
 SAMPLES_PER_SPAN = 6
 """Samples of the surface per span and direction: a control point that moves any sample of the region is frozen."""
@@ -109,6 +110,10 @@ class FrozenPart:
     def on(self, surface: Surface, uv: Floats) -> Frozen:
         """The same for the control points of a surface; uv as in `Region.control_points`."""
         return self.given if self.region is None else self.region.control_points(surface, uv, self.scalars)
+
+    def on_skin(self, annulus: Annulus) -> "FrozenPart":
+        """The same with the scalars of the skin that is wound, if the part has a wall."""
+        return self if self.scalars is None else replace(self, scalars=on_wound_skin(self.scalars, annulus))
 
     @property
     def on_any_surface(self) -> bool:

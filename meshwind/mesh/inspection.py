@@ -22,7 +22,9 @@ from meshwind.mesh.repair.weld import weld, without_collapsed, without_duplicate
 _MAX_PIECES = 100
 """Number of pieces that are listed."""
 _SAME_CENTRE = 1e-6
-"""Largest distance between the centres of a rim before and after trimming, over the diagonal."""
+"""Largest distance between the centres of a rim before and after trimming, over the diagonal ..."""
+_STRAIGHTENED = 0.1
+"""... or over the length of the rim for that of a skin, which is cut straight where it is ragged."""
 
 Point = tuple[float, float, float]
 
@@ -39,7 +41,9 @@ class Piece:
 
 @dataclass(frozen=True)
 class Rim:
-    """An open rim of the chosen piece: the number that 'loops i j' names it by, its centre, length and vertices.
+    """An open rim of the chosen piece, or of the skin that is wound of a part with a wall.
+
+    number: what 'loops i j' names it by; place: its centre; length; vertices: their number.
 
     use: 'start', 'end', 'filled', or '' if the piece cannot be wound.
     """
@@ -57,10 +61,12 @@ class Findings:
 
     vertices and faces are those of the file, size its extents along x, y and z; crowded_edges have more than two
     faces, turned_edges two that face opposite ways; pieces lists the 100 largest.  component is the chosen piece,
-    one_sided, closed, genus (None if it is unknown) and rims are its own; repairs says what is changed
+    one_sided, closed, genus (None if it is unknown) and rims are its own, or the rims of its skin if it has a wall that
+    can be wound; repairs says what is changed
     and what was noticed, ends how the ends are chosen, what is filled and how wide the openings are.
-    annulus_vertices, annulus_faces and rim_lengths are those of the mesh that is wound; problem is why it cannot
-    be wound, empty if it can.
+    annulus_vertices, annulus_faces and rim_lengths are those of the mesh that is wound; wall is the median thickness
+    of a part's wall, 0 if it has none, side the skin that is wound, empty if it has none; notes says what was decided
+    in opening it; problem is why it cannot be wound, empty if it can.
     """
 
     name: str
@@ -83,16 +89,24 @@ class Findings:
     annulus_vertices: int = 0
     annulus_faces: int = 0
     rim_lengths: tuple[float, ...] = ()
+    wall: float = 0.0
+    side: str = ""
+    notes: tuple[str, ...] = ()
     problem: str = ""
 
 
 def inspect(
-    mesh: str | PathLike[str] | Mesh, ends: str = "auto", opening: float | None = None, component: int = 0
+    mesh: str | PathLike[str] | Mesh,
+    ends: str = "auto",
+    opening: float | None = None,
+    component: int = 0,
+    side: str = "outer",
+    opening_by: str = "auto",
 ) -> Findings:
     """Inspect a mesh in a file or in memory: what it is, and how it would be wound.
 
-    ends, opening and component are as in `annulus` and `read`.  Raises BadInputError only if there is no surface; any
-    other reason why the mesh cannot be wound is in `Findings.problem`.
+    ends, opening, component, side and opening_by are as in `annulus` and `read`.  Raises BadInputError only if there is
+    no surface; any other reason why the mesh cannot be wound is in `Findings.problem`.
     """
     if isinstance(mesh, Mesh):
         name, kind, vertices, faces = mesh.name, "", mesh.vertices, mesh.faces
@@ -114,7 +128,7 @@ def inspect(
         part = chosen_piece(pieces, notes, component, name, (len(vertices), len(faces)))
         findings = replace(findings, repairs=part.repairs)
         findings = replace(findings, genus=_genus(part), rims=_rims(part, None))
-        found = annulus(part, ends, opening)
+        found = annulus(part, ends, opening, side, opening_by)
     except BadInputError as error:
         return replace(findings, problem=str(error))
     return replace(
@@ -123,6 +137,9 @@ def inspect(
         ends=found.ends,
         annulus_vertices=len(found.vertices),
         annulus_faces=len(found.faces),
+        wall=0.0 if found.wall is None else found.wall.thickness,
+        side="" if found.wall is None else found.wall.side,
+        notes=found.notes,
         rim_lengths=tuple(perimeter(found.vertices, rim) for rim in found.rims),
     )
 
@@ -149,21 +166,23 @@ def _genus(part: Mesh) -> int:
 
 
 def _rims(part: Mesh, found: Annulus | None) -> tuple[Rim, ...]:
-    rims = rims_by_number(part.vertices, loops(part.faces))
-    centres = [loop_centroid(part.vertices, loop) for loop in rims]
+    wall = None if found is None else found.wall
+    surface = part if wall is None else wall.skin
     ends = [] if found is None else [loop_centroid(found.vertices, rim) for rim in found.rims]
-    return tuple(
-        Rim(number, _point(centre), perimeter(part.vertices, loop), len(loop), _use(centre, ends, part.diagonal))
-        for number, (loop, centre) in enumerate(zip(rims, centres, strict=True))
-    )
+    rims = []
+    for number, loop in enumerate(rims_by_number(surface.vertices, loops(surface.faces))):
+        centre, length = loop_centroid(surface.vertices, loop), perimeter(surface.vertices, loop)
+        near = _SAME_CENTRE * part.diagonal if wall is None else _STRAIGHTENED * length
+        rims.append(Rim(number, _point(centre), length, len(loop), _use(centre, ends, near)))
+    return tuple(rims)
 
 
-def _use(centre: Floats, ends: list[Floats], diagonal: float) -> str:
+def _use(centre: Floats, ends: list[Floats], near: float) -> str:
     """Use of the rim with this centre, from the centres of the rims of the annulus."""
     if not ends:
         return ""
     away = [float(np.linalg.norm(end - centre)) for end in ends]
-    return ("start", "end")[int(np.argmin(away))] if min(away) < _SAME_CENTRE * diagonal else "filled"
+    return ("start", "end")[int(np.argmin(away))] if min(away) < near else "filled"
 
 
 def _point(values: Floats) -> Point:

@@ -7,6 +7,7 @@ from pathlib import Path
 from meshwind.core.version import version
 from meshwind.editing.redesign import Redesign
 from meshwind.editing.report import redesign_report
+from meshwind.editing.wall_left import about_wall
 from meshwind.layup.layup import assess
 from meshwind.pictures import driver
 from meshwind.pictures.redesign_scene import redesign_scene
@@ -20,7 +21,7 @@ from meshwind.results.report_types import RedesignReport
 from meshwind.results.schema import AFTER, BEFORE, CONFIG, REDESIGN, REPORT, picture
 from meshwind.results.write import write_edited
 from meshwind.workflow.clock import Clock
-from meshwind.workflow.notes import Note
+from meshwind.workflow.notes import Note, about_opening
 
 
 def write_redesign(
@@ -77,7 +78,8 @@ def write_redesign(
     >>> report["redesign"]["windable"]
     True
     """
-    clock, notes = Clock(), list[str]()
+    clock = Clock()
+    notes = [str(note) for note in (*about_opening(edited.before.chart.annulus), *about_wall(edited, units))]
     with folder.writing(Path(out), overwrite) as staging:
         with clock.stage("write"):
             write_edited(staging, edited.mesh, edited.displacement, units)

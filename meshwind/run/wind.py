@@ -170,6 +170,8 @@ def wind(  # noqa: PLR0913
     component: int = Options.component,
     ends: str = Options.ends,
     opening: float | None = Options.opening,
+    side: str = Options.side,
+    opening_by: str = Options.opening_by,
     tolerance: float = Options.tolerance,
     worst_fit: float = Options.worst_fit,
     units: str = Options.units,
@@ -206,6 +208,11 @@ def wind(  # noqa: PLR0913
         `annulus`.
     opening : float, optional
         Radius of the opening at a closed end, in the mesh's units.  By default it follows from the part.
+    side : {"outer", "inner"}, default "outer"
+        Skin of a part with a wall that is wound; see `annulus`.
+    opening_by : {"auto", "level", "plane"}, default "auto"
+        How a closed end is opened: along a level line of the distance to its pole, or by a plane square to the axis;
+        see `annulus`.
     tolerance : float, default 1e-5
         Largest distance of a mesh vertex from the fitted surface, over the part's diagonal.
     worst_fit : float, default 0.1
@@ -257,8 +264,8 @@ def wind(  # noqa: PLR0913
     """
     pinned = fspath(pins) if isinstance(pins, PathLike) else pins
     options = Options(
-        paths, revolutions, particles, friction, component, ends, opening, tolerance, worst_fit, units,
-        spacing, band_width, linear_density, pinned,
+        paths, revolutions, particles, friction, component, ends, opening, side, opening_by,
+        tolerance, worst_fit, units, spacing, band_width, linear_density, pinned,
     )  # fmt: skip
     clock = Clock(progress)
     target = None if out is None else _folder(out)
@@ -288,7 +295,9 @@ def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: Cloc
     notes = result.notes
     with folder.writing(out, overwrite) as staging:
         with clock.stage("write"):
-            write_files(staging, result.layup, result.mesh, result.options.units)
+            wall = result.chart.annulus.wall
+            measured = result.mesh if wall is None else wall.skin
+            write_files(staging, result.layup, measured, result.options.units)
             if result.chosen is not None and render:
                 draw_revolutions(staging / REVOLUTIONS_PICTURE, result.chosen, result.mesh.name)
         if render:

@@ -18,7 +18,7 @@ from meshwind.workflow.options import FILE_DEFAULTS, Options
 
 MAX_CASES = 100_000
 """Most cases of one study; more are a mistake in a list."""
-FIT_OPTIONS = ("component", "ends", "opening", "tolerance")
+FIT_OPTIONS = ("component", "ends", "opening", "side", "opening_by", "tolerance")
 """Options that reading and fitting depend on: cases with the same values share a fitted part."""
 _OPTIONS = options_of(Options)
 _NAMES = {field.name.replace("_", "-"): field.name for field in fields(Options)}

@@ -8,6 +8,7 @@ from meshwind.appearance.words import power, quantity, ratio
 from meshwind.chart import Chart
 from meshwind.core.errors import BadInputError
 from meshwind.layup.layup import Layup
+from meshwind.mesh import Annulus
 from meshwind.mesh.opening.choose_ends import position_text
 from meshwind.path.paths import EDGE, Paths, Status
 from meshwind.planning.alternatives import FRICTION, WIDER
@@ -50,6 +51,11 @@ class Note:
         """The note with a reference to its picture where there is one."""
         reference = f"; see {self.picture}"
         return replace(self, text=self.text.removesuffix(reference) + (reference if there and self.picture else ""))
+
+
+def about_opening(annulus: Annulus) -> tuple[Note, ...]:
+    """Notes on what was decided in opening a part: the skin of one with a wall, a plane in place of a level line."""
+    return tuple(map(Note, annulus.notes))
 
 
 def about_paths(paths: Paths) -> tuple[Note, ...]:

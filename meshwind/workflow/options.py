@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, fields
 from math import isfinite
 from numbers import Integral, Real
 
-from meshwind.core.defaults import FIT_TOLERANCE, PARTICLES, STEPS_PER_TURN
+from meshwind.core.defaults import FIT_TOLERANCE, OPENED_BY, PARTICLES, SIDES, STEPS_PER_TURN
 from meshwind.core.errors import BadInputError
 from meshwind.core.option import option
 from meshwind.core.parsing import AUTO, count, shortened, turns
@@ -90,6 +90,20 @@ class Options:
         default=None,
         metadata=option("Radius of the opening at a closed end", PART, unit=IN_MESH_UNITS, otherwise="from the part"),
     )
+    side: str = field(
+        default=SIDES[0],
+        metadata=option("Skin of a part with a wall: outer or inner", PART, metavar="SIDE", words=SIDES),
+    )
+    opening_by: str = field(
+        default=AUTO,
+        metadata=option(
+            "How a closed end is opened: along a level line of the distance to its pole, by a plane square to the "
+            "axis, or auto, by the plane if the level line's rim is far less even",
+            PART,
+            metavar="HOW",
+            words=OPENED_BY,
+        ),
+    )
     tolerance: float = field(
         default=FIT_TOLERANCE,
         metadata=option("Largest distance of a mesh vertex from the fitted surface", SURFACE, unit=OVER_DIAGONAL),
@@ -143,6 +157,8 @@ class Options:
         set_(self, "friction", _friction(self.friction))
         set_(self, "component", _whole(self.component, "component", 0))
         parse_ends(self.ends)
+        _check_word(self.side, "side", SIDES)
+        _check_word(self.opening_by, "opening_by", OPENED_BY)
         set_(self, "tolerance", _number(self.tolerance, "tolerance", 1e-12, 1.0))
         set_(self, "worst_fit", _number(self.worst_fit, "worst_fit", 0.0, above=True))
         check_units(self.units)
@@ -202,6 +218,11 @@ def _number(value: object, name: str, low: float, high: float | None = None, abo
         return number
     allowed = f"above {low:g}" if above else f"from {low:g} up" if high is None else f"from {low:g} to {high:g}"
     raise BadInputError(f"{name} is {_text(value)}; give a number {allowed}")
+
+
+def _check_word(value: object, name: str, words: tuple[str, ...]) -> None:
+    if value not in words:
+        raise BadInputError(f"{name} is {_text(value)}; give {', '.join(words[:-1])} or {words[-1]}")
 
 
 def _text(value: object) -> str:

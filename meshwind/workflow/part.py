@@ -1,12 +1,13 @@
 """A mesh made ready for winding: read, opened at its ends, flattened and fitted with a surface."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike, fspath
 from pathlib import Path
 
 from meshwind.chart import Chart, flatten
 from meshwind.core.errors import BadInputError
-from meshwind.mesh import Mesh, annulus, read
+from meshwind.mesh import Annulus, Mesh, annulus, read
+from meshwind.mesh.geometry.facet_tree import FacetTree
 from meshwind.mesh.io.scalars import Scalars, read_scalars
 from meshwind.surface import Surface, fit
 from meshwind.workflow.clock import Clock
@@ -53,10 +54,20 @@ def read_field(mesh: MeshLike, name: str, instead: str) -> Scalars:
     return read_scalars(fspath(mesh), name)
 
 
+def on_wound_skin(scalars: Scalars, annulus: Annulus) -> Scalars:
+    """The scalars whose points lie on the skin that is wound of a part with a wall; all of them for other parts."""
+    wall = annulus.wall
+    if wall is None:
+        return scalars
+    wound = FacetTree.of(wall.skin.vertices, wall.skin.faces).distances(scalars.points)
+    near = wound <= FacetTree.of(annulus.mesh.vertices, wall.opposite).distances(scalars.points)
+    return replace(scalars, points=scalars.points[near], values=scalars.values[near])
+
+
 def fit_part(source: Source, options: Options, clock: Clock) -> Part:
     """Open the mesh at its ends, flatten it and fit its surface."""
     with clock.stage("ends"):
-        opened = annulus(source.mesh, ends=options.ends, opening=options.opening)
+        opened = annulus(source.mesh, options.ends, options.opening, options.side, options.opening_by)
     with clock.stage("flatten"):
         chart = flatten(opened)
     with clock.stage("fit"):

@@ -15,9 +15,17 @@ from meshwind.planning.revolutions import Revolutions, choose_revolutions
 from meshwind.planning.spacing import Spaced, space_out
 from meshwind.surface import Surface
 from meshwind.workflow.clock import Clock
-from meshwind.workflow.notes import Note, about_choice, about_fit, about_layup, about_paths, about_spacing
+from meshwind.workflow.notes import (
+    Note,
+    about_choice,
+    about_fit,
+    about_layup,
+    about_opening,
+    about_paths,
+    about_spacing,
+)
 from meshwind.workflow.options import Options
-from meshwind.workflow.part import Part
+from meshwind.workflow.part import Part, on_wound_skin
 
 
 @dataclass(frozen=True, repr=False)
@@ -40,7 +48,10 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock) -> Windi
     """Lay the paths on a part that was fitted with the same options, and assess them."""
     surface = part.surface
     with clock.stage("fit"):
-        notes = about_fit(surface, part.chart, options.tolerance, options.worst_fit, options.units)
+        notes = (
+            *about_opening(part.chart.annulus),
+            *about_fit(surface, part.chart, options.tolerance, options.worst_fit, options.units),
+        )
         friction = _friction(part, options)
     chosen = chosen_revolutions(surface, options, clock, friction)
     revolutions = float(options.revolutions) if chosen is None else chosen.choice
@@ -75,7 +86,10 @@ def _friction(part: Part, options: Options) -> float | Friction:
     if isinstance(options.friction, float):
         return options.friction
     scalars = part.source.scalars
-    return 0.0 if scalars is None else friction_from(part.surface, scalars.points, scalars.values)
+    if scalars is None:
+        return 0.0
+    scalars = on_wound_skin(scalars, part.chart.annulus)
+    return friction_from(part.surface, scalars.points, scalars.values)
 
 
 def chosen_revolutions(

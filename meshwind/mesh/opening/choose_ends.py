@@ -24,12 +24,14 @@ _SAME_HEIGHT = 0.05
 class End:
     """One end: its centre (3,), and the loop of its rim or its lip; without both, the centre is a pole.
 
-    diagonal: of the part, which determines how many digits of a position are significant.
+    outward: the direction out of the part along its axis (3,), if the end was found along one; diagonal: of the part,
+    which determines how many digits of a position are significant.
     """
 
     centre: Floats
     loop: Ints | None = None
     lip: Lip | None = None
+    outward: Floats | None = None
     diagonal: float = 1.0
 
     @property
@@ -194,7 +196,7 @@ def _one_rim(vertices: Floats, faces: Ints, loop: Ints, request: EndsRequest) ->
 
 def _closed_end(vertices: Floats, faces: Ints, direction: Floats) -> End:
     centre, lip = extreme(vertices, faces, direction)
-    return End(centre, lip=lip)
+    return End(centre, lip=lip, outward=direction)
 
 
 def _two_poles(vertices: Floats, faces: Ints, request: EndsRequest) -> tuple[list[End], str]:

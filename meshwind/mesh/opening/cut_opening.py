@@ -39,7 +39,7 @@ def cut_opening(
     near = _around(surface, pole, radius)
     fine = _refined(replace(surface, faces=surface.faces[near]), pole, radius)
     rim = np.unique(boundary(fine.faces))  # a disc that reaches the end of the neighbourhood is not complete
-    split, side = _split(fine, lambda points: np.linalg.norm(points - pole, axis=1) - radius)
+    split, side = split_where(fine, lambda points: np.linalg.norm(points - pole, axis=1) - radius)
     removed = _disc(split, side, pole)
     if removed is None:
         return None
@@ -49,7 +49,7 @@ def cut_opening(
     clearance = float(np.linalg.norm(nearest(split.vertices, disc, other) - other))
     if clearance < _CLEARANCE * radius or pinched(kept, disc):
         return None
-    return _without_unused(replace(split, faces=np.concatenate([surface.faces[~near], kept])))
+    return without_unused(replace(split, faces=np.concatenate([surface.faces[~near], kept])))
 
 
 def pinched(faces: Ints, among: Ints | None = None) -> bool:
@@ -79,11 +79,11 @@ def cut_at_lip(surface: CurvedFacets, lip: Lip) -> CurvedFacets | None:
 
     Returns None if the new rim is not one loop, because the lip is ragged.
     """
-    split, side = _split(surface, lambda points: points @ lip.direction - lip.height)
+    split, side = split_where(surface, lambda points: points @ lip.direction - lip.height)
     below = split.faces[(side[split.faces] <= 0).all(axis=1)]
     label = patches(below)
     largest = np.argmax(np.bincount(label, areas(split.vertices, below)))
-    kept = _without_unused(replace(split, faces=below[label == largest]))
+    kept = without_unused(replace(split, faces=below[label == largest]))
     if pinched(kept.faces):
         return None
     return kept if len(loops(kept.faces)) == 1 + len(loops(surface.faces)) else None
@@ -102,9 +102,13 @@ def _refined(surface: CurvedFacets, pole: Floats, radius: float) -> CurvedFacets
     return surface
 
 
-def _split(surface: CurvedFacets, field: _Field) -> tuple[CurvedFacets, Ints]:
-    """Split the surface where the field is 0; also returns the sign (n,) of the field at each vertex."""
+def split_where(surface: CurvedFacets, field: _Field, above: Bools | None = None) -> tuple[CurvedFacets, Ints]:
+    """Split the surface where the field is 0; also returns the sign (n,) of the field at each vertex.
+
+    above: mask (n,) of the vertices that may count as above 0, where not all do.
+    """
     side = np.sign(field(surface.vertices)).astype(np.int64)
+    side = side if above is None else np.where(above, side, -1)
     cut = crossing(surface.faces, side)
     t = _where(surface, cut, side, field)
     points = edge_points(surface, cut, t)
@@ -151,7 +155,7 @@ def _disc(surface: CurvedFacets, side: Ints, pole: Floats) -> Bools | None:
     return removed
 
 
-def _without_unused(surface: CurvedFacets) -> CurvedFacets:
+def without_unused(surface: CurvedFacets) -> CurvedFacets:
     """Surface without unused vertices."""
     keep, renumber = compact(surface.faces, len(surface.vertices))
     return CurvedFacets(surface.vertices[keep], renumber[surface.faces], surface.trusted[keep],

@@ -5,11 +5,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
+from meshwind.core.vectors import unit
 from meshwind.mesh.geometry.areas_and_volumes import areas, edge_lengths
 from meshwind.mesh.opening.choose_ends import End
 from meshwind.mesh.opening.curved_facets import CurvedFacets
 from meshwind.mesh.opening.cut_opening import cut_at_lip, cut_opening
+from meshwind.mesh.opening.plane import Plane, new_rim, opened_by_plane
 from meshwind.mesh.opening.poles import Lip
 
 _MAX_AREA = 1.0 / 3.0
@@ -24,6 +27,25 @@ _SHRINK = 0.8
 """Factor by which a default radius shrinks until the opening fits."""
 _PRECISION = 1.02
 """Ratio to which the largest radius that fits is determined, for the message."""
+_UNEVEN = 0.3
+"""Unevenness of a level line's rim above which a plane is tried; samples: 0 to 0.25, but 0.35 to 0.55 on blades."""
+_FLATTER = 0.5
+"""The plane is taken if its rim's unevenness is less than this times that of the level line's."""
+
+
+@dataclass(frozen=True)
+class Opening:
+    """An opening that was cut at a pole: its radius and how, "level" or "plane"; for a plane, that of its rim's area.
+
+    why: reason why "auto" took the plane, in a sentence; empty if it took a level line, or if a way was requested.
+    """
+
+    radius: float
+    by: str
+    why: str = ""
+
+    def __str__(self) -> str:
+        return f"radius {self.radius:.4g}{' by a plane' if self.by == 'plane' else ''}"
 
 
 @dataclass(frozen=True)
@@ -35,10 +57,26 @@ class _Limits:
     max_area: float
 
 
+@dataclass(frozen=True)
+class _Pole:
+    """A pole to be opened: its end and the other one, the requested radius and way, and the name of the part."""
+
+    end: End
+    other: End
+    given: float | None
+    by: str
+    name: str
+
+    @property
+    def outward(self) -> Floats:
+        """Direction out of the part along its axis (3,), or along the line between the ends if it has none."""
+        return unit(self.end.centre - self.other.centre) if self.end.outward is None else self.end.outward
+
+
 def open_ends(
-    surface: CurvedFacets, pair: list[End], given: float | None, name: str
-) -> tuple[CurvedFacets, list[float]]:
-    """Cut the surface at each lip and open each pole; also returns the radii of the openings.
+    surface: CurvedFacets, pair: list[End], given: float | None, by: str, name: str
+) -> tuple[CurvedFacets, list[Opening]]:
+    """Cut the surface at each lip and open each pole; also returns the openings.
 
     Raises BadInputError if an opening of the given radius, or any opening, does not fit.
     """
@@ -46,12 +84,12 @@ def open_ends(
         if end.lip is not None:
             surface = _at_lip(surface, end, end.lip, name)
     limits = _limits(surface, pair, name)
-    radii = []
+    openings = []
     for end, other in zip(pair, pair[::-1], strict=True):
         if end.is_pole:
-            surface, radius = _open(surface, (end, other), given, limits, name)
-            radii.append(radius)
-    return surface, radii
+            surface, opening = _open(surface, _Pole(end, other, given, by, name), limits)
+            openings.append(opening)
+    return surface, openings
 
 
 def _at_lip(surface: CurvedFacets, end: End, lip: Lip, name: str) -> CurvedFacets:
@@ -80,15 +118,44 @@ def _limits(surface: CurvedFacets, pair: list[End], name: str) -> _Limits:
     return _Limits(default, _LEAST * mean, _MAX_AREA * area)
 
 
-def _open(
-    surface: CurvedFacets, pair: tuple[End, End], given: float | None, limits: _Limits, name: str
+def _open(surface: CurvedFacets, pole: _Pole, limits: _Limits) -> tuple[CurvedFacets, Opening]:
+    """Cut one opening; "auto" takes the plane if its rim is far more even than that of the level line."""
+    plane = Plane(pole.end.centre, pole.outward, pole.other.centre, limits.max_area)
+
+    def by_plane(radius: float) -> CurvedFacets | None:
+        return opened_by_plane(surface, plane, radius)
+
+    def by_level_line(radius: float) -> CurvedFacets | None:
+        return cut_opening(surface, pole.end.centre, pole.other.centre, radius, limits.max_area)
+
+    if pole.by == "plane":
+        cut, _ = _fitting(surface, pole, limits, by_plane)
+        return cut, Opening(new_rim(surface, cut).radius, "plane")
+    cut, radius = _fitting(surface, pole, limits, by_level_line)
+    if pole.by == "auto":
+        uneven = new_rim(surface, cut).unevenness(pole.end.centre, pole.outward)
+        flat = by_plane(radius) if uneven > _UNEVEN else None
+        if flat is not None:
+            rim = new_rim(surface, flat)
+            less = rim.unevenness(pole.end.centre, pole.outward)
+            if less < _FLATTER * uneven:
+                return flat, Opening(rim.radius, "plane", _reason(pole.end, uneven, less))
+    return cut, Opening(radius, "level")
+
+
+def _reason(end: End, level: float, plane: float) -> str:
+    """Why a plane was taken, from the unevenness of both rims."""
+    return (
+        f"the end at {end.position} is opened by a plane, whose rim is uneven by {plane:.2g} of its radius; that of a "
+        f"level line is by {level:.2g} (--opening-by level keeps it)"
+    )
+
+
+def _fitting(
+    surface: CurvedFacets, pole: _Pole, limits: _Limits, attempt: Callable[[float], CurvedFacets | None]
 ) -> tuple[CurvedFacets, float]:
-    """Cut the opening at the first of two ends; also returns its radius.  A default radius shrinks until it fits."""
-    end, other = pair
-
-    def attempt(radius: float) -> CurvedFacets | None:
-        return cut_opening(surface, end.centre, other.centre, radius, limits.max_area)
-
+    """Cut an opening of the given radius, or of the default one, which shrinks until it fits; also gives the radius."""
+    given = pole.given
     radius = limits.default if given is None else given
     result = attempt(radius) if radius >= limits.least else None
     while result is None and given is None and radius * _SHRINK >= limits.least:
@@ -98,11 +165,11 @@ def _open(
         return result, radius
     if attempt(limits.least) is None:
         remedy = "cut the part open there, or choose other ends: x, y, z or two points"
-        raise BadInputError(f"{name}: no opening fits at {end.position}; {remedy}")
+        raise BadInputError(f"{pole.name}: no opening fits at {pole.end.position}; {remedy}")
     largest = _largest(attempt, limits.least, float(np.linalg.norm(np.ptp(surface.vertices, axis=0))))
     size = "small" if radius < limits.least else "large"
     allowed = f"give a radius between {limits.least:.3g} and {largest:.3g}"
-    raise BadInputError(f"{name}: opening {radius:g} is too {size} at {end.position}; {allowed}")
+    raise BadInputError(f"{pole.name}: opening {radius:g} is too {size} at {pole.end.position}; {allowed}")
 
 
 def _largest(attempt: Callable[[float], CurvedFacets | None], good: float, bad: float) -> float:

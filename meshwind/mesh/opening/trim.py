@@ -1,29 +1,40 @@
 """Trimming of a mesh to an annulus: ends are chosen, other rims filled, and poles opened."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.defaults import OPENED_BY
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.geometry.areas_and_volumes import areas, volume
+from meshwind.mesh.geometry.fill_holes import fill_defects, fill_hole
 from meshwind.mesh.geometry.mesh import Annulus, Mesh
 from meshwind.mesh.geometry.topology import euler, loops, patches
 from meshwind.mesh.opening.choose_ends import End, EndsRequest, choose_ends, parse_ends, rims_by_number
 from meshwind.mesh.opening.curved_facets import CurvedFacets, curved_facets, split_chords
 from meshwind.mesh.opening.cut_opening import pinched
-from meshwind.mesh.opening.fill_holes import fill_defects, fill_hole
-from meshwind.mesh.opening.opening_radius import open_ends
+from meshwind.mesh.opening.opening_radius import Opening, open_ends
+from meshwind.mesh.opening.straight import straightened
+from meshwind.mesh.opening.walled import in_words, wall_of
 
 _FLAT = 1e-6
 """Largest volume over area^(3/2) of a flat part: 0.094 for a ball, 6e-3 for a rod a thousand times as long as thick."""
 
 
-def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Annulus:
+def annulus(
+    mesh: Mesh, ends: str = "auto", opening: float | None = None, side: str = "outer", opening_by: str = "auto"
+) -> Annulus:
     """Open a mesh at its two ends.
 
     With ends="auto" the ends are the two largest open rims, the longer one first.  Where there is only one, it comes
     first, and the pole across from it second.  A closed part gets two poles on its axis, the fuller end of the part
     first.  With an axis the start is the end with the lower coordinate, with two points it is the first one.  An end
     that is hollow like a cup is cut at its lip, and its lining is dropped.
+
+    A part with a wall, such as a pipe or a bottle, is split into its outer and its inner skin, and one of them is
+    opened.  Between the skins lie the rims: all that turns by more than 30 degrees from a skin towards the other one,
+    such as the faces of the ends, chamfers of 45 degrees, and the far part of a fillet.
 
     Parameters
     ----------
@@ -35,6 +46,15 @@ def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Ann
     opening : float, optional
         Radius of the hole that is cut about each pole, in the mesh's units.  By default 0.4 of the part's mean radius.
         Open rims are ends as they are.
+    side : {"outer", "inner"}, default "outer"
+        Skin of a part with a wall.  The inner one is oriented as the surface of a mandrel that fills the part: its
+        normals point away from the axis, into the wall, so that fibres press towards the axis.
+    opening_by : {"auto", "level", "plane"}, default "auto"
+        How a pole is opened: along a level line of the distance to the pole, or by a plane square to the part's axis.
+        A level line bites into the flanks of a blade.  "auto" takes the plane if the level line's rim is uneven by
+        more than 0.3 of its radius and the plane's by less than half of that.  The unevenness of a rim is its root
+        mean square distance from a plane, together with the distance of its centre from the axis.  A plane's opening
+        is wider than `opening` if the end is flat.
 
     Returns
     -------
@@ -44,7 +64,7 @@ def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Ann
     Raises
     ------
     BadInputError
-        If the part is flat or has handles, if an end cannot be opened, or if `ends` or `opening` cannot be used.
+        If the part is flat or has handles, if an end cannot be opened, or if an argument cannot be used.
 
     Examples
     --------
@@ -57,10 +77,13 @@ def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Ann
         raise BadInputError(f"mesh is of type {type(mesh).__name__}: give a Mesh, as read('part.stl') returns it")
     request = parse_ends(ends)
     _check_opening(opening)
-    rims = rims_by_number(mesh.vertices, loops(mesh.faces))
-    _check_part(mesh, rims)
+    _check_opening_by(opening_by)
+    _check_part(mesh)
+    wall = wall_of(mesh, side)
+    part = mesh if wall is None else wall.skin
+    rims = rims_by_number(part.vertices, loops(part.faces))
     requested = _requested(rims, request, mesh.name)
-    vertices, faces, others, notes = fill_defects(mesh, rims, requested)
+    vertices, faces, others, notes = fill_defects(part, rims, requested)
     pair, words = choose_ends(vertices, faces, requested or others, request)
     chosen = {int(end.loop[0]) for end in pair if end.loop is not None}
     spare = [loop for loop in others if int(loop[0]) not in chosen]
@@ -68,9 +91,15 @@ def annulus(mesh: Mesh, ends: str = "auto", opening: float | None = None) -> Ann
         notes.append(f"filled {len(spare)} other open {'rim' if len(spare) == 1 else 'rims'}")
     for loop in spare:
         vertices, faces = fill_hole(vertices, faces, loop)
-    trusted = np.arange(len(vertices)) < len(mesh.vertices)
-    surface, radii = open_ends(curved_facets(vertices, faces, trusted), pair, opening, mesh.name)
-    return _assembled(mesh, split_chords(surface), pair, [_ends_in_words(words, pair, radii, opening), *notes])
+    surface = curved_facets(vertices, faces, np.arange(len(vertices)) < len(part.vertices))
+    if wall is not None:
+        words = words.replace("open rims", f"rims of the {side} skin").replace("open rim", f"rim of the {side} skin")
+        for loop in [end.loop for end in pair if end.loop is not None]:
+            surface = straightened(surface, vertices[loop])
+    surface, openings = open_ends(surface, pair, opening, opening_by, mesh.name)
+    found = _assembled(mesh, split_chords(surface), pair, [_ends_in_words(words, pair, openings, opening), *notes])
+    told = (*(in_words(wall) for wall in [wall] if wall), *(each.why for each in openings if each.why))
+    return replace(found, notes=told, wall=wall)
 
 
 def _check_opening(opening: float | None) -> None:
@@ -79,20 +108,19 @@ def _check_opening(opening: float | None) -> None:
         raise BadInputError(f"opening {opening}: give the radius of the hole at a pole, a number above 0")
 
 
-def _check_part(mesh: Mesh, rims: list[Ints]) -> None:
-    """Refuse a surface without an inside or with handles."""
+def _check_opening_by(by: str) -> None:
+    if by not in OPENED_BY:
+        raise BadInputError(f"opening_by is {by!r}; give auto, level or plane")
+
+
+def _check_part(mesh: Mesh) -> None:
+    """Refuse a surface without an inside."""
     area = float(areas(mesh.vertices, mesh.faces).sum())
     if abs(volume(mesh.vertices, mesh.faces)) < _FLAT * area**1.5:
         count = f"{len(mesh.faces)} {'triangle' if len(mesh.faces) == 1 else 'triangles'}"
         raise BadInputError(
             f"{mesh.name}: is flat ({count} without an inside): meshwind winds parts like a tube or a closed blob;"
             " give the whole surface of the part"
-        )
-    genus = (2 - len(rims) - euler(mesh.faces)) // 2
-    if genus != 0:
-        raise BadInputError(
-            f"{mesh.name}: genus {genus} (a handle or a hole right through): meshwind winds parts like a tube or a"
-            " closed blob; cut the part open or fill the hole"
         )
 
 
@@ -129,13 +157,13 @@ def _offset(rim: Floats, pair: list[End]) -> float:
     return near[0] - near[1]
 
 
-def _ends_in_words(words: str, pair: list[End], radii: list[float], opening: float | None) -> str:
+def _ends_in_words(words: str, pair: list[End], openings: list[Opening], opening: float | None) -> str:
     """How the ends were chosen, in a sentence."""
     positions = " and ".join(end.position for end in pair)
     if any(end.lip is not None for end in pair):
         words += ", the lip where one is hollow"
-    if not radii:
+    if not openings:
         unused = "" if opening is None else ", no opening cut as both are open"
         return f"{words}, at {positions}{unused}"
-    sizes = " and ".join(dict.fromkeys(f"{radius:.4g}" for radius in radii))
-    return f"{words}, at {positions}, opened to radius {sizes}"
+    sizes = " and ".join(dict.fromkeys(map(str, openings))).replace(" and radius ", " and ")
+    return f"{words}, at {positions}, opened to {sizes}"

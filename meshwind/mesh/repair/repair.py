@@ -13,6 +13,7 @@ from meshwind.mesh.repair.overlaps import overlaps
 from meshwind.mesh.repair.pieces import Pieces
 from meshwind.mesh.repair.slivers import without_slivers
 from meshwind.mesh.repair.weld import weld, without_collapsed, without_duplicates
+from meshwind.mesh.walls.handles import without_small_handles
 
 _LEAST_EXTENT = 1e-8
 """Least extent over the distance from the origin: below it, coordinates have lost half of their digits."""
@@ -57,6 +58,7 @@ def chosen_piece(pieces: Pieces, notes: list[str], component: int, name: str, re
     if volume(points, triangles) < 0:
         triangles = triangles[:, ::-1]
         notes.append("turned all faces outward")
+    points, triangles = _close_handles(points, triangles, notes)
     notes += overlaps(points, triangles)
     return Mesh(frozen(points), frozen(triangles), name, tuple(notes), *read)
 
@@ -144,6 +146,17 @@ def _minority(before: Ints, after: Ints) -> int:
     label = patches(after)
     size, flipped = np.bincount(label), np.bincount(label, turned)
     return int(np.minimum(flipped, size - flipped).sum())
+
+
+def _close_handles(vertices: Floats, faces: Ints, notes: list[str]) -> tuple[Floats, Ints]:
+    """Close the small handles that a scan leaves."""
+    points, triangles, small = without_small_handles(vertices, faces)
+    if small:
+        widest = max(small, key=lambda handle: handle.girth)
+        where = ", ".join(f"{x:.4g}" for x in widest.centre)
+        noun = "handle" if len(small) == 1 else "handles"
+        notes.append(f"closed {len(small)} small {noun}, up to {widest.girth:.3g} round, at ({where})")
+    return points, triangles
 
 
 def _remove_slivers(vertices: Floats, faces: Ints, notes: list[str], name: str) -> Ints:
