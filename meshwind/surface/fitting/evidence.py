@@ -122,25 +122,21 @@ def bare(samples: Samples, spans: tuple[int, int]) -> bool:
     return bool(area[across > ACROSS].sum() > BARE * area.sum())
 
 
-def straddling(surface: Surface, samples: Samples, points: FacetPoints, near: Neighbourhoods) -> Floats:
-    """How far points on facets (k,) would lie off the part where facets straddle it, were `surface` the part.
+def straddling(heights: Floats, points: FacetPoints, near: Neighbourhoods) -> Floats:
+    """How far points on facets (k,) would lie off the part where facets straddle it, were a surface the part.
 
-    The surface's height over its own triangles, less the mean about each of them.
+    heights (k,) are those of the surface over its own triangles; the mean about each triangle is taken off.
     """
-    chord = points.between(surface.points(samples.uv))
-    uv = points.places(samples.uv)
-    height = ((surface.points(uv) - chord) * surface.normals(uv)).sum(axis=1)
-    level = near.facet_mean(points.per_facet(height, len(samples.facets.faces)))
-    return np.asarray(height - level[points.facet])
+    level = near.facet_mean(points.per_facet(heights, len(near.samples.facets.faces)))
+    return np.asarray(heights - level[points.facet])
 
 
-def sagitta(surface: Surface, samples: Samples, points: FacetPoints, near: Neighbourhoods) -> float:
-    """Rms of `straddling`, away from creases."""
+def rms_away_from_creases(values: Floats, points: FacetPoints, samples: Samples) -> float:
+    """Rms of values (k,) at points on facets none of whose corners lies at a crease; 0 if there are none."""
     smooth = _smooth(samples)[points.facet]
     if not smooth.any():
         return 0.0
-    off = straddling(surface, samples, points, near)
-    return float(np.sqrt(np.average(off[smooth] ** 2, weights=points.area[smooth])))
+    return float(np.sqrt(np.average(values[smooth] ** 2, weights=points.area[smooth])))
 
 
 def _smooth(samples: Samples) -> Bools:

@@ -2,11 +2,12 @@
 
 The facets of a decimated mesh straddle the part; a net that follows them, finer than the vertices lie, is as true as
 they are.  Where the vertices lie on the part but too far apart to hold a net, curved triangles through them are truer
-than the flat ones; a smooth surface tells, for it comes several times closer to those that are right.  The normal
-equations are those of an integral and are solved in linear time.
+than the flat ones: a smooth surface comes several times closer to those that are right.  The normal equations are those
+of an integral and are solved in linear time.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -15,57 +16,141 @@ from meshwind.core.threads import parallel_for
 from meshwind.surface.evaluate import DEGREE
 from meshwind.surface.fitting import normal_equations
 from meshwind.surface.fitting.conjugate_gradients import solve_iteratively
-from meshwind.surface.fitting.evidence import Neighbourhoods, sagitta
-from meshwind.surface.fitting.quadrature import FacetPoints, facet_points
+from meshwind.surface.fitting.evidence import Neighbourhoods, rms_away_from_creases, straddling
+from meshwind.surface.fitting.quadrature import FacetPoints, facet_points, heights
+from meshwind.surface.fitting.resample import resampled
 from meshwind.surface.fitting.samples import CLOSE, Samples
 from meshwind.surface.foot import near_feet
 from meshwind.surface.surface import Surface
 
 SMOOTHING = 1e-4
 """Bending energy against data at the net's own wave length: it holds what the facets leave free, and no more."""
-SHARE = 0.3
-"""A net that leaves no more of the facets' mean distances than this share of their own error is fine enough."""
+SHARE, ROUGH_SHARE = 0.3, 0.36
+"""A net that leaves no more of the facets' mean distances than this share of their own error is fine enough; it is
+worth a correction of the points, which lowers what is left by up to a fifth, below the second share."""
 ENOUGH = 4e-5
 """Rms distance over the part's size that is left of no facets' fit: no mesh shows that its part is known better."""
 LEVEL, IDLE_NETS = 0.97, 3
 """A net that lowers the noise found by less than this resolves nothing more; so many in a row end the refinement."""
 MOST_PER_VERTEX, MOST_CURVED, MOST = 12.0, 1.0, 150_000
 """Most control points per vertex, on flat facets and on curved ones, which say no more than their corners; in all."""
-FEWEST = 1e-2
-"""The coarsest net that is tried, over the finest: coarser ones cost as much of the facets' time and tell nothing."""
+FEWEST = 2e-2
+"""The coarsest net that is tried, over the finest: coarser ones cost as much of the facets' time and show nothing."""
 COMPARED, CURVED = 0.6, 0.4
 """Control points per vertex at which curved triangles and flat ones are compared; and how much less of the curved
 than of the flat ones a net must leave there.  On sampled parts it leaves 0.15 to 0.27, on decimated ones from 0.59."""
 RESOLVING = 20
 """Fewest spans around of a net that is compared: coarser ones leave more of a circle than its facets do."""
-ROUNDS = 2
-"""Refits of a net, its points moved to their feet between them."""
-ROUGHLY = 1e-3
-"""Tolerance of the solutions for random right sides, of which only a mean is wanted."""
-PROBES = 3
-"""Random right sides that measure how much of the vertices' noise a net leaves (Hutchinson 1990)."""
 
 
 @dataclass(frozen=True)
 class FacetFit:
-    """One net's fit to the facets, with the samples at their feet on it.
+    """One net's fit to the facets.
 
-    curved: whether to curved triangles; left: rms distance of the facets from the surface; means: that of the facets'
-    mean distances; passed: the share of the amplitude of a noise of the vertices that the net does not follow.
+    points, data (k, 3): points on the flat facets, and those, on flat or curved ones, that are fitted; uv (k, 2): where
+    each of them is on the surface; noise (n,): a random noise of the vertices, and followed (k,): what the net follows
+    of it.
     """
 
     surface: Surface
     samples: Samples
     points: FacetPoints
     curved: bool
-    left: float
-    means: float
-    passed: float
+    data: Floats
+    uv: Floats
+    followed: Floats
+    noise: Floats
+
+    @cached_property
+    def _heights(self) -> tuple[Floats, Floats]:
+        chord = self.points.between(self.surface.points(self.samples.uv))
+        return heights(self.surface, self.uv, self.data, chord)
 
     @property
-    def noise(self) -> float:
+    def off(self) -> Floats:
+        """Heights (k,) of the data over the surface."""
+        return self._heights[0]
+
+    @property
+    def heights(self) -> Floats:
+        """Heights (k,) of the surface over its own triangles between the feet of the vertices."""
+        return self._heights[1]
+
+    def straddling(self, near: Neighbourhoods) -> Floats:
+        """How far the points (k,) would lie off the part where facets straddle it, were the surface the part."""
+        return straddling(self.heights, self.points, near)
+
+    def sagitta(self, near: Neighbourhoods) -> float:
+        """Rms of `straddling`, away from creases."""
+        return rms_away_from_creases(self.straddling(near), self.points, self.samples)
+
+    @property
+    def left(self) -> float:
+        """Rms distance of the facets from the surface."""
+        return self._rms(self.off)
+
+    @property
+    def means(self) -> float:
+        """Rms of the facets' mean distances from the surface."""
+        means = self.points.per_facet(self.off, len(self.samples.facets.faces))
+        return self._rms(means[self.points.facet])
+
+    @cached_property
+    def passed(self) -> float:
+        """The share of the amplitude of a noise of the vertices that the net does not follow."""
+        return self._rms(self.noise - self.followed) / self._rms(self.noise)
+
+    @property
+    def vertex_noise(self) -> float:
         """Noise of the vertices, were all that is left of the facets noise."""
         return self.left / max(self.passed, 1e-3)
+
+    def _rms(self, values: Floats) -> float:
+        return float(np.sqrt(np.average(values**2, weights=self.points.area)))
+
+
+@dataclass(frozen=True)
+class FacetFitter:
+    """Fits of nets to the facets of samples; lengths: of the part around and from end to end."""
+
+    samples: Samples
+    lengths: tuple[float, float]
+
+    @cached_property
+    def _noise(self) -> Floats:
+        return np.random.default_rng(0).standard_normal((len(self.samples.points), 1))
+
+    def fit(self, spans: tuple[int, int], before: FacetFit | None = None, *, curved: bool = False) -> FacetFit:
+        """Fit one net, the points where the chart has them; before: a coarser fit to start from."""
+        samples = self.samples
+        points = facet_points(samples, spans)
+        data = points.curved(samples) if curved else points.between(samples.points)
+        uv, noise = points.places(samples.uv), points.between(self._noise)
+        net = self._solve(spans, points, uv, np.concatenate([data, noise], axis=1), before and before.surface)
+        answer = Surface(np.ascontiguousarray(net[..., 3:].repeat(3, axis=2))).points(uv)[:, 0]
+        surface = Surface(np.ascontiguousarray(net[..., :3]))
+        return FacetFit(surface, samples, points, curved, data, uv, answer, noise[:, 0])
+
+    def corrected(self, fitted: FacetFit) -> FacetFit:
+        """The same net fitted again with the points at their feet on it."""
+        uv, distance = fitted.uv.copy(), np.empty(len(fitted.uv))
+        parallel_for(near_feet, len(uv), 6000, fitted.surface.net, fitted.data, CLOSE, uv, distance)
+        surface = Surface(self._solve(fitted.surface.spans, fitted.points, uv, fitted.data, fitted.surface))
+        parallel_for(near_feet, len(uv), 6000, surface.net, fitted.data, CLOSE, uv, distance)
+        samples, _ = fitted.samples.corrected(surface)
+        return replace(fitted, surface=surface, samples=samples, uv=uv)
+
+    def _solve(
+        self, spans: tuple[int, int], points: FacetPoints, uv: Floats, values: Floats, before: Surface | None
+    ) -> Floats:
+        weight = points.area / points.area.sum()
+        stencil = normal_equations.bending(spans, self.lengths, SMOOTHING / (self.lengths[0] * self.lengths[1]))
+        right = np.zeros((spans[0], spans[1] + DEGREE, values.shape[1]))
+        normal_equations.accumulate(uv, values, weight, *spans, stencil, right)
+        start = np.zeros_like(right)
+        if before is not None:
+            start[..., :3] = resampled(before, spans)
+        return solve_iteratively(stencil, right, start)
 
 
 def fit_facets(
@@ -82,20 +167,24 @@ def fit_facets(
     flat: whether the facets are known to be truer than curved triangles through their corners.  Refinement also ends
     where it no longer lowers the noise that the net leaves: then all but noise is resolved.
     """
-    curved = not flat and _curves(samples, nets, lengths)
-    first, *finer = _within(nets, (MOST_CURVED if curved else MOST_PER_VERTEX) * len(samples.points))
-    fitted = _fit(samples, first, lengths, curved)
-    noise, idle = fitted.noise, 0
+    fitter, count = FacetFitter(samples, lengths), len(samples.points)
+    curved = not flat and _curves(fitter, nets)
+    first, *finer = _within(nets, (MOST_CURVED if curved else MOST_PER_VERTEX) * count)
     size = float(np.linalg.norm(np.ptp(samples.points, axis=0)))
     enough = tolerance if curved else max(tolerance, ENOUGH * size)
+    fitted = fitter.fit(first, curved=curved)
+    noise, idle = fitted.vertex_noise, 0
     for spans in finer:
-        own = 0.0 if curved else sagitta(fitted.surface, fitted.samples, fitted.points, near)
-        if fitted.means <= SHARE * own or fitted.left <= enough or idle >= IDLE_NETS:
+        if fitted.left <= enough or idle >= IDLE_NETS:
             break
-        fitted = _fit(samples, spans, lengths, curved)
-        idle = idle + 1 if fitted.noise > LEVEL * noise else 0
-        noise = min(noise, fitted.noise)
-    return fitted
+        if not curved and fitted.means <= ROUGH_SHARE * fitted.sagitta(near):
+            corrected = fitter.corrected(fitted)
+            if corrected.means <= SHARE * corrected.sagitta(near):
+                return corrected
+        fitted = fitter.fit(spans, fitted, curved=curved)
+        idle = idle + 1 if fitted.vertex_noise > LEVEL * noise else 0
+        noise = min(noise, fitted.vertex_noise)
+    return fitter.corrected(fitted)
 
 
 def _within(nets: list[tuple[int, int]], most: float) -> list[tuple[int, int]]:
@@ -104,44 +193,13 @@ def _within(nets: list[tuple[int, int]], most: float) -> list[tuple[int, int]]:
     return [net for net in nets if FEWEST * most <= _size(net) <= most] or [nets[0]]
 
 
-def _curves(samples: Samples, nets: list[tuple[int, int]], lengths: tuple[float, float]) -> bool:
+def _curves(fitter: FacetFitter, nets: list[tuple[int, int]]) -> bool:
     """Whether a smooth surface comes much closer to curved triangles through the vertices than to the flat ones."""
-    fine = [net for net in nets if net[0] >= RESOLVING]
-    spans = min(fine, key=lambda net: abs(np.log(_size(net) / (COMPARED * len(samples.points)))))
-    flat, bent = (_fit(samples, spans, lengths, curved) for curved in (False, True))
-    return bent.left < CURVED * flat.left
+    fine, count = [net for net in nets if net[0] >= RESOLVING], len(fitter.samples.points)
+    spans = min(fine, key=lambda net: abs(np.log(_size(net) / (COMPARED * count))))
+    flat = fitter.fit(spans)
+    return fitter.fit(spans, flat, curved=True).left < CURVED * flat.left
 
 
 def _size(spans: tuple[int, int]) -> int:
     return spans[0] * (spans[1] + DEGREE)
-
-
-def _fit(samples: Samples, spans: tuple[int, int], lengths: tuple[float, float], curved: bool) -> FacetFit:
-    nu, nv = spans[0], spans[1] + DEGREE
-    points = facet_points(samples, spans)
-    data = points.curved(samples) if curved else points.between(samples.points)
-    uv, weight = points.places(samples.uv), points.area / points.area.sum()
-    bending = normal_equations.bending(spans, lengths, SMOOTHING / (lengths[0] * lengths[1]))
-    noise = points.between(np.random.default_rng(0).standard_normal((len(samples.points), PROBES)))
-    distance, net = np.empty(len(uv)), None
-    for k in range(ROUNDS):
-        stencil, right = bending.copy(), np.zeros((nu, nv, 3))
-        normal_equations.accumulate(uv, data, weight, *spans, stencil, right)
-        if k == 0:  # how much of a noise a net follows hardly depends on where the feet are
-            probe = np.zeros((nu, nv, PROBES))
-            normal_equations.accumulate(uv, noise, weight, *spans, np.zeros_like(stencil), probe)
-            passed = _passed(noise, Surface(solve_iteratively(stencil, probe, tolerance=ROUGHLY)).points(uv), weight)
-        net = solve_iteratively(stencil, right, net)
-        surface = Surface(net)
-        parallel_for(near_feet, len(uv), 6000, surface.net, data, CLOSE, uv, distance)
-    off = ((data - surface.points(uv)) * surface.normals(uv)).sum(axis=1)
-    means = points.per_facet(off, len(samples.facets.faces))
-    area = np.bincount(points.facet, weight, len(means))
-    moved, _ = samples.corrected(surface)
-    left = float(np.sqrt((weight * distance**2).sum()))
-    return FacetFit(surface, moved, points, curved, left, float(np.sqrt((area * means**2).sum())), passed)
-
-
-def _passed(noise: Floats, answer: Floats, weight: Floats) -> float:
-    """The share of the amplitude of a noise that a fit does not follow."""
-    return float(np.sqrt((weight[:, None] * (noise - answer) ** 2).sum() / (weight[:, None] * noise**2).sum()))

@@ -15,13 +15,14 @@ REACH = 3
 
 @njit(cache=True)
 def accumulate(uv, points, weight, spans_u, spans_v, stencil, right):
-    """Add every weighted sample to the normal matrix's stencil (nu, nv, 4, 7) and right side (nu, nv, 3).
+    """Add every weighted sample (m values each) to the normal matrix's stencil (nu, nv, 4, 7) and right sides (nu, nv, m).
 
     stencil[i, j, r, s] couples control point (i, j) to (i + r, j + s - 3).  The matrix is symmetric: only the half
     ahead is kept, that is s >= 3 where r is 0; the other entries have no meaning.
     """
     # flat and unsigned, so that no index can be negative: a third of the time
     flat, sums, one, row_of = stencil.reshape(-1), right.reshape(-1), np.uint64(1), np.uint64(2 * REACH + 1)
+    sides = points.shape[1]
     for n in range(len(uv)):
         x = (uv[n, 0] - floor(uv[n, 0])) * spans_u
         y = uv[n, 1] * spans_v
@@ -31,8 +32,8 @@ def accumulate(uv, points, weight, spans_u, spans_v, stencil, right):
             first = (i + p) % spans_u * (spans_v + REACH) + j
             for q in range(4):
                 w = weight[n] * b[p] * c[q]
-                at = np.uint64(3 * (first + q))
-                for k in range(3):
+                at = np.uint64(sides * (first + q))
+                for k in range(sides):
                     sums[at] += w * points[n, k]
                     at += one
                 row = np.uint64((first + q) * (REACH + 1) * (2 * REACH + 1) + REACH - q)

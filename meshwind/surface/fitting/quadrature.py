@@ -8,11 +8,16 @@ from numba import njit
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.threads import parallel_for
+from meshwind.surface.evaluate import SU, SV, S, frame
 from meshwind.surface.fitting.infill import spans_across, tangent_normals
 from meshwind.surface.fitting.samples import Samples
+from meshwind.surface.surface import Surface
 
 FEWEST, FINEST = 2, 24
 """Pieces that the edge of a facet is divided into: one more than the spans that it crosses, within these bounds."""
+
+TINY = 1e-300
+"""Keeps a quotient finite where a normal vanishes."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +74,30 @@ def facet_points(samples: Samples, spans: tuple[int, int]) -> FacetPoints:
     area = igl.doublearea(samples.points, faces) / 2
     area = area[facet] / (pieces.astype(np.float64) ** 2)[facet]
     return FacetPoints(facet, faces[facet], share, samples.turns[facet].astype(np.float64), area)
+
+
+def heights(surface: Surface, uv: Floats, above: Floats, below: Floats) -> tuple[Floats, Floats]:
+    """Along the surface's normals at uv (k, 2): heights (k,) of points `above` over it, of it over those `below`."""
+    high, low = np.empty(len(uv)), np.empty(len(uv))
+    parallel_for(_heights, len(uv), 5000, surface.spline, uv, above, below, high, low)
+    return high, low
+
+
+@njit(nogil=True, cache=True)
+def _heights(first, last, spline, uv, above, below, high, low):
+    """Write the heights at places first to last."""
+    at, normal = np.empty((6, 3)), np.empty(3)
+    for n in range(first, last):
+        frame(spline, uv[n, 0], uv[n, 1], at)
+        for k in range(3):
+            i, j = (k + 1) % 3, (k + 2) % 3
+            normal[k] = at[SU, i] * at[SV, j] - at[SU, j] * at[SV, i]
+        size = max(np.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2), TINY)
+        up = down = 0.0
+        for k in range(3):
+            up += (above[n, k] - at[S, k]) * normal[k]
+            down += (at[S, k] - below[n, k]) * normal[k]
+        high[n], low[n] = up / size, down / size
 
 
 @njit(nogil=True, cache=True)

@@ -10,9 +10,9 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from meshwind.core.cast import Floats, frozen
-from meshwind.surface.fitting.evidence import Neighbourhoods, sagitta, straddling
+from meshwind.surface.fitting.evidence import Neighbourhoods, rms_away_from_creases, straddling
 from meshwind.surface.fitting.facet_fit import FacetFit
-from meshwind.surface.fitting.quadrature import facet_points
+from meshwind.surface.fitting.quadrature import facet_points, heights
 from meshwind.surface.fitting.vertex_fit import VertexFit
 
 REACH = 2.0
@@ -45,22 +45,24 @@ def of_vertices(fitted: VertexFit, near: Neighbourhoods) -> Doubt:
     off = ((samples.points - surface.points(samples.uv)) * surface.normals(samples.uv)).sum(axis=1)
     weight = samples.trusted.astype(np.float64) / max(1.0 - fitted.kept, 1e-3)
     table = _table(surface.spans, samples.uv, weight * off**2, samples.trusted.astype(np.float64))
-    own = sagitta(surface, samples, facet_points(samples, surface.spans), near)
+    points = facet_points(samples, surface.spans)
+    uv, chord = points.places(samples.uv), points.between(surface.points(samples.uv))
+    _, height = heights(surface, uv, chord, chord)
+    own = rms_away_from_creases(straddling(height, points, near), points, samples)
     return Doubt("vertices", table, fitted.noise, own)
 
 
 def of_facets(fitted: FacetFit, near: Neighbourhoods) -> Doubt:
     """What the facets leave and how far they straddle the part, where they led."""
     surface, samples, points = fitted.surface, fitted.samples, fitted.points
-    uv = points.places(samples.uv)
-    data = points.curved(samples) if fitted.curved else points.between(samples.points)
-    square = ((data - surface.points(uv)) * surface.normals(uv)).sum(axis=1) ** 2
+    square, own = fitted.off**2, fitted.straddling(near)
     if not fitted.curved:
-        square += straddling(surface, samples, points, near) ** 2
-    table = _table(surface.spans, uv, points.area * square, points.area)
+        square += own**2
+    table = _table(surface.spans, fitted.uv, points.area * square, points.area)
     stands = ((samples.points - surface.points(samples.uv)) * surface.normals(samples.uv)).sum(axis=1)
     noise = float(np.sqrt(np.mean(stands[samples.trusted] ** 2)))
-    return Doubt("curved facets" if fitted.curved else "facets", table, noise, sagitta(surface, samples, points, near))
+    sagitta = rms_away_from_creases(own, points, samples)
+    return Doubt("curved facets" if fitted.curved else "facets", table, noise, sagitta)
 
 
 def _table(spans: tuple[int, int], uv: Floats, square: Floats, weight: Floats) -> Floats:
