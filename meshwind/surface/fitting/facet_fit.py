@@ -126,7 +126,7 @@ class FacetFitter:
         points = facet_points(samples, spans)
         data = points.curved(samples) if curved else points.between(samples.points)
         uv, noise = points.places(samples.uv), points.between(self._noise)
-        net = self._solve(spans, points, uv, np.concatenate([data, noise], axis=1), before and before.surface)
+        net = self._solve(spans, points, uv, np.concatenate([data, noise], axis=1), before.surface if before else None)
         answer = Surface(np.ascontiguousarray(net[..., 3:].repeat(3, axis=2))).points(uv)[:, 0]
         surface = Surface(np.ascontiguousarray(net[..., :3]))
         return FacetFit(surface, samples, points, curved, data, uv, answer, noise[:, 0])

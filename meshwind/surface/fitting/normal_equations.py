@@ -15,7 +15,7 @@ REACH = 3
 
 @njit(cache=True)
 def accumulate(uv, points, weight, spans_u, spans_v, stencil, right):
-    """Add every weighted sample (m values each) to the normal matrix's stencil (nu, nv, 4, 7) and right sides (nu, nv, m).
+    """Add weighted data (k, m) to the normal matrix's stencil (nu, nv, 4, 7) and right sides (nu, nv, m).
 
     stencil[i, j, r, s] couples control point (i, j) to (i + r, j + s - 3).  The matrix is symmetric: only the half
     ahead is kept, that is s >= 3 where r is 0; the other entries have no meaning.
