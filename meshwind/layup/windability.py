@@ -6,9 +6,11 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.vectors import TINY, unit
-from meshwind.surface.evaluate import SU, SV
-from meshwind.surface.forms import Forms, fundamental_forms
+from meshwind.surface.evaluate import SV
+from meshwind.surface.flatness import are_real
+from meshwind.surface.forms import fundamental_forms
 from meshwind.surface.grid import midpoints, parameter_grid
+from meshwind.surface.principal import principal
 from meshwind.surface.surface import Surface
 
 FLAT = 1e-3
@@ -17,8 +19,6 @@ CONVEX, SADDLE, CONCAVE = 1, 0, -1
 """Kinds of points: every tangent direction presses, some do, none does."""
 _CELLS_PER_SPAN, _FEWEST_CELLS, _MOST_CELLS = 2, 16, 200
 """Cells of the grid whose middles are looked at: curvature is linear within a span, and a map needs no more."""
-_ALIKE = 1e-12
-"""Size of a row of II - k1 I, relative, down to which both principal curvatures are the same to round-off."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,8 @@ class Windability:
 def windability(surface: Surface, uv: Floats | None = None) -> Windability:
     """Find where, and in which directions, a taut fibre presses on a surface.
 
-    Only the curvature of the surface counts: a fibre presses where its normal curvature is positive.
+    Only the curvature of the surface counts: a fibre presses where its normal curvature is positive.  A hollow that is
+    shallower than the surface is uncertain, or than its threshold, counts as flat.
 
     Parameters
     ----------
@@ -92,16 +93,24 @@ def windability(surface: Surface, uv: Floats | None = None) -> Windability:
     if uv is None:
         nu, nv = (int(np.clip(_CELLS_PER_SPAN * spans, _FEWEST_CELLS, _MOST_CELLS)) for spans in surface.spans)
         uv = parameter_grid(midpoints(nu), midpoints(nv))
-    return of_frames(surface.frames(uv), FLAT / surface.size)
+    return of_frames(surface.frames(uv), FLAT / surface.size, (surface, uv))
 
 
-def of_frames(frames: Floats, flat: float) -> Windability:
-    """Windability at frames (k, 6, 3); curvatures from -flat to 0, over a length, count as none."""
+def of_frames(frames: Floats, flat: float, place: tuple[Surface, Floats] | None = None) -> Windability:
+    """Windability at frames (k, 6, 3); curvatures from -flat to 0, over a length, count as none.
+
+    place: the surface and the points uv (k, 2) on it, whose hollows count only where they are real (see `flatness`).
+    """
     forms = fundamental_forms(frames)
-    su, sv = frames[:, SU], frames[:, SV]
-    k1, k2 = _principal(forms)
-    direction = _direction(forms, k1, su, sv)
-    kind = np.where(k2 >= -flat, CONVEX, np.where(k1 <= flat, CONCAVE, SADDLE))
+    sv = frames[:, SV]
+    k1, k2, direction, across = principal(frames, forms)
+    hollow, bulging = k2 < -flat, k1 > flat
+    if place is not None:
+        surface, uv = place
+        hollow[hollow] = are_real(surface, uv[hollow], across[hollow], k2[hollow])
+        bulging &= hollow  # elsewhere all directions press
+        bulging[bulging] = are_real(surface, uv[bulging], direction[bulging], k1[bulging])
+    kind = np.where(~hollow, CONVEX, np.where(bulging, SADDLE, CONCAVE))
     # Euler: k1 cos^2 + k2 sin^2 = 0 at the angle whose tangent is sqrt(k1 / -k2)
     reach = np.arctan2(np.sqrt(np.maximum(k1, 0.0)), np.sqrt(np.maximum(-k2, 0.0)))
     reach = np.where(kind == CONVEX, 0.5 * np.pi, np.where(kind == CONCAVE, 0.0, reach))
@@ -111,24 +120,3 @@ def of_frames(frames: Floats, flat: float) -> Windability:
     angle = np.mod(angle + 0.5 * np.pi, np.pi) - 0.5 * np.pi
     weight = forms.area / max(float(forms.area.sum()), TINY)
     return Windability(*map(frozen, (forms.normal, k1, k2, kind, direction, reach, angle, weight)))
-
-
-def _principal(forms: Forms) -> tuple[Floats, Floats]:
-    """Larger and smaller principal curvature (k,)."""
-    (e, f, g), (l, m, n) = forms.first, forms.second
-    safe = np.where(forms.area > 0.0, forms.area * forms.area, np.inf)  # a collapsed point counts as flat
-    mean = 0.5 * (e * n - 2.0 * f * m + g * l) / safe
-    root = np.sqrt(np.maximum(mean * mean - (l * n - m * m) / safe, 0.0))
-    return mean + root, mean - root
-
-
-def _direction(forms: Forms, k1: Floats, su: Floats, sv: Floats) -> Floats:
-    """The unit tangent (k, 3) of the larger principal curvature; along s_u where all directions are alike."""
-    (e, f, g), (l, m, n) = forms.first, forms.second
-    rows = [(m - k1 * f, k1 * e - l), (n - k1 * g, k1 * f - m)]  # either row of (II - k1 I) x = 0
-    either = [a[:, None] * su + b[:, None] * sv for a, b in rows]
-    size = [np.linalg.norm(tangent, axis=1) for tangent in either]
-    best = np.where((size[0] >= size[1])[:, None], either[0], either[1])
-    scale = (np.abs(k1) + TINY) * np.maximum(e, g) * np.sqrt(np.maximum(e, g))
-    alike = np.maximum(*size) <= _ALIKE * scale
-    return unit(np.where(alike[:, None], su, best))

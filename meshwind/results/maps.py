@@ -12,7 +12,7 @@ from meshwind.surface.grid import Grid
 
 def maps(on: Grid, layup: Layup, fit_error: Floats | None = None) -> dict[schema.Field, Floats]:
     """Point data of surface.vtu; fit_error (k,) is the distance of each of the grid's points to the mesh."""
-    press = of_frames(on.frames, FLAT / on.surface.size)
+    press = of_frames(on.frames, FLAT / on.surface.size, (on.surface, on.uv))
     data = {
         schema.UV: on.uv,
         schema.NORMAL: press.normal,
