@@ -24,7 +24,8 @@ STRANGE = [
 KNOWN = {
     "--paths": ["1", "2"], "--revolutions": ["0.25", "1/3"], "--friction": ["0.1", "0"], "--component": ["0"],
     "--ends": ["z", "auto", "0,0,0 0,0,3", "loops 0 1", "loops 0 0", "1,2"], "--opening": ["0.2"],
-    "--tolerance": ["1e-3"], "--worst-fit": ["0.5"], "--units": ["mm"], "--particles": ["33", "3"],
+    "--tolerance": ["1e-3"], "--threshold": ["0", "1e-3"], "--worst-fit": ["0.5"], "--units": ["mm"],
+    "--particles": ["33", "3"],
     "--band-width": ["0.1"], "--linear-density": ["1"], "--pins": ["part.obj", "pins.csv"], "--out": ["out", "a/b"],
 }  # fmt: skip
 ODD = st.one_of(st.sampled_from(STRANGE), st.text(max_size=12), st.floats().map(str), st.integers().map(str))

@@ -19,8 +19,11 @@ from meshwind.results.report import RunFacts, plain, report, write_report
 from meshwind.results.write import write_files
 from meshwind.surface.grid import grid
 
+DOUBTED = bridged()
 LAID = {
-    "bridged": assess(bridged()),
+    "bridged": assess(
+        replace(DOUBTED, surface=replace(DOUBTED.surface, uncertainty=np.full((2, 3), 1e-9), threshold=1e-9))
+    ),
     "plain": assess(helices(8, 1.0, 101, cylinder())),
     "uncrossed": assess(helices(6, 0.0, 31, cylinder())),
 }
@@ -38,6 +41,13 @@ def written(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     out = tmp_path_factory.mktemp(request.param)
     write_files(out, layup, part_of(layup))
     return layup, out
+
+
+def held(layup: Layup, fields: tuple[schema.Field, ...]) -> list[schema.Field]:
+    """Those of a file's fields that a surface with or without uncertainty and threshold gives it."""
+    surface = layup.paths.surface
+    known = {schema.UNCERTAINTY: surface.uncertainty, schema.THRESHOLD: surface.threshold}
+    return [field for field in fields if known.get(field, True) is not None]
 
 
 def test_all_files_are_there(written: tuple[Layup, Path]) -> None:
@@ -58,16 +68,16 @@ def test_fields_are_those_of_the_schema(written: tuple[Layup, Path], file: schem
     """Names in their order, types, and how many values each has."""
     read = pv.read(written[1] / file)
     for fields, data in ((file.point_data, read.point_data), (file.cell_data, read.cell_data)):
-        assert data.keys() == list(fields)
-        for field in fields:
+        assert data.keys() == held(written[0], fields)
+        for field in held(written[0], fields):
             values = data[field]
             assert str(values.dtype) == field.dtype
             assert values.size == field.columns * len(values)
 
 
 def test_the_spline_has_the_arrays_of_the_schema(written: tuple[Layup, Path]) -> None:
-    with np.load(written[1] / schema.SPLINE) as held:
-        assert list(held) == list(schema.SPLINE.point_data)
+    with np.load(written[1] / schema.SPLINE) as arrays:
+        assert list(arrays) == held(written[0], schema.SPLINE.point_data)
 
 
 def test_paths(written: tuple[Layup, Path]) -> None:
@@ -183,7 +193,7 @@ def test_surface_grid_and_maps(written: tuple[Layup, Path]) -> None:
         "fit_error",
         "stretch",
     }
-    assert set(read.point_data) == names
+    assert set(read.point_data) == names | ({"uncertainty"} if surface.uncertainty is not None else set())
     assert all(np.isfinite(values).all() for values in read.point_data.values())
     assert np.allclose(read.points, surface.points(read.point_data["uv"]), atol=1e-14)
     edges = np.stack([block.data, np.roll(block.data, -1, axis=1)], axis=2).reshape(-1, 2)

@@ -4,15 +4,8 @@ from collections.abc import Sequence
 
 from meshwind.appearance.words import quantity, ratio
 from meshwind.core.units import reported_unit
-from meshwind.results.report_types import (
-    Failure,
-    PathsFigures,
-    RedesignFigures,
-    RedesignReport,
-    Report,
-    RoundFigures,
-    SurfaceFigures,
-)
+from meshwind.results.redesign_report_types import RedesignFigures, RedesignReport, RoundFigures
+from meshwind.results.report_types import Failure, PathsFigures, Report, SurfaceFigures
 
 
 def run_lines(report: Report) -> list[str]:

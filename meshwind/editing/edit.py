@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import sparse
 
-from meshwind.core.cast import Floats
+from meshwind.core.cast import Bools, Floats
 from meshwind.core.errors import BadInputError
 from meshwind.editing.demands import press, reach
 from meshwind.editing.edited_mesh import within
@@ -15,16 +15,16 @@ from meshwind.editing.program import ACCURACY
 from meshwind.editing.result import Outcome, Round
 from meshwind.editing.step import Step, energy, step
 from meshwind.path import Paths, solve
-from meshwind.path.lengths import lifted_share
+from meshwind.path.lengths import tolerated
 from meshwind.planning.families import families
 from meshwind.surface.surface import Surface
 from meshwind.workflow.clock import Progress
 from meshwind.workflow.options import Options
 
 FIRM = 0.3
-"""Of the threshold: the rounds go on while a gap is above this, so that there is room for the error of the refit."""
+"""Of a gap that counts as none: the rounds go on while one is above this, which leaves room for the refit's error."""
 LEAST_GAP = 1e-6
-"""Threshold over the part's size where the surface carries no fit error."""
+"""Largest gap, over the part's size, that counts as none on any surface, unless a threshold is given."""
 FAR_SHORT = 0.5
 """Of the largest gap: a surface that is left further below the fibre cannot reach it, and such an edit is not made."""
 MAX_IDLE_ROUNDS = 2
@@ -45,8 +45,8 @@ class Edit:
 
     @property
     def bridged(self) -> float:
-        """Share of the paths' particles whose gap is above the threshold."""
-        return lifted_share(self.paths.gap, self.threshold)
+        """Share of the paths' particles that lie off the surface by more than counts as none."""
+        return float(lifted(self.paths).mean())
 
 
 @dataclass(frozen=True)
@@ -60,6 +60,11 @@ class _State:
     def gap(self) -> float:
         """Largest gap of the paths."""
         return float(self.paths.gap.max())
+
+    @property
+    def bridged(self) -> float:
+        """Share of the particles that lie off the surface by more than counts as none."""
+        return float(lifted(self.paths).mean())
 
 
 @dataclass(frozen=True)
@@ -93,14 +98,14 @@ class _Problem:
 
     def merit(self, state: _State) -> tuple[float, float]:
         """Bridged share and largest gap, in this order: less is better."""
-        return lifted_share(state.paths.gap, self.threshold), state.gap
+        return state.bridged, state.gap
 
     def figures(self, before: _State, after: _State, found: Step) -> Round:
         """The figures of a round."""
         return Round(
             threshold=self.threshold,
-            bridged_before=lifted_share(before.paths.gap, self.threshold),
-            bridged_after=lifted_share(after.paths.gap, self.threshold),
+            bridged_before=before.bridged,
+            bridged_after=after.bridged,
             gap_before=before.gap,
             gap_after=after.gap,
             change=float(np.linalg.norm(self.moved(after.surface), axis=1).max()),
@@ -123,7 +128,9 @@ def edit(
     line before each round.
     """
     options = options or EditOptions()
-    limit = threshold_of(surface, options.threshold)
+    if options.threshold is not None:
+        surface = replace(surface, threshold=options.threshold)
+    limit = threshold_of(surface)
     moves = free_moves(surface, frozen_mask(surface, options.frozen), options.symmetry)
     if moves.shape[1] == 0:
         raise BadInputError("every control point is frozen; leave some free to move")
@@ -147,11 +154,10 @@ def _rounds(
     limit, best, idle, figures = problem.threshold, now, 0, list[Round]()
     outcome = Outcome.ROUNDS_SPENT
     for number in range(most):
-        if now.gap <= FIRM * limit:
+        if not lifted(now.paths, FIRM).any():
             break
         if progress is not None:
-            share = lifted_share(now.paths.gap, limit)
-            progress(f"round {number + 1}: {100 * share:.2g}% bridged, gap {now.gap:.3g}")
+            progress(f"round {number + 1}: {100 * now.bridged:.2g}% bridged, gap {now.gap:.3g}")
         found = problem.step(now)
         if found.shortfall > max(limit, FAR_SHORT * now.gap):
             outcome = Outcome.OUT_OF_REACH
@@ -162,22 +168,31 @@ def _rounds(
         now = after
         better = problem.merit(now) < problem.merit(best)
         best, idle = (now, 0) if better else (best, idle + 1)
-        outcome = _outcome(now, found, limit, idle)
+        outcome = _outcome(now, found, idle)
         if outcome != Outcome.ROUNDS_SPENT and (outcome != Outcome.WINDABLE or not better):
             break
-    return best, Outcome.WINDABLE if best.gap <= limit else outcome, tuple(figures)
+    return best, Outcome.WINDABLE if best.bridged == 0.0 else outcome, tuple(figures)
 
 
-def threshold_of(surface: Surface, given: float | None = None) -> float:
-    """The largest gap that counts as none: the one given, or the largest distance of a vertex to the surface."""
-    if given is not None:
-        return float(given)
-    error = 0.0 if surface.error is None else surface.error.to_surface_max
-    return max(error, LEAST_GAP * surface.size)
+def lifted(paths: Paths, share: float = 1.0) -> Bools:
+    """Mask (p, n) of the particles that lie off the surface by more than this share of what counts as none."""
+    surface = paths.surface
+    limit = tolerated(paths)
+    if surface.threshold is None:
+        limit = np.maximum(limit, LEAST_GAP * surface.size)
+    return np.asarray(paths.gap > share * limit)
 
 
-def _outcome(now: _State, found: Step, limit: float, idle: int) -> Outcome:
-    if now.gap <= limit:
+def threshold_of(surface: Surface) -> float:
+    """A usual gap that counts as none: the threshold, or the root mean square of the surface's uncertainty."""
+    if surface.threshold is not None:
+        return surface.threshold
+    doubt = 0.0 if surface.uncertainty is None else float(np.sqrt(np.mean(surface.uncertainty**2)))
+    return max(doubt, LEAST_GAP * surface.size)
+
+
+def _outcome(now: _State, found: Step, idle: int) -> Outcome:
+    if now.bridged == 0.0:
         return Outcome.WINDABLE
     if max(found.solution.primal, found.solution.dual) > UNSOLVED:
         return Outcome.NOT_SOLVED

@@ -22,10 +22,10 @@ class EditOptions:
 
     bound: largest displacement, None for any; frozen: what must not move (see `redesign`), as a mask (nu, nv) of
     control points or a function from their positions (m, 3) to a mask (m,) where a surface is edited by itself;
-    symmetry: order of rotation about u that is kept; threshold: a gap up to this is none, None for the largest
-    distance of a vertex from the fitted surface; rounds: largest number of them; fairness: wave length over the part's
-    size at which a change of the net costs as much by its bending as by its size, 0 for (6.12) alone; pressing: least
-    normal curvature along the fibres times the part's size.
+    symmetry: order of rotation about u that is kept; threshold: a gap up to this is none, None for the
+    surface's uncertainty; rounds: largest number of them; fairness: wave length over the part's size at which a change
+    of the net costs as much by its bending as by its size, 0 for (6.12) alone; pressing: least normal curvature along
+    the fibres times the part's size.
     """
 
     bound: float | None = field(
@@ -45,7 +45,9 @@ class EditOptions:
     symmetry: int = field(default=1, metadata=option("Order of the rotational symmetry that is kept", EDIT))
     threshold: float | None = field(
         default=None,
-        metadata=option("Ignore gaps smaller than this", EDIT, unit=IN_MESH_UNITS, otherwise="the fit's error"),
+        metadata=option(
+            "Ignore gaps smaller than this", EDIT, unit=IN_MESH_UNITS, otherwise="the surface's uncertainty"
+        ),
     )
     rounds: int = field(default=10, metadata=option("Maximum number of rounds of editing and winding again", EDIT))
     fairness: float = 0.4

@@ -4,10 +4,9 @@ from dataclasses import dataclass
 
 from meshwind.chart import Chart
 from meshwind.core.cast import Bools
-from meshwind.editing.edit import threshold_of
+from meshwind.editing.edit import lifted, threshold_of
 from meshwind.mesh import Mesh
 from meshwind.path import Paths
-from meshwind.path.lengths import lifted_share
 from meshwind.path.paths import converged_or_all
 from meshwind.surface import Surface
 from meshwind.workflow.clock import Clock
@@ -18,7 +17,7 @@ from meshwind.workflow.winding import lay
 
 @dataclass(frozen=True)
 class Proof:
-    """A mesh's chart, surface and paths; gaps up to the threshold count as none."""
+    """A mesh's chart, surface and paths; threshold: a usual gap that counts as none, see `threshold_of`."""
 
     chart: Chart
     surface: Surface
@@ -37,22 +36,22 @@ class Proof:
 
     @property
     def bridged(self) -> float:
-        """Share of those paths' particles whose gap is above the threshold."""
-        return lifted_share(self.paths.gap[self.counted], self.threshold)
+        """Share of those paths' particles that lie off the surface by more than counts as none."""
+        return float(lifted(self.paths)[self.counted].mean())
 
     @property
     def windable(self) -> bool:
         """Whether no such path bridges."""
-        return self.gap <= self.threshold
+        return self.bridged == 0.0
 
 
 def prove(mesh: Mesh, winding: Options, threshold: float | None) -> Proof:
     """Fit and wind a mesh; threshold as in `redesign`."""
-    return prove_fitted(fit_part(Source(mesh), winding, Clock()), winding, threshold)
+    return prove_fitted(fit_part(Source(mesh), winding, Clock()).counting(threshold), winding)
 
 
-def prove_fitted(part: Part, winding: Options, threshold: float | None) -> Proof:
+def prove_fitted(part: Part, winding: Options) -> Proof:
     """Wind a part that is fitted; the number of revolutions must be given."""
     surface = part.surface
     laid = lay(surface, winding, float(winding.revolutions))
-    return Proof(part.chart, surface, laid, threshold_of(surface, threshold))
+    return Proof(part.chart, surface, laid, threshold_of(surface))

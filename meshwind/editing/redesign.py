@@ -112,7 +112,7 @@ class Redesign:
 
     @property
     def bridged(self) -> float:
-        """Share of the particles of `paths` whose gap is above the threshold."""
+        """Share of the particles of `paths` that lie off the surface by more than counts as none."""
         return self.after.bridged
 
 
@@ -208,12 +208,12 @@ def redesign(  # noqa: PLR0913
     region = frozen_part(frozen, mesh)
     report("fit")
     source = read_source(mesh, winding)
-    part = fit_part(source, winding, Clock())
+    part = fit_part(source, winding, Clock()).counting(threshold)
     region = region.on_skin(part.chart.annulus)
     chosen = chosen_revolutions(part.surface, winding, Clock(progress), further=False)
     if chosen is not None:
         winding = replace(winding, revolutions=chosen.choice)
-    first = prove_fitted(part, winding, threshold)
+    first = prove_fitted(part, winding)
     run = _Run(source.mesh, winding, options, region, report)
     best, stages, outcome = _edit_in_stages(run, _Candidate(np.zeros_like(source.mesh.vertices), first))
     vertices, faces = source.mesh.vertices, source.mesh.faces
@@ -277,10 +277,6 @@ class _Run:
         moves = within(now.moves + more, self.options.bound)
         return _Candidate(moves, prove(displaced(self.mesh, moves), self.winding, self.options.threshold))
 
-    def wants_more(self, proof: Proof) -> bool:
-        """Whether a fibre bridges, or leaves the surface at all where the user did not say how far it may."""
-        return not proof.windable or (self.options.threshold is None and proof.gap > 0.0)
-
     def can_go_on(self, proof: Proof) -> bool:
         """Whether what must not move and the symmetry can be kept on the control net of another surface."""
         around = proof.surface.control_points.shape[0]
@@ -299,7 +295,7 @@ def _edit_in_stages(run: _Run, first: _Candidate) -> tuple[_Candidate, tuple[tup
         now = run.after(now, found)
         gains = now.merit < best.merit
         best = min(now, best, key=lambda each: each.merit)
-        if not (gains and outcome == Outcome.WINDABLE and run.wants_more(now.proof)):
+        if not (gains and outcome == Outcome.WINDABLE and not now.proof.windable):
             break
         if len(stages) == STAGES or not (left and run.can_go_on(now.proof)):
             break

@@ -9,8 +9,8 @@ from meshwind.editing.proof import Proof
 from meshwind.editing.redesign import Redesign
 from meshwind.editing.result import Round
 from meshwind.path.paths import Status
+from meshwind.results.redesign_report_types import RedesignFigures, RedesignReport, RoundFigures, WoundFigures
 from meshwind.results.report import failures, mesh_figures, plain
-from meshwind.results.report_types import RedesignFigures, RedesignReport, RoundFigures, WoundFigures
 
 
 def redesign_report(

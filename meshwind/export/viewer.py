@@ -17,7 +17,7 @@ from meshwind.appearance.view import best_view
 from meshwind.appearance.words import quantity
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.errors import BadInputError
-from meshwind.path.lengths import bridged_share, lengths
+from meshwind.path.lengths import bridged_share, bridging, lengths
 from meshwind.results.reading import Results, read_surface_grid
 from meshwind.results.schema import NORMAL, UV, VIEWER
 from meshwind.results.vtk_reading import Faces
@@ -130,7 +130,7 @@ def page_data(results: Results) -> PageData:
         "surface": _surface(grid, results),
         "fibres": _fibres(results),
         "colours": {"gap": _stops("gap")},
-        "max_gap": float(results.paths.gap[results.at_rest].max(initial=0.0)),
+        "max_gap": float(lengths(results.paths).max_gap[results.at_rest].max(initial=0.0)),
         "camera": _camera(grid, results),
     }
 
@@ -180,7 +180,8 @@ def _map(name: str, grid: Faces, kept: Ints, units: str) -> MapData:
 def _fibres(results: Results) -> list[LineData]:
     """Fibres of each family on the surface, bridges, and paths that did not converge; empty kinds are left out."""
     paths, taut = results.paths, results.at_rest
-    touching = paths.on_surface[:, :-1] & paths.on_surface[:, 1:]
+    off = bridging(paths)
+    touching = ~(off[:, :-1] | off[:, 1:])
     kinds = [("loose", 0, "not at rest", ~taut, np.ones_like(touching))]
     for family, words in ((1, "family +1"), (-1, "family −1")):
         mine = taut & (paths.family == family)

@@ -18,7 +18,7 @@ class Lengths:
     """Of p paths of n particles: arc_length (p, n) from the start; the others (p,).
 
     Lengths are those of polylines, in the mesh's units.  bridged_length is that of the segments with an end off the
-    surface, in spans that its uncertainty resolves; unresolved_length that in other spans; max_gap counts the former.
+    surface, in resolved spans (see `Bridges`); unresolved_length that in other spans; max_gap counts the former.
     """
 
     arc_length: Floats
@@ -34,8 +34,8 @@ class Bridges:
     """The b spans off the surface: of `path` (b,), from particle `first` to `last` (b,), both included.
 
     Both lie on the surface, unless the span reaches an end of its path.  resolved (b,): whether the fibre lies further
-    off the surface somewhere than this may lie off the part (`Surface.uncertainty`).  ends (b, 2, 3) are the points,
-    between particles, where the fibre leaves the surface and comes back: tangent to it, to second order.
+    off the surface somewhere than what counts as none (`tolerated`).  ends (b, 2, 3) are the points, between particles,
+    where the fibre leaves the surface and comes back: tangent to it, to second order.
     """
 
     path: Ints
@@ -59,9 +59,7 @@ def lengths(paths: Paths) -> Lengths:
     steps = np.linalg.norm(np.diff(paths.points, axis=1), axis=2)
     arc = np.zeros(paths.gap.shape)
     np.cumsum(steps, axis=1, out=arc[:, 1:])
-    spans = _spans(paths)
-    off = np.zeros(paths.gap.shape, dtype=bool)
-    _mark(off, spans, _resolved(paths, spans))
+    off = bridging(paths)
     clear = ~(paths.on_surface[:, :-1] & paths.on_surface[:, 1:])
     bridged = clear & (off[:, :-1] | off[:, 1:])
     slip = np.fmax.reduce(paths.slip, axis=1, initial=0.0)  # fmax passes over NaN
@@ -90,14 +88,6 @@ def unresolved_share(*counted: tuple[Lengths, Bools]) -> float:
     return sum(float(each.unresolved_length[mask].sum()) for each, mask in counted) / total if total > 0.0 else 0.0
 
 
-def lifted_share(gap: Floats, threshold: float) -> float:
-    """Share of the particles (p, n) that lie further off the surface than a threshold.
-
-    Unlike `bridged_share` it counts particles rather than length, and ignores gaps up to the threshold.
-    """
-    return float((gap > threshold).mean())
-
-
 class _Spans(NamedTuple):
     """Spans of particles off the surface: of path (b,), from particle start to before stop (b,)."""
 
@@ -122,14 +112,40 @@ def _largest(values: Floats, spans: _Spans) -> Floats:
     return np.maximum.reduceat(padded, bounds)[::2] if len(bounds) else np.zeros(0)
 
 
+def tolerated(paths: Paths) -> Floats:
+    """The gap of each particle (p, n) up to which it counts as lying on the surface; 0 where it touches.
+
+    It is the surface's threshold, or how far the gap is uncertain: the surface may lie off the part under the particle
+    and, independently, at both ends of the span, between which its chord is interpolated.
+    """
+    surface, spans = paths.surface, _spans(paths)
+    limit = np.zeros(paths.gap.shape)
+    size = spans.stop - spans.start
+    row = np.repeat(spans.path, size)
+    step = np.arange(len(row)) - np.repeat(np.cumsum(size) - size, size)
+    column = np.repeat(spans.start, size) + step
+    below = surface.threshold_at(paths.uv[row, column])
+    if surface.threshold is None and surface.uncertainty is not None:
+        before, after = (
+            np.repeat(surface.uncertainty_at(paths.uv[spans.path, np.clip(end, 0, paths.gap.shape[1] - 1)]), size)
+            for end in (spans.start - 1, spans.stop)
+        )
+        share = (step + 1) / np.repeat(size + 1, size)
+        below = np.sqrt(below**2 + ((1.0 - share) * before) ** 2 + (share * after) ** 2)
+    limit[row, column] = below
+    return limit
+
+
 def _resolved(paths: Paths, spans: _Spans) -> Bools:
-    """Whether each span lies further off the surface somewhere than this may lie off the part."""
-    if not len(spans.path):
-        return np.zeros(0, dtype=bool)
-    excess = np.zeros(paths.gap.shape)
-    aloft = ~paths.on_surface
-    excess[aloft] = paths.gap[aloft] - paths.surface.uncertainty_at(paths.uv[aloft])
-    return np.asarray(_largest(excess, spans) > 0.0)
+    """Whether each span lies further off the surface somewhere than what counts as none."""
+    return np.asarray(_largest(paths.gap - tolerated(paths), spans) > 0.0)
+
+
+def bridging(paths: Paths) -> Bools:
+    """Mask (p, n) of the particles of resolved spans."""
+    spans, off = _spans(paths), np.zeros(paths.gap.shape, dtype=bool)
+    _mark(off, spans, _resolved(paths, spans))
+    return off
 
 
 def _mark(mask: Bools, spans: _Spans, chosen: Bools) -> None:

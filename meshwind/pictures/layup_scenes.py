@@ -4,6 +4,7 @@ import numpy as np
 
 from meshwind.appearance.looks import Look, Scale, fixed
 from meshwind.core.cast import Floats
+from meshwind.path.lengths import bridging
 from meshwind.pictures.scenes import CrossingsScene, QuadsScene, SlipScene, UnrolledScene
 from meshwind.pictures.subject import Subject
 from meshwind.pictures.winding_scene import fibres
@@ -85,7 +86,7 @@ def unrolled_scene(of: Subject) -> UnrolledScene:
         frame=of.frame(f"{of.name}: the part unrolled", _unrolled_subtitle(low, high, of.units)),
         image=(points - low) / np.where(high > low, high - low, 1.0),
         uv=of.paths.uv[:, of.kept],
-        bridging=~of.paths.on_surface[:, of.kept],
+        bridging=bridging(of.paths)[:, of.kept],
         family=of.paths.family,
         converged=of.converged,
     )

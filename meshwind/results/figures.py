@@ -12,8 +12,8 @@ class PathFigures:
     """Figures of the paths that converged, or of all where none did: `counted` (p,) says which.
 
     converged: how many did; fibre_length: the total; bridged_share: share of the polylines' length off the surface;
-    spans: the bridges whose gap the surface's uncertainty resolves; unresolved: the others, which count as contact, and
-    unresolved_share: their share of the length.  Lengths are in the mesh's units, max_slip is the required friction
+    spans: the resolved bridges, whose gap is above what counts as none; unresolved: the others, which count as contact,
+    and unresolved_share: their share of the length.  Lengths are in the mesh's units, max_slip is the required friction
     |kg| / kn, max_residual is over the tension.
     """
 

@@ -18,7 +18,8 @@ from meshwind.core.units import reported_unit
 from meshwind.layup.layup import Layup, assess
 from meshwind.path.paths import Counters, Paths, Status
 from meshwind.results import schema
-from meshwind.results.report_types import RedesignReport, Report
+from meshwind.results.redesign_report_types import RedesignReport
+from meshwind.results.report_types import Report
 from meshwind.results.schema import EDITED, PATHS, REPORT, SPLINE, SURFACE
 from meshwind.results.staging import settle
 from meshwind.results.vtk_reading import Faces, Lines, read_faces, read_lines
@@ -172,14 +173,15 @@ def _surface(path: Path, report: Report) -> Surface:
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as held:
             control, periodic = held[schema.CONTROL_POINTS], bool(held[schema.PERIODIC_U])
-            doubt = held.get(schema.UNCERTAINTY)
+            doubt, threshold = held.get(schema.UNCERTAINTY), held.get(schema.THRESHOLD)
+            limit = None if threshold is None else float(threshold)
     except (OSError, EOFError, ValueError, LookupError, TypeError, AttributeError, zipfile.BadZipFile) as error:
         raise _spoilt(path, error) from error
     points = floats(control, f"{schema.CONTROL_POINTS} of {path.name}", -1, -1, 3)
     if np.abs(points).max(initial=0.0) > _FARTHEST:
         raise _spoilt(path, f"it reaches beyond {_FARTHEST:g}")
     table = None if doubt is None else frozen(floats(doubt, f"{schema.UNCERTAINTY} of {path.name}", -1, -1))
-    return Surface(points, periodic, _fit_error(report), table)
+    return Surface(points, periodic, _fit_error(report), table, limit)
 
 
 def _fit_error(report: Report) -> FitError | None:

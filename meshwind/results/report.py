@@ -170,6 +170,7 @@ def _paths(paths: Paths) -> PathsFigures:
         "bridges": len(figures.spans),
         "longest_bridge": figures.longest_bridge,
         "unresolved": {
+            "threshold": paths.surface.threshold,
             "bridges": len(figures.unresolved),
             "fraction": figures.unresolved_share,
             "max_gap": float(figures.unresolved.max_gap.max(initial=0.0)),

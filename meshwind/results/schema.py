@@ -77,7 +77,7 @@ PATHS = File(
     cell_data=(PATH, FAMILY, LENGTH, FIBRE_LENGTH, BRIDGED_LENGTH, MAX_GAP, MAX_SLIP, STATUS),
 )
 RESOLVED = Field("resolved", dtype="uint8")
-"""Whether a bridge lies further off the surface somewhere than this may lie off the part."""
+"""Whether a bridge lies further off the surface somewhere than the threshold, or than this may lie off the part."""
 BRIDGES = File("bridges.vtp", point_data=(GAP,), cell_data=(PATH, LENGTH, MAX_GAP, RESOLVED))
 
 PATH_A = Field("path_a", dtype="int64")
@@ -116,7 +116,12 @@ KNOTS_U, KNOTS_V = Field("knots_u"), Field("knots_v")
 DEGREE = Field("degree", dtype="int64")
 PERIODIC_U = Field("periodic_u", dtype="bool")
 UNITS = Field("units", dtype="str")
-SPLINE = File("surface.npz", point_data=(CONTROL_POINTS, KNOTS_U, KNOTS_V, DEGREE, PERIODIC_U, UNITS, UNCERTAINTY))
+THRESHOLD = Field("threshold", LENGTHS)
+"""Only where the run was given one."""
+SPLINE = File(
+    "surface.npz",
+    point_data=(CONTROL_POINTS, KNOTS_U, KNOTS_V, DEGREE, PERIODIC_U, UNITS, UNCERTAINTY, THRESHOLD),
+)
 CHART = File("chart.png")
 
 # a redesign

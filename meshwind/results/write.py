@@ -132,6 +132,8 @@ def write_spline(path: Path, surface: Surface, units: str = "") -> None:
     }
     if surface.uncertainty is not None:
         arrays[schema.UNCERTAINTY] = surface.uncertainty
+    if surface.threshold is not None:
+        arrays[schema.THRESHOLD] = np.float64(surface.threshold)
     with path.open("wb") as file:
         np.savez(file, **arrays)
 

@@ -16,8 +16,8 @@ from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.results import folder
 from meshwind.results.config_file import write_config
+from meshwind.results.redesign_report_types import RedesignReport
 from meshwind.results.report import write_report
-from meshwind.results.report_types import RedesignReport
 from meshwind.results.schema import AFTER, BEFORE, CONFIG, REDESIGN, REPORT, picture
 from meshwind.results.write import write_edited
 from meshwind.workflow.clock import Clock

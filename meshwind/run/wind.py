@@ -173,6 +173,7 @@ def wind(  # noqa: PLR0913
     side: str = Options.side,
     opening_by: str = Options.opening_by,
     tolerance: float = Options.tolerance,
+    threshold: float | None = Options.threshold,
     worst_fit: float = Options.worst_fit,
     units: str = Options.units,
     particles: int | None = Options.particles,
@@ -215,6 +216,9 @@ def wind(  # noqa: PLR0913
         see `annulus`.
     tolerance : float, default 1e-5
         Largest distance of a mesh vertex from the fitted surface, over the part's diagonal.
+    threshold : float, optional
+        Largest gap between fibre and surface that is no bridge, in the mesh's units; 0 counts every gap.  By default
+        the surface's uncertainty.
     worst_fit : float, default 0.1
         Largest distance between surface and mesh that is accepted at all, over the part's diagonal.
     units : str, default ""
@@ -265,7 +269,7 @@ def wind(  # noqa: PLR0913
     pinned = fspath(pins) if isinstance(pins, PathLike) else pins
     options = Options(
         paths, revolutions, particles, friction, component, ends, opening, side, opening_by,
-        tolerance, worst_fit, units, spacing, band_width, linear_density, pinned,
+        tolerance, threshold, worst_fit, units, spacing, band_width, linear_density, pinned,
     )  # fmt: skip
     clock = Clock(progress)
     target = None if out is None else _folder(out)

@@ -87,6 +87,8 @@ class Surface(PicklableRecord):
     uncertainty : ndarray of float, shape (rows, columns), optional
         How far the surface may lie off the true part, in its units, in equal cells over u and v.  None, the default,
         for a surface that is exact.
+    threshold : float, optional
+        Gap up to which a fibre counts as lying on the surface, in its units.  None, the default, for `uncertainty`.
 
     Raises
     ------
@@ -112,6 +114,7 @@ class Surface(PicklableRecord):
     periodic: bool = True
     error: FitError | None = None
     uncertainty: Floats | None = None
+    threshold: float | None = None
 
     def __post_init__(self) -> None:
         points = floats(self.control_points, "control_points", -1, -1, 3)
@@ -187,6 +190,12 @@ class Surface(PicklableRecord):
         -------
         ndarray of float, shape (n,)
             Lengths in the surface's unit, 0 where the surface is exact.
+
+        Examples
+        --------
+        >>> import meshwind as mw
+        >>> mw.shapes.cylinder(1.0, 3.0).uncertainty_at([(0.25, 0.5)])
+        array([0.])
         """
         where, table = floats(uv, "uv", -1, 2), self.uncertainty
         if table is None:
@@ -199,6 +208,31 @@ class Surface(PicklableRecord):
         x, y = x - i, y - j
         near = [table[(i + a) % rows, np.minimum(j + b, columns - 1)] for a in (0, 1) for b in (0, 1)]
         return np.asarray((1 - x) * ((1 - y) * near[0] + y * near[1]) + x * ((1 - y) * near[2] + y * near[3]))
+
+    def threshold_at(self, uv: ArrayLike) -> Floats:
+        """Gap up to which a fibre counts as lying on the surface: `threshold`, or the uncertainty where it is None.
+
+        Parameters
+        ----------
+        uv : array_like of float, shape (n, 2)
+            Parametric positions.
+
+        Returns
+        -------
+        ndarray of float, shape (n,)
+            Lengths in the surface's unit.
+
+        Examples
+        --------
+        >>> import meshwind as mw
+        >>> from dataclasses import replace
+        >>> tube = replace(mw.shapes.cylinder(1.0, 3.0), threshold=0.01)
+        >>> tube.threshold_at([(0.25, 0.5)])
+        array([0.01])
+        """
+        return (
+            self.uncertainty_at(uv) if self.threshold is None else np.full(len(floats(uv, "uv", -1, 2)), self.threshold)
+        )
 
     def frames(self, uv: ArrayLike) -> Floats:
         """Evaluate position and derivatives.

@@ -10,7 +10,8 @@ from meshwind.core.errors import BadInputError
 from meshwind.layup.layup import Layup
 from meshwind.mesh import Annulus
 from meshwind.mesh.opening.choose_ends import position_text
-from meshwind.path.paths import EDGE, Paths, Status
+from meshwind.path.lengths import lengths, unresolved_share
+from meshwind.path.paths import EDGE, Paths, Status, converged_or_all
 from meshwind.planning.alternatives import FRICTION, WIDER
 from meshwind.planning.revolutions import Revolutions
 from meshwind.planning.spacing import Spaced
@@ -25,6 +26,8 @@ SHOWS = 1e-4
 UNRESOLVED = 1e-2
 """An error in either direction of more than this share of the diagonal means that the surface has another shape."""
 
+LEFT_OUT = 5e-4
+"""Least share of the fibre that is off the surface and not counted, of which a note tells: it shows as 0.1 %."""
 SQUEEZED = 8.0
 """A 99th percentile of the area scale above this, over its mean, is typical of fingers, ears and fins."""
 _MAX_LISTED = 3
@@ -70,6 +73,16 @@ def about_paths(paths: Paths) -> tuple[Note, ...]:
             f"{which} over an edge within one segment, exact to its length there; --particles {more} resolves it better"
         ),
     )
+
+
+def about_contact(paths: Paths, units: str = "") -> tuple[Note, ...]:
+    """Note on the fibre whose distance from the surface is too small to count as bridging."""
+    share = unresolved_share((lengths(paths), converged_or_all(paths.status)))
+    if share < LEFT_OUT:
+        return ()
+    limit = paths.surface.threshold
+    less = "the surface's own error" if limit is None else f"the threshold of {quantity(limit, units, 2)}"
+    return (Note(f"{100.0 * share:.1f}% of the fibre runs off the surface by less than {less} and is not counted"),)
 
 
 def about_layup(layup: Layup) -> tuple[Note, ...]:

@@ -108,6 +108,15 @@ class Options:
         default=FIT_TOLERANCE,
         metadata=option("Largest distance of a mesh vertex from the fitted surface", SURFACE, unit=OVER_DIAGONAL),
     )
+    threshold: float | None = field(
+        default=None,
+        metadata=option(
+            "Largest gap between fibre and surface that is no bridge; 0 counts every gap",
+            FIBRES,
+            unit=IN_MESH_UNITS,
+            otherwise="the surface's uncertainty",
+        ),
+    )
     worst_fit: float = field(
         default=0.1,
         metadata=option(
@@ -160,6 +169,8 @@ class Options:
         _check_word(self.side, "side", SIDES)
         _check_word(self.opening_by, "opening_by", OPENED_BY)
         set_(self, "tolerance", _number(self.tolerance, "tolerance", 1e-12, 1.0))
+        if self.threshold is not None:
+            set_(self, "threshold", _number(self.threshold, "threshold", 0.0))
         set_(self, "worst_fit", _number(self.worst_fit, "worst_fit", 0.0, above=True))
         check_units(self.units)
         for name in ("opening", "spacing", "band_width", "linear_density"):

@@ -34,6 +34,10 @@ class Part:
     chart: Chart
     surface: Surface
 
+    def counting(self, threshold: float | None) -> "Part":
+        """The part, on which gaps up to a threshold count as none; None for those up to the surface's uncertainty."""
+        return self if threshold is None else replace(self, surface=replace(self.surface, threshold=threshold))
+
 
 def read_source(mesh: MeshLike, options: Options) -> Source:
     """Read a mesh and, where the friction is a field, its scalars; raises BadInputError where one cannot be read."""

@@ -18,6 +18,7 @@ from meshwind.workflow.clock import Clock
 from meshwind.workflow.notes import (
     Note,
     about_choice,
+    about_contact,
     about_fit,
     about_layup,
     about_opening,
@@ -46,6 +47,7 @@ class Winding:
 
 def wind_part(part: Part, options: Options, command: str, clock: Clock) -> Winding:
     """Lay the paths on a part that was fitted with the same options, and assess them."""
+    part = part.counting(options.threshold)
     surface = part.surface
     with clock.stage("fit"):
         notes = (
@@ -60,6 +62,7 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock) -> Windi
         spaced = None if options.spacing is None else space_out(laid, revolutions, options.spacing, friction)
         laid = laid if spaced is None else spaced.paths
         notes = (*notes, *about_paths(laid), *about_choice(chosen), *about_spacing(spaced, options.units))
+        notes = (*notes, *about_contact(laid, options.units))
     with clock.stage("assess"):
         layup = assess(laid, options.band_width)
         notes = (*notes, *about_layup(layup))

@@ -1,0 +1,101 @@
+"""Keys of the report.json of a redesign, and what they hold."""
+
+from typing import TypedDict, final
+
+from meshwind.results.report_types import Failure, MeshFigures
+
+
+class RedesignWindingFigures(TypedDict):
+    """What was wound on both meshes, and the reason for the number of revolutions."""
+
+    revolutions: float
+    paths_per_family: int
+    particles: int
+    why: str
+
+
+class BeforeAfter(TypedDict):
+    """A figure before and after."""
+
+    before: float
+    after: float
+
+
+class DisplacementFigures(TypedDict):
+    """Displacement of the vertices, and number that moved by more than a hundredth of the largest."""
+
+    max: float
+    mean: float
+    vertices_moved: int
+
+
+class VolumeFigures(TypedDict):
+    """Volume with its open rims capped, in the mesh's units cubed; relative is None without a volume."""
+
+    before: float
+    change: float
+    relative: float | None
+
+
+class RedesignFigures(TypedDict):
+    """Outcome of a redesign; bridged is the share of the particles whose gap is above the threshold."""
+
+    windable: bool
+    outcome: str
+    advice: str
+    rounds: int
+    threshold: float
+    bridged: BeforeAfter
+    max_gap: BeforeAfter
+    displacement: DisplacementFigures
+    volume: VolumeFigures
+    faces_turned_over: int
+
+
+class RoundFigures(TypedDict):
+    """One round of one stage, on the edited surface."""
+
+    stage: int
+    round: int
+    threshold: float
+    bridged: BeforeAfter
+    max_gap: BeforeAfter
+    largest_move: float
+    objective: float
+    shortfall: float
+    kkt_residual: float
+    constraints: int
+    iterations: int
+
+
+class WoundFigures(TypedDict):
+    """A mesh fitted and wound by itself."""
+
+    control_points: list[int]
+    converged: int
+    not_converged: list[Failure]
+    bridged: float
+    max_gap: float
+    threshold: float
+
+
+class WoundBeforeAfter(TypedDict):
+    """The mesh that was read and the edited one."""
+
+    before: WoundFigures
+    after: WoundFigures
+
+
+@final
+class RedesignReport(TypedDict):
+    """The report of a redesign: `after` in `wound` is the proof, which the last round predicts."""
+
+    meshwind: str
+    command: str
+    mesh: MeshFigures
+    winding: RedesignWindingFigures
+    redesign: RedesignFigures
+    rounds: list[RoundFigures]
+    wound: WoundBeforeAfter
+    seconds: dict[str, float]
+    notes: list[str]
