@@ -12,11 +12,6 @@ from scipy.linalg import cho_solve_banded, cholesky_banded
 from meshwind.core.cast import Floats
 from meshwind.surface.fitting.normal_equations import REACH, gram_bands
 
-TOLERANCE = 1e-7
-"""Reduction of the residual against the right side, in the preconditioner's norm."""
-MOST_STEPS = 200
-"""Steps after which what has been reached is taken: scattered data of uneven density need some fifty."""
-
 
 class TensorGram:
     """The scaled tensor product of the Gram matrices along u and v, factored once: an approximate inverse.
@@ -46,33 +41,30 @@ class TensorGram:
         return np.asarray(flat.reshape(columns, rows, sides).transpose(1, 0, 2) * self._scale)
 
 
-def solve_iteratively(
-    stencil: Floats, right: Floats, start: Floats | None = None, tolerance: float = TOLERANCE
-) -> Floats:
+def solve_iteratively(stencil: Floats, right: Floats, tolerance: Floats, start: Floats, steps: int) -> Floats | None:
     """Solve for nets (nu, nv, m), each of the right sides (nu, nv, m) for itself; see `normal_equations.accumulate`.
 
-    start (nu, nv, m): nets near the answer, zero by default.
+    tolerance (m,): reduction of each residual against its right side, in the preconditioner's norm; start (nu, nv, m):
+    nets near the answer.  None if so many steps do not suffice.
     """
     inverse, image = TensorGram(stencil), np.empty_like(right)
-    whole = (right * inverse.solve(right)).sum(axis=(0, 1))
-    net, rest = np.zeros_like(right), right.copy()
-    if start is not None:
-        net[:] = start
-        _multiply(stencil, net, image)
-        rest -= image
+    enough = tolerance**2 * (right * inverse.solve(right)).sum(axis=(0, 1))
+    net = start.copy()
+    _multiply(stencil, net, image)
+    rest = right - image
     ahead = inverse.solve(rest)
     way, size = ahead.copy(), (rest * ahead).sum(axis=(0, 1))
-    for _ in range(MOST_STEPS):
+    for _ in range(steps):
+        if np.all(size <= enough):
+            return net
         _multiply(stencil, way, image)
         step = size / np.maximum((way * image).sum(axis=(0, 1)), 1e-300)
         net += step * way
         rest -= step * image
         ahead = inverse.solve(rest)
         before, size = size, (rest * ahead).sum(axis=(0, 1))
-        if np.all(size <= tolerance**2 * whole):
-            break
         way = ahead + size / np.maximum(before, 1e-300) * way
-    return net
+    return None
 
 
 @njit(cache=True)

@@ -15,8 +15,8 @@ from meshwind.core.cast import Floats
 from meshwind.core.threads import parallel_for
 from meshwind.surface.evaluate import DEGREE
 from meshwind.surface.fitting import normal_equations
-from meshwind.surface.fitting.conjugate_gradients import solve_iteratively
 from meshwind.surface.fitting.evidence import Neighbourhoods, rms_away_from_creases, straddling
+from meshwind.surface.fitting.linear_systems import solve
 from meshwind.surface.fitting.quadrature import FacetPoints, facet_points, heights
 from meshwind.surface.fitting.resample import resampled
 from meshwind.surface.fitting.samples import CLOSE, Samples
@@ -36,6 +36,8 @@ MOST_PER_VERTEX, MOST_CURVED, MOST = 12.0, 1.0, 150_000
 """Most control points per vertex, on flat facets and on curved ones, which say no more than their corners; in all."""
 FEWEST = 2e-2
 """The coarsest net that is tried, over the finest: coarser ones cost as much of the facets' time and show nothing."""
+EXACT, ROUGHLY = 1e-7, 1e-3
+"""Tolerances of the solutions: for the points, and for a random right side, of which only a mean is wanted."""
 COMPARED, CURVED = 0.6, 0.4
 """Control points per vertex at which curved triangles and flat ones are compared; and how much less of the curved
 than of the flat ones a net must leave there.  On sampled parts it leaves 0.15 to 0.27, on decimated ones from 0.59."""
@@ -150,7 +152,7 @@ class FacetFitter:
         start = np.zeros_like(right)
         if before is not None:
             start[..., :3] = resampled(before, spans)
-        return solve_iteratively(stencil, right, start)
+        return solve(stencil, right, np.repeat([EXACT, ROUGHLY], [3, values.shape[1] - 3]), start)
 
 
 def fit_facets(

@@ -1,12 +1,11 @@
-"""Least squares for a bicubic net: data on the fixed 4 x 4 stencil, a thin-plate term, one banded factorisation."""
+"""Normal equations of a bicubic net that is fitted by least squares: data on the 4 x 4 stencil, a thin-plate term."""
 
 from math import floor
 
 import numpy as np
 from numba import njit
-from scipy.linalg import solveh_banded
 
-from meshwind.core.cast import Floats, Ints
+from meshwind.core.cast import Floats
 from meshwind.surface.evaluate import basis
 
 REACH = 3
@@ -87,46 +86,3 @@ def bending(spans: tuple[int, int], lengths: tuple[float, float], weight: float)
     """`thin_plate` with the weight at which it counts, at the net's own wave length, as data of that density do."""
     pitch = lengths[0] / spans[0] * lengths[1] / spans[1]
     return thin_plate(*spans, *lengths) * (weight * pitch**2 / (2 * np.pi) ** 4)
-
-
-def _fold(rows: int) -> Ints:
-    """Numbers of the rows in the order 0, n-1, 1, n-2, ...: neighbours around the period differ by 2 at most."""
-    number = np.empty(rows, dtype=np.int64)
-    half = (rows + 1) // 2
-    number[:half] = 2 * np.arange(half)
-    number[half:] = 2 * np.arange(rows - half)[::-1] + 1
-    return number
-
-
-@njit(cache=True)
-def _fill(stencil, number, band):
-    """Write a stencil (nu, nv, 4, 7) into the lower band (unknowns, width); number (nu, nv) is that of an unknown."""
-    nu, nv = number.shape
-    for i in range(nu):
-        for r in range(REACH + 1):
-            far = (i + r) % nu
-            for j in range(nv):
-                here = number[i, j]
-                for s in range(0 if r > 0 else REACH, 2 * REACH + 1):
-                    if 0 <= j + s - REACH < nv:
-                        there = number[far, j + s - REACH]
-                        band[min(here, there), abs(here - there)] += stencil[i, j, r, s]
-
-
-def solve(stencil: Floats, right: Floats) -> Floats:
-    """Solve for nets (nu, nv, m) by banded Cholesky factorisation, the periodic rows folded to keep the band.
-
-    The unknowns are numbered along the direction that makes the band narrower; the cost is nu nv band^2.
-    """
-    nu, nv = right.shape[:2]
-    fold, along = _fold(nu)[:, None], np.arange(nv)
-    if 2 * nv <= nu:
-        number, width = fold * nv + along, 2 * REACH * nv + REACH + 1
-    else:
-        number, width = along * nu + fold, REACH * nu + 2 * REACH + 1
-    band = np.zeros((nu * nv, width))
-    _fill(stencil, number, band)
-    flat = np.empty((nu * nv, right.shape[2]), order="F")
-    flat[number.ravel()] = right.reshape(nu * nv, -1)
-    net = solveh_banded(band.T, flat, lower=True, overwrite_ab=True, overwrite_b=True, check_finite=False)
-    return np.asarray(net[number])

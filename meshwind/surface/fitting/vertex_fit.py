@@ -11,11 +11,16 @@ import numpy as np
 from meshwind.core.cast import Floats
 from meshwind.surface.evaluate import DEGREE
 from meshwind.surface.fitting import normal_equations
+from meshwind.surface.fitting.linear_systems import solve
+from meshwind.surface.fitting.resample import resampled
 from meshwind.surface.fitting.samples import Samples
 from meshwind.surface.surface import Surface
 
-ROUNDS = 4
-"""Refits after moving every vertex's parameters to its foot; the error settles in 3 or 4."""
+PASSING, ROUNDS = 2, 4
+"""Fits of a net that is passed through, and more of the one that is kept: before each every vertex's parameters are
+moved to its foot.  The error settles in 3 or 4."""
+NEARLY = 3.0
+"""A net that misses the tolerance by less than this factor is fitted again to see whether it meets it then."""
 SMOOTHING = 1e-4
 """Bending energy against data at the net's own wave length: small beside the spline's error, of the same order."""
 GAIN = 0.95
@@ -26,6 +31,8 @@ NEAR = 1e-3
 """Of the part's size: a net that is further off somewhere than this is not yet held by vertices alone."""
 IDLE_NETS = 2
 """So many finer nets in a row without that gain end the search: one alone may be bad luck."""
+EXACT, ROUGHLY = 1e-10, 1e-3
+"""Tolerances of the solutions: for the vertices, and for random right sides, of which only a mean is wanted."""
 PROBES = 3
 """Random right sides that measure how much of a noise a net keeps (Hutchinson 1990)."""
 
@@ -64,33 +71,47 @@ def fit_vertices(
     nets: spans in u and v, from coarse to fine; lengths: of the part around and from end to end.
     """
     best, *finer = nets
-    fitted = _fit(samples, best, lengths)
-    noise, idle, level = fitted.noise, 0, 0
+    fitted = _fit(samples, best, lengths, PASSING)
+    noise, idle, level, final = fitted.noise, 0, 0, False
     for spans in finer:
+        if not final and fitted.largest <= NEARLY * tolerance:
+            fitted, final = _refit(fitted, lengths), True
+        if fitted.largest <= tolerance:
+            return fitted
         size = spans[0] * (spans[1] + DEGREE)
-        if fitted.largest <= tolerance or size > SUPPORT * len(samples.points) or idle >= IDLE_NETS:
+        if size > SUPPORT * len(samples.points) or idle >= IDLE_NETS:
             break
-        trial = _fit(fitted.samples, spans, lengths)
+        trial = _fit(fitted.samples, spans, lengths, PASSING, fitted.surface)
         level = level + 1 if trial.noise > GAIN * noise else 0
         noise = min(noise, trial.noise)
         idle = 0 if trial.expected < GAIN * fitted.expected else idle + 1
         if trial.expected < fitted.expected:
-            fitted = trial
-    return replace(fitted, settled=level >= IDLE_NETS)
+            fitted, final = trial, False
+    return replace(fitted if final else _refit(fitted, lengths), settled=level >= IDLE_NETS)
 
 
-def _fit(samples: Samples, spans: tuple[int, int], lengths: tuple[float, float]) -> VertexFit:
-    """Fit one net, correcting the samples' parameters between the rounds."""
+def _refit(fitted: VertexFit, lengths: tuple[float, float]) -> VertexFit:
+    return _fit(fitted.samples, fitted.surface.spans, lengths, ROUNDS, fitted.surface)
+
+
+def _fit(
+    samples: Samples, spans: tuple[int, int], lengths: tuple[float, float], rounds: int, before: Surface | None = None
+) -> VertexFit:
+    """Fit one net, correcting the samples' parameters between the rounds; before: a surface to start from."""
     density = samples.weight.sum() / (lengths[0] * lengths[1])
     bending = normal_equations.bending(spans, lengths, SMOOTHING * density)
-    for _ in range(ROUNDS - 1):
-        surface = Surface(normal_equations.solve(*_equations(samples, spans, bending)))
+    start = None if before is None else resampled(before, spans)
+    for _ in range(rounds - 1):
+        surface = Surface(solve(*_equations(samples, spans, bending), np.full(3, EXACT), start))
         samples, _ = samples.corrected(surface)
+        start = surface.control_points
     stencil, right = _equations(samples, spans, bending)
     noise = np.random.default_rng(0).standard_normal((len(samples.points), PROBES))
     probe = np.zeros((*right.shape[:2], PROBES))
     normal_equations.accumulate(samples.uv, noise, samples.weight, *spans, np.zeros_like(stencil), probe)
-    net = normal_equations.solve(stencil, np.concatenate([right, probe], axis=2))
+    start = None if start is None else np.concatenate([start, np.zeros_like(probe)], axis=2)
+    tolerance = np.repeat([EXACT, ROUGHLY], [3, PROBES])
+    net = solve(stencil, np.concatenate([right, probe], axis=2), tolerance, start)
     kept = _share_kept(noise, Surface(net[..., 3:]).points(samples.uv), samples.weight)
     surface = Surface(net[..., :3])
     samples, distance = samples.corrected(surface)
