@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.mesh.geometry.topology import loops
 
 OUTER, RIM, INNER = 1, 0, -1
 """What a face, or a stretch of a profile, belongs to."""
@@ -233,3 +234,42 @@ def bottle(wall: float = 2.0, grid: Grid = GRID) -> Walled:
         ],
         grid,
     )
+
+
+def squared(points: Floats) -> Floats:
+    """Make circles about z squares: the radius is that of the circle within."""
+    turn = np.arctan2(points[:, 1], points[:, 0])
+    stretch = 1.0 / np.maximum(np.abs(np.cos(turn)), np.abs(np.sin(turn)))
+    return points * np.column_stack([stretch, stretch, np.ones(len(points))])
+
+
+def blob(grid: Grid = GRID) -> Walled:
+    """A closed solid without a wall, fuller below."""
+    return revolved([(0, 0, OUTER), (25, 0, OUTER), (35, 20, OUTER), (20, 120, OUTER), (0, 120, OUTER)], grid)
+
+
+def tunnelled(part: Walled, height: float, width: float, turn: float = 0.0) -> Walled:
+    """A closed solid with a tunnel, about square and `width` wide, through its axis at a height, at an angle about it.
+
+    The faces within twice the width are left out at both ends, and the vertices about the gap are drawn together.
+    """
+    vertices, faces = part.vertices.copy(), part.faces
+    middle = np.repeat(vertices[faces].mean(axis=1).reshape(-1, 2, 3).mean(axis=1), 2, axis=0)  # of pairs: quads
+    along = np.array([np.cos(turn), np.sin(turn), 0.0])
+    gone, rims = np.zeros(len(faces), dtype=bool), []
+    for sense in (1.0, -1.0):
+        off = middle - [0.0, 0.0, height]
+        beside = off - np.outer(off @ along, along)
+        patch = np.abs(beside).max(axis=1) < max(width, 1.01 * np.abs(beside).max(axis=1).min())
+        patch &= sense * (off @ along) > 0.0
+        gone |= patch
+        rims.append(loops(faces[patch])[0])
+    for rim in rims:
+        centre = vertices[rim].mean(axis=0)
+        vertices[rim] = centre + 0.5 * width * (vertices[rim] - centre) / np.abs(vertices[rim] - centre).max()
+    first, second = rims[0], rims[1][::-1]
+    second = np.roll(second, -int(np.argmin(np.linalg.norm(vertices[second] - vertices[first[0]], axis=1))))
+    following, beyond = np.roll(first, -1), np.roll(second, -1)
+    walls = np.concatenate([np.column_stack([first, following, second]), np.column_stack([following, beyond, second])])
+    return Walled(vertices, np.concatenate([faces[~gone], walls]),
+                  np.concatenate([part.skin[~gone], np.full(len(walls), OUTER)]))  # fmt: skip

@@ -12,6 +12,8 @@ _TURN = np.cos(np.radians(30.0))
 """A skin ends where it turns by more than this towards the other: a face of an end, a chamfer of 45 degrees."""
 _FAR, _THROUGH = 2.0, 3.0
 """A face is not across the wall that is more than this times as far off as usual, and as the other side is."""
+_STEPS = 4
+"""Steps from face to face, over which a face of the skin counts: two rows of pairs of triangles."""
 
 
 def across(sight: Sight, side: Ints, corners: Floats) -> tuple[Bools, float]:
@@ -58,7 +60,24 @@ def without_rims(sight: Sight, graph: FaceGraph, side: Ints, found: Bools) -> In
 
 
 def _alike(sight: Sight, graph: FaceGraph, skin: Bools, zone: Bools) -> Floats:
-    """Cosine (k,) between the normal of each face of the zone and those of the skin, continued into it."""
+    """Cosine (k,) between the normal of each face of the zone and those of the skin, continued into it.
+
+    Normals continued over an edge that runs along the part, as of a duct, are those of neither side: there the face of
+    the skin counts from which a few steps lead to the face over others that are like it.
+    """
     normals = graph.extended(sight.normals, skin, zone)
     size = np.maximum(np.linalg.norm(normals, axis=1), np.finfo(float).tiny)
-    return np.asarray(np.einsum("ij,ij->i", normals, sight.normals[zone]) / size)
+    best = np.zeros(len(skin))
+    best[zone] = np.einsum("ij,ij->i", normals, sight.normals[zone]) / size
+    seed = np.where(skin, np.arange(len(skin)), -1)
+    tail, head = np.concatenate([graph.first, graph.second]), np.concatenate([graph.second, graph.first])
+    tail, head = tail[zone[head]], head[zone[head]]
+    for _ in range(_STEPS):
+        led = seed[tail] >= 0
+        source, target = seed[tail[led]], head[led]
+        like = np.einsum("ij,ij->i", sight.normals[source], sight.normals[target])
+        order = np.argsort(like, kind="stable")
+        order = order[like[order] > _TURN]
+        seed[target[order]] = source[order]  # the most alike comes last, and stays
+        np.maximum.at(best, target, like)
+    return best[zone]

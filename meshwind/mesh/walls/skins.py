@@ -12,8 +12,9 @@ from meshwind.mesh.walls.rims import across, without_rims
 from meshwind.mesh.walls.sides import INNER, OUTER, RIM, hollow, sides
 from meshwind.mesh.walls.sight import Sight
 
-_ACROSS = 0.5
-"""Share of the surface that must have the other skin across the wall."""
+_ACROSS, _BORED = 0.5, 0.8
+"""Share of the surface that must have the other skin across the wall, or of the inside alone where that is looked for
+closely: wide flanges have nothing across, and a bore with a thick wall is little of the surface."""
 _SLENDER = 2.0
 """Length of a skin from rim to rim over the wall's thickness, at least: a torus of round wire has 1.3 and 1.8."""
 _DEEP = 0.5
@@ -52,7 +53,9 @@ def skins(vertices: Floats, faces: Ints, hardly: bool = False) -> tuple[Skins | 
     if (side == OUTER).all() or (side == INNER).all():
         return None, None
     found, thickness = across(sight, side, vertices[faces])
-    if area[found].sum() < _ACROSS * area.sum():
+    inside = side == INNER
+    bored = hardly and area[found & inside].sum() > _BORED * area[inside].sum()
+    if not bored and area[found].sum() < _ACROSS * area.sum():
         return None, None
     label = _mended(faces, graph, without_rims(sight, graph, side, found))
     outer, inner = faces[label == OUTER], faces[label == INNER]
