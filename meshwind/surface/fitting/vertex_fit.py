@@ -25,6 +25,9 @@ SMOOTHING = 1e-4
 """Bending energy against data at the net's own wave length: small beside the spline's error, of the same order."""
 GAIN = 0.95
 """A finer net must bring the expected error below this share of the best so far, or the mesh supports no finer."""
+FLAT = 0.9
+"""A finer net that leaves more than this share of the least noise so far resolves nothing more: what a part's smooth
+shape leaves falls by more from net to net, and by 0.7 along a crease."""
 SUPPORT = 0.5
 """Most control points per vertex where vertices alone are followed."""
 NEAR = 1e-3
@@ -82,7 +85,7 @@ def fit_vertices(
         if size > SUPPORT * len(samples.points) or idle >= IDLE_NETS:
             break
         trial = _fit(fitted.samples, spans, lengths, PASSING, fitted.surface)
-        level = level + 1 if trial.noise > GAIN * noise else 0
+        level = level + 1 if trial.noise > FLAT * noise else 0
         noise = min(noise, trial.noise)
         idle = 0 if trial.expected < GAIN * fitted.expected else idle + 1
         if trial.expected < fitted.expected:
