@@ -12,7 +12,7 @@ from meshwind.mesh.geometry.areas_and_volumes import areas, edge_lengths
 from meshwind.mesh.opening.choose_ends import End
 from meshwind.mesh.opening.curved_facets import CurvedFacets
 from meshwind.mesh.opening.cut_opening import cut_at_lip, cut_opening
-from meshwind.mesh.opening.plane import Plane, new_rim, opened_by_plane
+from meshwind.mesh.opening.plane import FLAT, Plane, new_rim, opened_by_plane
 from meshwind.mesh.opening.poles import Lip
 
 _MAX_AREA = 1.0 / 3.0
@@ -37,7 +37,7 @@ _FLATTER = 0.5
 class Opening:
     """An opening that was cut at a pole: its radius and how, "level" or "plane"; for a plane, that of its rim's area.
 
-    why: reason why "auto" took the plane, in a sentence; empty if it took a level line, or if a way was requested.
+    why: reason why "auto" took the plane, or why a plane's opening is wider than wanted, in a sentence; else empty.
     """
 
     radius: float
@@ -129,8 +129,9 @@ def _open(surface: CurvedFacets, pole: _Pole, limits: _Limits) -> tuple[CurvedFa
         return cut_opening(surface, pole.end.centre, pole.other.centre, radius, limits.max_area)
 
     if pole.by == "plane":
-        cut, _ = _fitting(surface, pole, limits, by_plane)
-        return cut, Opening(new_rim(surface, cut).radius, "plane")
+        cut, radius = _fitting(surface, pole, limits, by_plane)
+        wide = new_rim(surface, cut).radius
+        return cut, Opening(wide, "plane", _flatness(pole.end, radius, wide) if wide > FLAT * radius else "")
     cut, radius = _fitting(surface, pole, limits, by_level_line)
     if pole.by == "auto":
         uneven = new_rim(surface, cut).unevenness(pole.end.centre, pole.outward)
@@ -141,6 +142,14 @@ def _open(surface: CurvedFacets, pole: _Pole, limits: _Limits) -> tuple[CurvedFa
             if less < _FLATTER * uneven:
                 return flat, Opening(rim.radius, "plane", _reason(pole.end, uneven, less))
     return cut, Opening(radius, "level")
+
+
+def _flatness(end: End, wanted: float, wide: float) -> str:
+    """Why the opening by a plane is wider than wanted."""
+    return (
+        f"the end at {end.position} is flat, so that a plane opens it to radius {wide:.4g} instead of {wanted:.4g}; "
+        "--opening-by level keeps to the radius"
+    )
 
 
 def _reason(end: End, level: float, plane: float) -> str:

@@ -15,7 +15,7 @@ _SHALLOW, _DEEPEST = 1e-4, 1.0 / 3.0
 """Depths of the plane below the pole that are tried, over the distance of the ends."""
 _BELOW = 0.01
 """Over that distance, how far below a flat end the plane lies: an opening as small as is wanted does not fit there."""
-_FLAT = 1.2
+FLAT = 1.2
 """The end is flat where the shallowest rim is wider than is wanted by this factor."""
 _STEPS = 16
 """Steps in which the depth is found, to 1e-4 of itself."""
@@ -113,7 +113,7 @@ def opened_by_plane(surface: CurvedFacets, plane: Plane, radius: float) -> Curve
             low = middle.depth
     if best is None:
         return None
-    if best[1] > _FLAT * radius:
+    if best[1] > FLAT * radius:
         return _cut(surface, replace(plane, depth=high + _BELOW * length), radius)[0] or best[0]
     return best[0]
 
