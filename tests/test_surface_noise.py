@@ -11,7 +11,6 @@ from meshwind.core.cast import Floats
 from meshwind.mesh import annulus as opened
 from meshwind.mesh import mesh_from
 from meshwind.surface import fit
-from meshwind.surface.fitting.noise import roughness
 from meshwind.surface.interpolate import Formula
 
 DIAGONAL = 4.8
@@ -37,16 +36,6 @@ def test_noise_is_smoothed(level: float) -> None:
     assert np.sqrt(np.mean(off**2)) < 0.6 * level * DIAGONAL
     assert surface.error is not None
     assert surface.error.to_surface_rms == pytest.approx(level * DIAGONAL, rel=0.15)
-
-
-@pytest.mark.parametrize("level", [3e-4, 1e-3])
-def test_roughness_is_the_noise(level: float) -> None:
-    part = annulus(noisy(level), 4000, 0.7)
-    assert roughness(part.vertices) == pytest.approx(level * DIAGONAL, rel=0.15)
-
-
-def test_roughness_of_a_smooth_part_is_small() -> None:
-    assert roughness(annulus(vase, 4000, 0.7).vertices) < 2e-4 * DIAGONAL
 
 
 def test_long_flat_triangles_do_not_swing() -> None:

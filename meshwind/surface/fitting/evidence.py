@@ -28,6 +28,8 @@ BARE, ACROSS = 0.02, 2
 """A net whose facets cross more than so many spans over this share of the area is not held by vertices there."""
 STRAY = 0.01
 """Share of the area over which a surface may lie further off the facets than twice their own sagitta."""
+ALIKE = 0.15
+"""Most likeness of neighbours' distances that is taken for noise: noise shows -0.2 to 0, a shape not followed up to 0.9."""
 RESOLVED = 0.1
 """Vertices that a net predicts to this share of the mesh's own elevation are resolved by it, whatever their noise."""
 
@@ -63,12 +65,14 @@ class Standing:
     """How the vertices stand to a surface that was fitted to them.
 
     elevation: rms height of a vertex over the mean of its neighbours, on the surface; correlation and t: between
-    the vertices' distances from the surface and that height, both less their neighbours' means.
+    the vertices' distances from the surface and that height, both less their neighbours' means; alike: correlation
+    between a vertex's distance and the mean of its neighbours', none for noise and much for a shape not followed.
     """
 
     elevation: float
     correlation: float
     t: float
+    alike: float
 
     @property
     def decimated(self) -> bool:
@@ -79,7 +83,7 @@ class Standing:
 def vertices_lead(fitted: VertexFit, found: Standing) -> bool:
     """Whether the vertices, noisy or not, are truer than the facets, and hold the net that was fitted to them."""
     surface, samples = fitted.surface, fitted.samples
-    resolved = fitted.settled or fitted.expected < RESOLVED * found.elevation
+    resolved = (fitted.settled and found.alike < ALIKE) or fitted.expected < RESOLVED * found.elevation
     return resolved and not (found.decimated or bare(samples, surface.spans) or strays(fitted))
 
 
@@ -93,7 +97,9 @@ def standing(surface: Surface, samples: Samples, near: Neighbourhoods) -> Standi
     scale = float(np.sqrt((rough**2).sum() * (uneven**2).sum()))
     correlation = float((rough * uneven).sum() / scale) if scale > 0.0 else 0.0
     height = float(np.sqrt(np.mean(elevation[inner] ** 2))) if inner.any() else 0.0
-    return Standing(height, correlation, correlation * float(np.sqrt(max(inner.sum(), 1))))
+    square = float((off[inner] ** 2).sum())
+    alike = float((off * near.mean(off))[inner].sum()) / square if square > 0.0 else 0.0
+    return Standing(height, correlation, correlation * float(np.sqrt(max(inner.sum(), 1))), alike)
 
 
 def strays(fitted: VertexFit) -> bool:

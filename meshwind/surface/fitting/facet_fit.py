@@ -32,12 +32,14 @@ ENOUGH = 4e-5
 """Rms distance over the part's size that is left of no facets' fit: no mesh shows that its part is known better."""
 LEVEL, IDLE_NETS = 0.97, 3
 """A net that lowers the noise found by less than this resolves nothing more; so many in a row end the refinement."""
-MOST_PER_VERTEX, MOST_CURVED, MOST = 12.0, 1.0, 150_000
+MOST_PER_VERTEX, MOST_CURVED, MOST = 24.0, 1.0, 150_000
 """Most control points per vertex, on flat facets and on curved ones, which say no more than their corners; in all."""
-FEWEST = 2e-2
+FEWEST = 1e-2
 """The coarsest net that is tried, over the finest: coarser ones cost as much of the facets' time and show nothing."""
 EXACT, ROUGHLY = 1e-7, 1e-3
 """Tolerances of the solutions: for the points, and for a random right side, of which only a mean is wanted."""
+RESOLVING_NONE = 1.0
+"""Control points per vertex of a net that smooths the facets: finer ones follow them, and show less of their error."""
 COMPARED, CURVED = 0.6, 0.4
 """Control points per vertex at which curved triangles and flat ones are compared; and how much less of the curved
 than of the flat ones a net must leave there.  On sampled parts it leaves 0.15 to 0.27, on decimated ones from 0.59."""
@@ -51,7 +53,7 @@ class FacetFit:
 
     points, data (k, 3): points on the flat facets, and those, on flat or curved ones, that are fitted; uv (k, 2): where
     each of them is on the surface; noise (n,): a random noise of the vertices, and followed (k,): what the net follows
-    of it.
+    of it; straddle (m,): how far the facets lie off the part, found from a net that does not resolve them.
     """
 
     surface: Surface
@@ -62,6 +64,7 @@ class FacetFit:
     uv: Floats
     followed: Floats
     noise: Floats
+    straddle: Floats | None = None
 
     @cached_property
     def _heights(self) -> tuple[Floats, Floats]:
@@ -81,6 +84,11 @@ class FacetFit:
     def straddling(self, near: Neighbourhoods) -> Floats:
         """How far the points (k,) would lie off the part where facets straddle it, were the surface the part."""
         return straddling(self.heights, self.points, near)
+
+    def own_error(self, near: Neighbourhoods) -> Floats:
+        """Rms (m,) of `straddling` on each of the facets."""
+        square = self.points.per_facet(self.straddling(near) ** 2, len(self.samples.facets.faces))
+        return np.asarray(np.sqrt(square))
 
     def sagitta(self, near: Neighbourhoods) -> float:
         """Rms of `straddling`, away from creases."""
@@ -175,18 +183,20 @@ def fit_facets(
     size = float(np.linalg.norm(np.ptp(samples.points, axis=0)))
     enough = tolerance if curved else max(tolerance, ENOUGH * size)
     fitted = fitter.fit(first, curved=curved)
-    noise, idle = fitted.vertex_noise, 0
+    noise, idle, straddle = fitted.vertex_noise, 0, fitted.own_error(near)
     for spans in finer:
         if fitted.left <= enough or idle >= IDLE_NETS:
             break
         if not curved and fitted.means <= ROUGH_SHARE * fitted.sagitta(near):
             corrected = fitter.corrected(fitted)
             if corrected.means <= SHARE * corrected.sagitta(near):
-                return corrected
+                return replace(corrected, straddle=straddle)
         fitted = fitter.fit(spans, fitted, curved=curved)
         idle = idle + 1 if fitted.vertex_noise > LEVEL * noise else 0
         noise = min(noise, fitted.vertex_noise)
-    return fitter.corrected(fitted)
+        if _size(spans) <= RESOLVING_NONE * count:
+            straddle = fitted.own_error(near)
+    return replace(fitter.corrected(fitted), straddle=straddle)
 
 
 def _within(nets: list[tuple[int, int]], most: float) -> list[tuple[int, int]]:

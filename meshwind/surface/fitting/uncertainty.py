@@ -56,8 +56,8 @@ def of_facets(fitted: FacetFit, near: Neighbourhoods) -> Doubt:
     """What the facets leave and how far they straddle the part, where they led."""
     surface, samples, points = fitted.surface, fitted.samples, fitted.points
     square, own = fitted.off**2, fitted.straddling(near)
-    if not fitted.curved:
-        square += own**2
+    if not fitted.curved and fitted.straddle is not None:
+        square += np.maximum(fitted.own_error(near), fitted.straddle)[points.facet] ** 2
     table = _table(surface.spans, fitted.uv, points.area * square, points.area)
     stands = ((samples.points - surface.points(samples.uv)) * surface.normals(samples.uv)).sum(axis=1)
     noise = float(np.sqrt(np.mean(stands[samples.trusted] ** 2)))

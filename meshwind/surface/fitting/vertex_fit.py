@@ -90,7 +90,8 @@ def fit_vertices(
         idle = 0 if trial.expected < GAIN * fitted.expected else idle + 1
         if trial.expected < fitted.expected:
             fitted, final = trial, False
-    return replace(fitted if final else _refit(fitted, lengths), settled=level >= IDLE_NETS)
+    fitted = fitted if final else _refit(fitted, lengths)
+    return replace(fitted, settled=level >= IDLE_NETS)
 
 
 def _refit(fitted: VertexFit, lengths: tuple[float, float]) -> VertexFit:
