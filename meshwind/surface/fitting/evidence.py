@@ -29,7 +29,7 @@ BARE, ACROSS = 0.02, 2
 STRAY = 0.01
 """Share of the area over which a surface may lie further off the facets than twice their own sagitta."""
 ALIKE = 0.15
-"""Most likeness of neighbours' distances that is taken for noise: noise shows -0.2 to 0, a shape not followed up to 0.9."""
+"""Most likeness of neighbours' distances that is taken for noise: noise shows -0.2 to 0, a missed shape up to 0.9."""
 RESOLVED = 0.1
 """Vertices that a net predicts to this share of the mesh's own elevation are resolved by it, whatever their noise."""
 
