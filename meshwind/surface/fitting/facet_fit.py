@@ -19,7 +19,7 @@ from meshwind.surface.fitting.evidence import Neighbourhoods, rms_away_from_crea
 from meshwind.surface.fitting.linear_systems import solve
 from meshwind.surface.fitting.quadrature import FacetPoints, facet_points, heights
 from meshwind.surface.fitting.resample import resampled
-from meshwind.surface.fitting.samples import CLOSE, Samples
+from meshwind.surface.fitting.samples import CLOSE, Facets, Samples
 from meshwind.surface.foot import near_feet
 from meshwind.surface.surface import Surface
 
@@ -43,6 +43,8 @@ RESOLVING_NONE = 1.0
 COMPARED, CURVED = 0.6, 0.4
 """Control points per vertex at which curved triangles and flat ones are compared; and how much less of the curved
 than of the flat ones a net must leave there.  On sampled parts it leaves 0.15 to 0.27, on decimated ones from 0.59."""
+SMOOTHED = 2
+"""Rings of neighbours over which the two are compared: few facets may lie close by chance."""
 RESOLVING = 20
 """Fewest spans around of a net that is compared: coarser ones leave more of a circle than its facets do."""
 
@@ -51,39 +53,42 @@ RESOLVING = 20
 class FacetFit:
     """One net's fit to the facets.
 
-    points, data (k, 3): points on the flat facets, and those, on flat or curved ones, that are fitted; uv (k, 2): where
-    each of them is on the surface; noise (n,): a random noise of the vertices, and followed (k,): what the net follows
-    of it; straddle (m,): how far the facets lie off the part, found from a net that does not resolve them.
+    points, data (k, 3): points on the flat facets, and those, on flat or curved ones, that are fitted; curved (n,): by
+    which share the data lie on curved facets, at the vertices; uv (k, 2): where each of the data is on the surface;
+    noise, followed (k,): a random noise of the vertices, and what the net follows of it; straddle (m,): how far the
+    facets lie off the part, found from a net that does not resolve them.
     """
 
     surface: Surface
     samples: Samples
     points: FacetPoints
-    curved: bool
+    curved: Floats
     data: Floats
     uv: Floats
-    followed: Floats
     noise: Floats
+    followed: Floats
     straddle: Floats | None = None
 
     @cached_property
     def _heights(self) -> tuple[Floats, Floats]:
-        chord = self.points.between(self.surface.points(self.samples.uv))
-        return heights(self.surface, self.uv, self.data, chord)
+        feet = Facets(self.surface.points(self.samples.uv), self.samples.facets.faces)
+        return heights(self.surface, self.uv, self.data, self.points.curved(feet, self.curved))
 
     @property
     def off(self) -> Floats:
         """Heights (k,) of the data over the surface."""
         return self._heights[0]
 
-    @property
-    def heights(self) -> Floats:
-        """Heights (k,) of the surface over its own triangles between the feet of the vertices."""
-        return self._heights[1]
-
     def straddling(self, near: Neighbourhoods) -> Floats:
-        """How far the points (k,) would lie off the part where facets straddle it, were the surface the part."""
-        return straddling(self.heights, self.points, near)
+        """How far the data (k,) would lie off the part, were the surface the part: on flat facets if they straddle it.
+
+        The heights of the surface over its own flat or curved triangles, whose corners are the feet of the vertices.
+        """
+        height = self._heights[1]
+        if not self.curved.any():
+            return straddling(height, self.points, near)
+        flat = 1.0 - self.points.between(self.curved[:, None])[:, 0]
+        return np.asarray(height + flat * (straddling(height, self.points, near) - height))
 
     def own_error(self, near: Neighbourhoods) -> Floats:
         """Rms (m,) of `straddling` on each of the facets."""
@@ -130,16 +135,16 @@ class FacetFitter:
     def _noise(self) -> Floats:
         return np.random.default_rng(0).standard_normal((len(self.samples.points), 1))
 
-    def fit(self, spans: tuple[int, int], before: FacetFit | None = None, *, curved: bool = False) -> FacetFit:
+    def fit(self, spans: tuple[int, int], curved: Floats, before: FacetFit | None = None) -> FacetFit:
         """Fit one net, the points where the chart has them; before: a coarser fit to start from."""
         samples = self.samples
         points = facet_points(samples, spans)
-        data = points.curved(samples) if curved else points.between(samples.points)
+        data = points.curved(samples.facets, curved)
         uv, noise = points.places(samples.uv), points.between(self._noise)
         net = self._solve(spans, points, uv, np.concatenate([data, noise], axis=1), before.surface if before else None)
         answer = Surface(np.ascontiguousarray(net[..., 3:].repeat(3, axis=2))).points(uv)[:, 0]
         surface = Surface(np.ascontiguousarray(net[..., :3]))
-        return FacetFit(surface, samples, points, curved, data, uv, answer, noise[:, 0])
+        return FacetFit(surface, samples, points, curved, data, uv, noise[:, 0], answer)
 
     def corrected(self, fitted: FacetFit) -> FacetFit:
         """The same net fitted again with the points at their feet on it."""
@@ -178,20 +183,21 @@ def fit_facets(
     where it no longer lowers the noise that the net leaves: then all but noise is resolved.
     """
     fitter, count = FacetFitter(samples, lengths), len(samples.points)
-    curved = not flat and _curves(fitter, nets)
-    first, *finer = _within(nets, (MOST_CURVED if curved else MOST_PER_VERTEX) * count)
+    curved = np.zeros(count) if flat else _curved(fitter, nets, near)
+    share = float(curved.mean())
+    first, *finer = _within(nets, MOST_CURVED**share * MOST_PER_VERTEX ** (1.0 - share) * count)
     size = float(np.linalg.norm(np.ptp(samples.points, axis=0)))
-    enough = tolerance if curved else max(tolerance, ENOUGH * size)
-    fitted = fitter.fit(first, curved=curved)
+    enough = tolerance if share > 0.5 else max(tolerance, ENOUGH * size)
+    fitted = fitter.fit(first, curved)
     noise, idle, straddle = fitted.vertex_noise, 0, fitted.own_error(near)
     for spans in finer:
         if fitted.left <= enough or idle >= IDLE_NETS:
             break
-        if not curved and fitted.means <= ROUGH_SHARE * fitted.sagitta(near):
+        if fitted.means <= ROUGH_SHARE * fitted.sagitta(near):
             corrected = fitter.corrected(fitted)
             if corrected.means <= SHARE * corrected.sagitta(near):
                 return replace(corrected, straddle=straddle)
-        fitted = fitter.fit(spans, fitted, curved=curved)
+        fitted = fitter.fit(spans, curved, fitted)
         idle = idle + 1 if fitted.vertex_noise > LEVEL * noise else 0
         noise = min(noise, fitted.vertex_noise)
         if _size(spans) <= RESOLVING_NONE * count:
@@ -205,12 +211,22 @@ def _within(nets: list[tuple[int, int]], most: float) -> list[tuple[int, int]]:
     return [net for net in nets if FEWEST * most <= _size(net) <= most] or [nets[0]]
 
 
-def _curves(fitter: FacetFitter, nets: list[tuple[int, int]]) -> bool:
-    """Whether a smooth surface comes much closer to curved triangles through the vertices than to the flat ones."""
+def _curved(fitter: FacetFitter, nets: list[tuple[int, int]], near: Neighbourhoods) -> Floats:
+    """Where (n,) a smooth surface comes much closer to curved triangles through the vertices than to the flat ones."""
     fine, count = [net for net in nets if net[0] >= RESOLVING], len(fitter.samples.points)
     spans = min(fine, key=lambda net: abs(np.log(_size(net) / (COMPARED * count))))
-    flat = fitter.fit(spans)
-    return fitter.fit(spans, flat, curved=True).left < CURVED * flat.left
+    flat = fitter.fit(spans, np.zeros(count))
+    bent = fitter.fit(spans, np.ones(count), flat)
+    faces = fitter.samples.facets.faces
+    left = []
+    for each in (flat, bent):
+        square = each.points.per_facet(each.off**2, len(faces))
+        for _ in range(SMOOTHED):
+            square = near.facet_mean(square)
+        left.append(square)
+    closer = (left[1] < CURVED**2 * left[0]).astype(np.float64)
+    count_at = np.bincount(faces.ravel(), minlength=count)
+    return np.asarray(np.bincount(faces.ravel(), np.repeat(closer, 3), count) / np.maximum(count_at, 1))
 
 
 def _size(spans: tuple[int, int]) -> int:

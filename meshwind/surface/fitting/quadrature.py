@@ -10,7 +10,7 @@ from meshwind.core.cast import Floats, Ints
 from meshwind.core.threads import parallel_for
 from meshwind.surface.evaluate import SU, SV, S, frame
 from meshwind.surface.fitting.infill import spans_across, tangent_normals
-from meshwind.surface.fitting.samples import Samples
+from meshwind.surface.fitting.samples import Facets, Samples
 from meshwind.surface.surface import Surface
 
 FEWEST, FINEST = 2, 24
@@ -46,13 +46,18 @@ class FacetPoints:
         out[:, 0] += (self.share * self.turns).sum(axis=1)
         return out
 
-    def curved(self, samples: Samples) -> Floats:
-        """The points (k, 3) on curved point-normal triangles, flat at creases, instead of on the facets."""
-        faces = samples.facets.faces
-        normals = tangent_normals(samples.points[faces], samples.facets.normals[faces])
+    def curved(self, facets: Facets, share: Floats) -> Floats:
+        """The points (k, 3) moved by a share (n,), at the vertices, from facets to curved triangles with their corners.
+
+        The curved point-normal triangles are flat at creases.
+        """
+        flat = self.between(facets.points)
+        if not share.any():
+            return flat
+        normals = tangent_normals(facets.points[facets.faces], facets.normals[facets.faces])
         out = np.empty((len(self.facet), 3))
-        parallel_for(_curved, len(out), 20_000, self.facet, self.corners, self.share, samples.points, normals, out)
-        return out
+        parallel_for(_curved, len(out), 20_000, self.facet, self.corners, self.share, facets.points, normals, out)
+        return np.asarray(flat + self.between(share[:, None]) * (out - flat))
 
     def per_facet(self, values: Floats, faces: int) -> Floats:
         """Means (m,) over each of the facets of values (k,) at the points."""

@@ -16,7 +16,7 @@ from meshwind.surface.fitting.quadrature import facet_points, heights
 from meshwind.surface.fitting.vertex_fit import VertexFit
 
 REACH = 2.0
-"""Spans over which what the data leave is smoothed: a control point moves the surface two spans either way."""
+"""Least spans over which what the data leave is smoothed: a control point moves the surface two spans either way."""
 COVER = 3.0
 """The stated uncertainty over the rms of what is left: 99 in 100 places of vessels whose curvature jumps lie within."""
 FLOOR = 0.1
@@ -55,17 +55,22 @@ def of_vertices(fitted: VertexFit, near: Neighbourhoods) -> Doubt:
 def of_facets(fitted: FacetFit, near: Neighbourhoods) -> Doubt:
     """What the facets leave and how far they straddle the part, where they led."""
     surface, samples, points = fitted.surface, fitted.samples, fitted.points
+    reach = max(REACH, float(np.sqrt(np.prod(surface.spans) / len(samples.points))))
     square, own = fitted.off**2, fitted.straddling(near)
-    if not fitted.curved and fitted.straddle is not None:
+    if fitted.straddle is not None:
         square += np.maximum(fitted.own_error(near), fitted.straddle)[points.facet] ** 2
-    table = _table(surface.spans, fitted.uv, points.area * square, points.area)
+    table = _table(surface.spans, fitted.uv, points.area * square, points.area, reach)
     stands = ((samples.points - surface.points(samples.uv)) * surface.normals(samples.uv)).sum(axis=1)
     noise = float(np.sqrt(np.mean(stands[samples.trusted] ** 2)))
+    if fitted.curved.any():  # where the vertices are to lie on the part
+        weight = samples.trusted * fitted.curved
+        missed = _table(surface.spans, samples.uv, weight * stands**2, samples.trusted.astype(np.float64), reach)
+        table = frozen(np.hypot(table, missed))
     sagitta = rms_away_from_creases(own, points, samples)
-    return Doubt("curved facets" if fitted.curved else "facets", table, noise, sagitta)
+    return Doubt("curved facets" if fitted.curved.mean() > 0.5 else "facets", table, noise, sagitta)
 
 
-def _table(spans: tuple[int, int], uv: Floats, square: Floats, weight: Floats) -> Floats:
+def _table(spans: tuple[int, int], uv: Floats, square: Floats, weight: Floats, reach: float = REACH) -> Floats:
     """Uncertainty in the spans of a net from weighted squared distances (k,) of data at places uv (k, 2)."""
     rows, columns = spans
     i = np.floor((uv[:, 0] - np.floor(uv[:, 0])) * rows).astype(np.int64) % rows
@@ -75,10 +80,10 @@ def _table(spans: tuple[int, int], uv: Floats, square: Floats, weight: Floats) -
     count = np.asarray(np.bincount(cell, weight, rows * columns), dtype=np.float64).reshape(spans)
     mean, usual = float(total.sum() / max(count.sum(), 1e-300)), max(float(count.mean()), 1e-300)
     # a slight pull to the mean of the whole, for spans that hold next to no data
-    total, count = _smooth(total) + PULL * mean * usual, _smooth(count) + PULL * usual
+    total, count = _smooth(total, reach) + PULL * mean * usual, _smooth(count, reach) + PULL * usual
     return frozen(COVER * np.sqrt(np.maximum(total / count, FLOOR**2 * mean)))
 
 
-def _smooth(table: Floats) -> Floats:
-    around = gaussian_filter1d(table, REACH, axis=0, mode="wrap")
-    return np.asarray(gaussian_filter1d(around, REACH, axis=1, mode="nearest"))
+def _smooth(table: Floats, reach: float) -> Floats:
+    around = gaussian_filter1d(table, reach, axis=0, mode="wrap")
+    return np.asarray(gaussian_filter1d(around, reach, axis=1, mode="nearest"))
