@@ -28,11 +28,14 @@ def saved(part: Walled, file: Path) -> Path:
 
 
 def wound(part: Walled, folder: Path, *options: str) -> tuple[str, list[str], Path]:
-    """What winding a part prints, the notes of its report, and its folder."""
+    """What winding a part prints, the notes of its report, and its folder; the report has its wall."""
     out = folder / "wound"
     done = meshwind("wind", saved(part, folder / "part.obj"), "--paths", "4", "--no-render", "--out", out, *options)
     assert done.returncode == 0, done.stderr
-    return done.stdout, json.loads((out / "report.json").read_text(encoding="utf-8"))["notes"], out
+    report = json.loads((out / "report.json").read_text(encoding="utf-8"))
+    assert report["mesh"]["wall"]["side"] in report["mesh"]["ends"]
+    assert f"the wall is {report['mesh']['wall']['thickness']:.3g} thick" in report["notes"][0]
+    return done.stdout, report["notes"], out
 
 
 def test_a_chamfered_elbow_is_wound_on_its_outside(tmp_path: Path) -> None:

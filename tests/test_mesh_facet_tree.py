@@ -6,6 +6,7 @@ from mesh_shapes import ball, box, cone, joined
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.mesh.geometry.facet_tree import FacetTree
+from meshwind.mesh.geometry.rays import cast
 from meshwind.mesh.repair.overlaps import overlaps
 
 
@@ -66,3 +67,37 @@ def test_overlaps_do_not_depend_on_the_unit(scale: float) -> None:
     notes = overlaps(twice, both)
     assert notes[0].startswith("noticed that the surface runs through itself: 160 of 3840 edges")
     assert overlaps(scale * twice, both) == notes
+
+
+def meeting(vertices: Floats, faces: Ints, start: Floats, ray: Floats, least: float) -> float:
+    """The least distance above `least` at which a ray meets a triangle, by trying all: infinity if there is none."""
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    normal = np.cross(b - a, c - a)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        away = np.einsum("ij,ij->i", a - start, normal) / (normal @ ray)
+    place = start + np.where(np.isfinite(away), away, 0.0)[:, None] * ray
+    inside = np.isfinite(away) & (away > least)
+    for one, two in ((a, b), (b, c), (c, a)):
+        inside &= np.einsum("ij,ij->i", np.cross(two - one, place - one), normal) >= 0.0
+    return float(away[inside].min(initial=np.inf))
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
+@pytest.mark.parametrize("part", [joined(ball(2), box((3, 0, 0))), cone(around=9, along=40)])
+def test_rays_meet_the_first_face_of_all(part: tuple[Floats, Ints], scale: float) -> None:
+    rng = np.random.default_rng(2)
+    start, ray = rng.normal(size=(400, 3)), rng.normal(size=(400, 3))
+    ray /= np.linalg.norm(ray, axis=1, keepdims=True)
+    face, distance = cast(FacetTree.of(scale * part[0], part[1]), scale * start, ray, 0.1 * scale)
+    right = [meeting(*part, *each, 0.1) for each in zip(start, ray, strict=True)]
+    assert np.allclose(distance / scale, right, rtol=1e-9)
+    assert np.array_equal(face < 0, np.isinf(right)) and 40 < (face >= 0).sum() < 360
+
+
+def test_rays_along_axes_meet_flat_boxes() -> None:
+    """Boxes of the tree without thickness, and components of the ray that are 0."""
+    vertices, faces = box(size=(1, 1, 1))
+    start = np.array([[0.3, 0.4, -1.0], [0.3, 0.4, 0.5], [0.3, 1.4, -1.0]])
+    face, distance = cast(FacetTree.of(vertices, faces), start, np.tile([0.0, 0.0, 1.0], (3, 1)), 0.0)
+    assert distance.tolist() == [1.0, 0.5, np.inf]
+    assert (vertices[faces[face[0]]][:, 2] == 0).all() and face[2] == -1

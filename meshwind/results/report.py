@@ -121,6 +121,8 @@ def mesh_figures(mesh: Mesh, units: str, chart: Chart | None) -> MeshFigures:
     }
     if chart is not None:
         figures["ends"] = chart.annulus.ends
+        if chart.annulus.wall is not None:
+            figures["wall"] = {"side": chart.annulus.wall.side, "thickness": chart.annulus.wall.thickness}
     return figures
 
 

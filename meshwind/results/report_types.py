@@ -14,6 +14,13 @@ class Spread(TypedDict):
     max: float | None
 
 
+class WallFigures(TypedDict):
+    """The skin that is wound of a part with a wall, "outer" or "inner", and the wall's median thickness."""
+
+    side: str
+    thickness: float
+
+
 class MeshFigures(TypedDict):
     """The mesh that was read, after repair; read_vertices and read_faces are those of the file."""
 
@@ -26,6 +33,7 @@ class MeshFigures(TypedDict):
     diagonal: float
     repairs: list[str]
     ends: NotRequired[str]
+    wall: NotRequired[WallFigures]
 
 
 class Distances(TypedDict):
