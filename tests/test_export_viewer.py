@@ -122,7 +122,7 @@ def test_bridges_what_is_not_at_rest_and_the_part_go(browser: webdriver.Chrome) 
 def test_maps_are_chosen_by_name(browser: webdriver.Chrome) -> None:
     choice = Select(browser.find_element(By.ID, "map"))
     offered = [option.text for option in choice.options]
-    assert offered == ["none", *(look.title for name, look in MAPS.items() if name != "fit_error")]
+    assert offered == ["none", *(look.title for name, look in MAPS.items() if name not in ("fit_error", "uncertainty"))]
     plain = settled(browser)
     for title in ("coverage", "windability"):
         choice.select_by_visible_text(title)

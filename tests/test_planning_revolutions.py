@@ -16,6 +16,7 @@ from meshwind.planning.pressing import intervals, pressing
 from meshwind.planning.revolutions import choose_revolutions
 from meshwind.planning.trials import trial
 from meshwind.surface import Surface, shapes
+from meshwind.surface.forms import fundamental_forms
 
 WAIST = 3.0 / (2.0 * np.pi)
 """Turns per v of the rulings of r^2 = 1 + z^2, |z| <= 1.5, at the waist: tan of the ruling is 1 there."""
@@ -70,7 +71,7 @@ def test_intervals_are_where_the_normal_curvature_presses() -> None:
     """Against a scan of (6.3) for both families, at random frames of every kind."""
     rng = np.random.default_rng(5)
     frames = rng.normal(size=(400, 6, 3))
-    low, high = intervals(frames)
+    low, high = intervals(fundamental_forms(frames))
     turns = rng.uniform(0.0, 4.0, 200)
     normal = np.cross(frames[:, 1], frames[:, 2])
     a, b, c = (-(frames[:, k] * normal).sum(axis=1)[:, None] for k in (3, 4, 5))

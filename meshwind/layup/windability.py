@@ -7,7 +7,7 @@ import numpy as np
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.vectors import TINY, unit
 from meshwind.surface.evaluate import SV
-from meshwind.surface.flatness import are_real
+from meshwind.surface.flatness import real_forms
 from meshwind.surface.forms import fundamental_forms
 from meshwind.surface.grid import midpoints, parameter_grid
 from meshwind.surface.principal import principal
@@ -101,16 +101,10 @@ def of_frames(frames: Floats, flat: float, place: tuple[Surface, Floats] | None 
 
     place: the surface and the points uv (k, 2) on it, whose hollows count only where they are real (see `flatness`).
     """
-    forms = fundamental_forms(frames)
+    forms = fundamental_forms(frames) if place is None else real_forms(*place, frames)
     sv = frames[:, SV]
-    k1, k2, direction, across = principal(frames, forms)
-    hollow, bulging = k2 < -flat, k1 > flat
-    if place is not None:
-        surface, uv = place
-        hollow[hollow] = are_real(surface, uv[hollow], across[hollow], k2[hollow])
-        bulging &= hollow  # elsewhere all directions press
-        bulging[bulging] = are_real(surface, uv[bulging], direction[bulging], k1[bulging])
-    kind = np.where(~hollow, CONVEX, np.where(bulging, SADDLE, CONCAVE))
+    k1, k2, direction = principal(frames, forms)
+    kind = np.where(k2 >= -flat, CONVEX, np.where(k1 <= flat, CONCAVE, SADDLE))
     # Euler: k1 cos^2 + k2 sin^2 = 0 at the angle whose tangent is sqrt(k1 / -k2)
     reach = np.arctan2(np.sqrt(np.maximum(k1, 0.0)), np.sqrt(np.maximum(-k2, 0.0)))
     reach = np.where(kind == CONVEX, 0.5 * np.pi, np.where(kind == CONCAVE, 0.0, reach))

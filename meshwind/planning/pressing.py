@@ -15,10 +15,9 @@ import numpy as np
 
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.vectors import TINY
-from meshwind.surface.flatness import are_real
-from meshwind.surface.forms import area_elements, fundamental_forms
+from meshwind.surface.flatness import real_forms
+from meshwind.surface.forms import Forms, area_elements
 from meshwind.surface.grid import parameter_grid
-from meshwind.surface.principal import principal
 from meshwind.surface.surface import Surface
 
 Intervals = tuple[tuple[float, float], ...]
@@ -84,7 +83,7 @@ def pressing(surface: Surface, flat: float | None = None, uv: Floats | None = No
     """Find the intervals at uv (k, 2), or at two points per span each way.
 
     flat: curvature, over the part's size, down to which a hollow counts as none; by default that of a fit's noise, and
-    nearly 0 on an analytic surface.  Deeper ones count as none where they are not real (see `flatness`).
+    nearly 0 on an analytic surface.  Deeper ones count as none where they are not real (see `real_forms`).
     """
     if flat is None:
         flat = _EXACT if surface.error is None else _FITTED
@@ -93,19 +92,8 @@ def pressing(surface: Surface, flat: float | None = None, uv: Floats | None = No
         uv = parameter_grid(u, v)
     frames = surface.frames(uv)
     area = area_elements(frames)
-    low, high = intervals(frames, _floors(surface, uv, frames, flat / surface.size))
+    low, high = intervals(real_forms(surface, uv, frames), flat / surface.size)
     return Pressing(frozen(np.array(uv)), frozen(low), frozen(high), frozen(area / max(float(area.sum()), TINY)))
-
-
-def _floors(surface: Surface, uv: Floats, frames: Floats, flat: float) -> Floats:
-    """Curvature (k,) down to which, below 0, a hollow counts as none: all of it where it is not real."""
-    bends = principal(frames, fundamental_forms(frames))
-    floors = np.full(len(uv), flat)
-    hollow = np.flatnonzero(bends.smallest < -flat)
-    real = are_real(surface, uv[hollow], bends.across[hollow], bends.smallest[hollow])
-    flattened = hollow[~real]
-    floors[flattened] = -bends.smallest[flattened]
-    return floors
 
 
 def _sites(spans: int) -> Floats:
@@ -115,12 +103,11 @@ def _sites(spans: int) -> Floats:
     return np.asarray((which[:, None] + _SITES).ravel() / spans)
 
 
-def intervals(frames: Floats, flat: float | Floats = 0.0) -> tuple[Floats, Floats]:
-    """Ends low, high (k, 2) of the intervals of n_rev >= 0 in which +n_rev and -n_rev press, at frames (k, 6, 3).
+def intervals(forms: Forms, flat: float = 0.0) -> tuple[Floats, Floats]:
+    """Ends low, high (k, 2) of the intervals of n_rev >= 0 in which +n_rev and -n_rev press, for forms at k points.
 
-    flat: the normal curvature (k,), or one for all, down to which, below 0, a fibre counts as pressing.
+    flat: the normal curvature down to which, below 0, a fibre counts as pressing.
     """
-    forms = fundamental_forms(frames)
     a, b, c = (second + flat * first for second, first in zip(forms.second, forms.first, strict=True))
     return _above_zero(a, np.abs(b), c)
 

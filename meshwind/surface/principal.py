@@ -14,12 +14,11 @@ _ALIKE = 1e-12
 
 
 class Principal(NamedTuple):
-    """At k points: larger and smaller principal curvature (k,), and unit tangents (k, 3) in which they are found."""
+    """At k points: larger and smaller principal curvature (k,), and the unit tangent (k, 3) of the larger one."""
 
     largest: Floats
     smallest: Floats
     direction: Floats
-    across: Floats
 
 
 def principal(frames: Floats, forms: Forms) -> Principal:
@@ -29,7 +28,7 @@ def principal(frames: Floats, forms: Forms) -> Principal:
     mean = 0.5 * (e * n - 2.0 * f * m + g * l) / safe
     root = np.sqrt(np.maximum(mean * mean - (l * n - m * m) / safe, 0.0))
     direction = _direction(forms, mean + root, frames[:, SU], frames[:, SV])
-    return Principal(mean + root, mean - root, direction, np.cross(forms.normal, direction))
+    return Principal(mean + root, mean - root, direction)
 
 
 def _direction(forms: Forms, k1: Floats, su: Floats, sv: Floats) -> Floats:
