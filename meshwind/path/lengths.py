@@ -115,8 +115,8 @@ def _largest(values: Floats, spans: _Spans) -> Floats:
 def tolerated(paths: Paths) -> Floats:
     """The gap of each particle (p, n) up to which it counts as lying on the surface; 0 where it touches.
 
-    It is the surface's threshold, or how far the gap is uncertain: the surface may lie off the part under the particle
-    and, independently, at both ends of the span, between which its chord is interpolated.
+    It is the surface's threshold, or how far the gap is uncertain: where a fit swings about the part, it is off one way
+    under the particle and the other way at the ends of the span, between which the fibre is straight.
     """
     surface, spans = paths.surface, _spans(paths)
     limit = np.zeros(paths.gap.shape)
@@ -131,7 +131,7 @@ def tolerated(paths: Paths) -> Floats:
             for end in (spans.start - 1, spans.stop)
         )
         share = (step + 1) / np.repeat(size + 1, size)
-        below = np.sqrt(below**2 + ((1.0 - share) * before) ** 2 + (share * after) ** 2)
+        below = below + (1.0 - share) * before + share * after
     limit[row, column] = below
     return limit
 

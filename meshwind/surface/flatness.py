@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats
-from meshwind.core.vectors import TINY
+from meshwind.core.vectors import TINY, unit
 from meshwind.surface.evaluate import SU, SV, S
 from meshwind.surface.forms import Form, Forms, fundamental_forms
 from meshwind.surface.surface import Surface
@@ -18,9 +18,9 @@ from meshwind.surface.surface import Surface
 LENGTHS = 0.5 * 2.0 ** np.arange(-8.5, 0.5, 0.5)
 """Of the part's size: lengths of the chords, from below a span's to where a line in (u, v) is no straight course."""
 APART = 2.0
-"""Uncertainty of a bow over that of the surface: about an edge that a fit rounds, the middle of a chord is off one way
-and its ends the other."""
-ELSEWHERE = 0.5
+"""Uncertainty of a bow over that of the surface: a fit that swings about the part, or rounds an edge, is off one way at
+the middle of a chord and the other way at its ends."""
+ELSEWHERE = 0.45
 """A half of a chord that bows so much of the whole has the bend: a half of an arc bows 0.25 of it, an edge in it 1."""
 
 
@@ -89,6 +89,53 @@ def _legs(frames: Floats) -> tuple[Floats, Floats, Floats]:
     return a, p, np.maximum(np.linalg.norm(np.cross(su, sv), axis=1) / a, TINY)
 
 
+class _Places(NamedTuple):
+    """Points uv (k, 2) with their positions, normals and tangents: `across` is square to s_u, towards s_v.
+
+    Tangents are in (u, v), per length on the surface.
+    """
+
+    uv: Floats
+    points: Floats
+    normals: Floats
+    along: Floats
+    across: Floats
+
+    @classmethod
+    def of(cls, uv: Floats, frames: Floats) -> "_Places":
+        a, p, q = _legs(frames)
+        along = np.stack([1.0 / a, np.zeros_like(a)], axis=1)
+        across = np.stack([-p / (a * q), 1.0 / q], axis=1)
+        return cls(uv, frames[:, S], unit(np.cross(frames[:, SU], frames[:, SV])), along, across)
+
+    def where(self, chosen: Bools) -> "_Places":
+        return _Places(*(each[chosen] for each in self))
+
+    def chords(self, surface: Surface, angle: Floats | float, length: float) -> tuple["_Places", Floats]:
+        """Places at the middle of chords, and halves of these (k, 2) in (u, v).
+
+        A chord that would pass an end of the surface is moved along its own line.
+        """
+        cosine, sine = (np.reshape(each, (-1, 1)) for each in (np.cos(angle), np.sin(angle)))
+        half = 0.5 * length * (cosine * self.along + sine * self.across)
+        half *= np.minimum(1.0, 0.5 / np.maximum(np.abs(half[:, 1]), TINY))[:, None]
+        reach = np.abs(half[:, 1])
+        inward = np.clip(self.uv[:, 1], reach, 1.0 - reach) - self.uv[:, 1]
+        passing = np.flatnonzero(inward)
+        if not len(passing):
+            return self, half
+        uv, points, normals = np.array(self.uv), np.array(self.points), np.array(self.normals)
+        uv[passing] += (inward / np.where(reach > TINY, half[:, 1], np.inf))[passing, None] * half[passing]
+        frames = surface.frames(uv[passing])
+        points[passing], normals[passing] = frames[:, S], unit(np.cross(frames[:, SU], frames[:, SV]))
+        return self._replace(uv=uv, points=points, normals=normals), half
+
+    def bow(self, surface: Surface, half: Floats) -> Floats:
+        """How far the surface stands out (k,) of the middle of chords of these halves (k, 2)."""
+        ends = surface.points(np.concatenate([self.uv - half, self.uv + half])).reshape(2, -1, 3)
+        return np.asarray(((self.points - 0.5 * (ends[0] + ends[1])) * self.normals).sum(axis=1))
+
+
 def _chords(surface: Surface, uv: Floats, frames: Floats, limit: Floats) -> tuple[Bools, _Bends]:
     """Where (k,) a chord shows a hollow deeper than limit (k,), and the curvature of the shortest such chords.
 
@@ -97,39 +144,25 @@ def _chords(surface: Surface, uv: Floats, frames: Floats, limit: Floats) -> tupl
     count = len(uv)
     hollow, left = np.zeros(count, dtype=bool), np.arange(count)
     bends = _Bends(*(np.zeros(count) for _ in range(3)))
+    places = _Places.of(uv, frames)
     for length in LENGTHS * surface.size:
-        bow = [_bow(surface, *_chord(uv[left], frames[left], angle, length)) for angle in _ANGLES]
+        bow = []
+        for angle in _ANGLES:
+            middle, half = places.chords(surface, angle, length)
+            bow.append(middle.bow(surface, half))
         here = _Bends(0.25 * (bow[0] + bow[1] + bow[2] + bow[3]), 0.5 * (bow[0] - bow[2]), 0.5 * (bow[1] - bow[3]))
         deep = -here.smallest > limit[left]
         found, here = left[deep], _Bends(*(each[deep] for each in here))
         angle = 0.5 * np.arctan2(-here.sine, -here.cosine)
-        middle, half = _chord(uv[found], frames[found], angle, length)
-        sides = [_bow(surface, middle + side * half, 0.5 * half) for side in (-0.5, 0.5)]
+        middle, half = places.where(deep).chords(surface, angle, length)
+        sides = [_Places.of(at, surface.frames(at)).bow(surface, 0.5 * half)
+                 for at in (middle.uv - 0.5 * half, middle.uv + 0.5 * half)]  # fmt: skip
         hollow[found] = np.minimum(*sides) > ELSEWHERE * here.smallest
         for mine, values in zip(bends, here, strict=True):
             mine[found] = 8.0 / length**2 * values
-        left = left[~deep]
+        left, places = left[~deep], places.where(~deep)
     return hollow, bends
 
 
 _ANGLES = 0.25 * np.pi * np.arange(4)
 """Directions of the chords, from s_u towards s_v."""
-
-
-def _chord(uv: Floats, frames: Floats, angle: Floats | float, length: float) -> tuple[Floats, Floats]:
-    """Middles and halves (k, 2) in (u, v) of chords through points, moved along their lines to lie within the ends."""
-    a, p, q = _legs(frames)
-    v = np.sin(angle) / q
-    half = 0.5 * length * np.stack([(np.cos(angle) - p * v) / a, v], axis=1)
-    half *= np.minimum(1.0, 0.5 / np.maximum(np.abs(half[:, 1]), TINY))[:, None]
-    reach = np.abs(half[:, 1])
-    inward = np.clip(uv[:, 1], reach, 1.0 - reach) - uv[:, 1]
-    along = np.divide(inward, half[:, 1], out=np.zeros_like(inward), where=reach > TINY)
-    return uv + along[:, None] * half, half
-
-
-def _bow(surface: Surface, middle: Floats, half: Floats) -> Floats:
-    """How far the surface stands out of the middle of chords from middle - half to middle + half (k, 2)."""
-    here = surface.frames(middle)
-    chord = 0.5 * (surface.points(middle - half) + surface.points(middle + half))
-    return np.asarray(((here[:, S] - chord) * fundamental_forms(here).normal).sum(axis=1))
