@@ -13,6 +13,7 @@ from meshwind.layup.windability import CONVEX as PRESSED_ALL_ROUND
 from meshwind.path import Paths, Status
 from meshwind.path.lengths import bridged_share, bridges, bridging, lengths, unresolved_share
 from meshwind.planning.pressing import pressing
+from meshwind.surface.grid import midpoints, parameter_grid
 
 TRUE_GAP = 5e-3
 """Gaps up to this on the exact parts are those of their own net."""
@@ -67,8 +68,9 @@ def test_hollows_are_those_of_the_part(name: str, vertices: int, within: float) 
     uv = parameter_grid(midpoints(64), midpoints(400))
     found = mw.windability(surface, uv)
     height = surface.points(uv)[:, 2]
-    facet = np.sqrt(mw.windability(surface, uv).weight.size / vertices)
-    assert np.abs(height[found.kind != PRESSED_ALL_ROUND] - edge).max() < 1e9 * facet
+    spacing = np.sqrt(2 * np.pi * 40.0 * 220.0 / vertices)  # of vertices, on the mean radius
+    elsewhere = (found.kind != PRESSED_ALL_ROUND) & (np.abs(height - edge) > 1.4 * spacing)
+    assert found.weight[elsewhere].sum() < 1e-3
     assert found.area(PRESSED_ALL_ROUND) == pytest.approx(HOLLOW[name].convex_share, abs=within)
 
 
