@@ -12,7 +12,8 @@ from walled_shapes import GRID, INNER, OUTER, Walled, bent, blob, bottle, chamfe
 
 import meshwind as mw
 from meshwind.core.cast import Floats
-from meshwind.editing.wall_left import about_wall, wall_left
+from meshwind.editing.notes import about_wall
+from meshwind.editing.wall_left import wall_left
 from meshwind.mesh import mesh_from
 from meshwind.mesh.geometry.areas_and_volumes import volume
 from meshwind.mesh.io.scalars import Scalars
@@ -124,6 +125,15 @@ def test_a_wall_that_becomes_thin_or_is_pierced_has_a_warning(edited: mw.Redesig
         notes = about_wall(replace(edited, displacement=depth * inward), "mm")
         assert [note.warning for note in notes] == ([False] if says is None else [False, True])
         assert says is None or (says in notes[1].text and "give a --bound" in notes[1].text)
+
+
+def test_an_edit_that_would_pierce_the_wall_ends_with_advice() -> None:
+    """The inside is filled to straight lines from rim to rim, further than the wall is thick."""
+    part = waisted()
+    mesh = mesh_from(part.vertices, part.faces)
+    edited = mw.redesign(mesh, revolutions=0.1, paths=4, particles=101, side="inner")
+    assert not edited.windable and "through the other skin of its wall" in edited.outcome.advice
+    assert (edited.displacement == 0.0).all() and len(edited.rounds) > 0
 
 
 @pytest.mark.parametrize(("side", "value"), [("outer", 0.1), ("inner", 0.9)])

@@ -15,8 +15,10 @@ from meshwind.editing.options import REVOLUTIONS, EditOptions
 from meshwind.editing.proof import Proof, prove, prove_fitted
 from meshwind.editing.region import FrozenPart, frozen_part
 from meshwind.editing.result import Outcome, Round
+from meshwind.editing.wall_left import wall_left
 from meshwind.mesh import Mesh
 from meshwind.mesh.geometry.areas_and_volumes import volume
+from meshwind.mesh.geometry.mesh import Wall
 from meshwind.path import Paths, Status
 from meshwind.planning.revolutions import Revolutions
 from meshwind.workflow.clock import Clock, Progress
@@ -214,7 +216,7 @@ def redesign(  # noqa: PLR0913
     if chosen is not None:
         winding = replace(winding, revolutions=chosen.choice)
     first = prove_fitted(part, winding)
-    run = _Run(source.mesh, winding, options, region, report)
+    run = _Run(source.mesh, winding, options, region, report, part.chart.annulus.wall)
     best, stages, outcome = _edit_in_stages(run, _Candidate(np.zeros_like(source.mesh.vertices), first))
     vertices, faces = source.mesh.vertices, source.mesh.faces
     return Redesign(
@@ -252,13 +254,14 @@ class _Candidate:
 
 @dataclass(frozen=True)
 class _Run:
-    """What is the same in all stages: the mesh, its winding, the options as given, and what must not move."""
+    """What is the same in all stages: the mesh, its winding, the options as given, what must not move, and the wall."""
 
     mesh: Mesh
     winding: Options
     options: EditOptions
     frozen: FrozenPart
     progress: Progress
+    wall: Wall | None
 
     def stage(self, now: _Candidate, number: int, rounds: int) -> Edit:
         """Edit the surface of a candidate; each stage after the first is tighter than the one before."""
@@ -270,11 +273,13 @@ class _Run:
             options = replace(options, rounds=min(rounds, MORE_ROUNDS), pressing=pressing, threshold=threshold)
         return edit(now.proof.surface, self.winding, options, self.progress)
 
-    def after(self, now: _Candidate, found: Edit) -> _Candidate:
-        """Move the vertices as the surface was moved, then fit and wind the mesh."""
+    def after(self, now: _Candidate, found: Edit) -> _Candidate | None:
+        """Move the vertices as the surface was moved, then fit and wind the mesh; None where that pierces its wall."""
         self.progress("fit")
         more = displacement(now.proof.chart, now.proof.surface, found.surface)
         moves = within(now.moves + more, self.options.bound)
+        if self.wall is not None and wall_left(self.mesh, self.wall, moves).pierced:
+            return None
         return _Candidate(moves, prove(displaced(self.mesh, moves), self.winding, self.options.threshold))
 
     def can_go_on(self, proof: Proof) -> bool:
@@ -292,7 +297,11 @@ def _edit_in_stages(run: _Run, first: _Candidate) -> tuple[_Candidate, tuple[tup
     while found.rounds:
         stages.append(found.rounds)
         left -= len(found.rounds)
-        now = run.after(now, found)
+        after = run.after(now, found)
+        if after is None:
+            outcome = Outcome.WALL_PIERCED
+            break
+        now = after
         gains = now.merit < best.merit
         best = min(now, best, key=lambda each: each.merit)
         if not (gains and outcome == Outcome.WINDABLE and not now.proof.windable):

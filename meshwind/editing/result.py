@@ -13,6 +13,7 @@ class Outcome(IntEnum):
     ROUNDS_SPENT = 3
     NOT_SOLVED = 4
     NOT_KEPT = 5
+    WALL_PIERCED = 6
 
     @property
     def advice(self) -> str:
@@ -32,6 +33,8 @@ _ADVICE = {
     "(tolerance 1e-4)",
     Outcome.NOT_KEPT: "fibres do not bridge on the edited surface, but on the one fitted to the edited mesh: give a "
     "finer mesh, or ignore gaps of this size by a larger threshold",
+    Outcome.WALL_PIERCED: "the edit would move the wound skin through the other skin of its wall: allow less "
+    "displacement, give a part with a thicker wall, or wind the other side",
 }
 
 

@@ -5,9 +5,9 @@ from os import PathLike
 from pathlib import Path
 
 from meshwind.core.version import version
+from meshwind.editing.notes import about_wall
 from meshwind.editing.redesign import Redesign
 from meshwind.editing.report import redesign_report
-from meshwind.editing.wall_left import about_wall
 from meshwind.layup.layup import assess
 from meshwind.pictures import driver
 from meshwind.pictures.redesign_scene import redesign_scene
