@@ -38,6 +38,7 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"tolerance": float("nan")}, "tolerance is nan; give a number from 1e-12 to 1"),
     ({"tolerance": 0.0}, "tolerance is 0; give a number from 1e-12 to 1"),
     ({"worst_fit": 0.0}, "worst_fit is 0; give a number above 0"),
+    ({"threshold": -0.1}, "threshold is -0.1; give a number from 0 up"),
     ({"revolutions": "many"}, "revolutions is 'many'; give a number from 0 up"),
     ({"spacing": 0.0}, "spacing is 0; give a number above 0"),
     ({"band_width": float("nan")}, "band_width is nan; give a number above 0"),
