@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 from mesh_shapes import tube
+from walled_shapes import Grid, blob, pipe, tunnelled
 
 import meshwind as mw
 from meshwind.layup.layup import assess
@@ -53,6 +54,15 @@ def fitted() -> Figures:
     return [surface.error.relative_max, *off.tolist()]
 
 
+def walled() -> Figures:
+    """A part with a wall, and one with a handle."""
+    part, ring = pipe(grid=Grid(12, 30.0)), tunnelled(blob(Grid(16, 10.0)), 60.0, 2.0)
+    found = mw.annulus(mesh_from(part.vertices, part.faces))
+    assert found.wall is not None
+    closed = mesh_from(ring.vertices, ring.faces)
+    return [found.wall.thickness, float(len(found.faces)), float(len(closed.faces)), *closed.vertices[-1].tolist()]
+
+
 def crossed() -> Figures:
     surface = barrel()
     ends = mw.families(surface, 3, 0.3)
@@ -76,6 +86,7 @@ CASES: dict[str, Callable[[], Figures]] = {
     "slides off": lambda: figures(laid(barrel(), turns=(3.0, -2.5))),
     "fitted": fitted,
     "crossed": crossed,
+    "walled": walled,
     "marched": marched,
 }
 
