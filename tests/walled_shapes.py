@@ -236,6 +236,26 @@ def bottle(wall: float = 2.0, grid: Grid = GRID) -> Walled:
     )
 
 
+def nozzle(grid: Grid = GRID) -> Walled:
+    """Round outside, narrow and wide inside: the wall is 2 to 22 thick."""
+    return revolved([(30, 0, OUTER), (30, 100, RIM), (25, 100, INNER), (8, 45, INNER), (8, 40, INNER), (28, 0, RIM)],
+                    grid)  # fmt: skip
+
+
+def vessel(wall: float = 2.0, grid: Grid = GRID) -> Walled:
+    """A drum with round ends and a neck at each."""
+
+    def meridian(radius: float, neck: float, skin: int) -> list[Stretch]:
+        low, high = float(np.arcsin(neck / radius)), 0.5 * np.pi
+        lower = [(radius * np.sin(t), 50.0 - radius * np.cos(t), skin) for t in np.linspace(low, high, 9)]
+        upper = [(r, 200.0 - z, skin) for r, z, _ in lower[::-1]]
+        return [(float(r), float(z), s) for r, z, s in [*lower, *upper]]
+
+    outside, inside = meridian(50.0, 12.0, OUTER), meridian(50.0 - wall, 12.0 - wall, INNER)[::-1]
+    return revolved([(12.0, -15.0, OUTER), *outside, (12.0, 215.0, RIM),
+                     (12.0 - wall, 215.0, INNER), *inside, (12.0 - wall, -15.0, RIM)], grid)  # fmt: skip
+
+
 def squared(points: Floats) -> Floats:
     """Make circles about z squares: the radius is that of the circle within."""
     turn = np.arctan2(points[:, 1], points[:, 0])
