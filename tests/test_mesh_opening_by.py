@@ -75,8 +75,8 @@ def test_auto_is_the_level_line_where_that_is_even() -> None:
 def test_a_flat_end_is_opened_below_its_edge_and_a_note_says_so() -> None:
     for part, flat in ((blob(Grid(48)), 2), (bottle(grid=Grid(48)), 1)):
         found = mw.annulus(mesh_from(part.vertices, part.faces), opening=8.0, opening_by="plane")
-        told = [note for note in found.notes if "is flat, so that a plane opens it to radius" in note]
-        assert len(told) == flat and all("instead of 8" in note for note in told)
+        notes = [note for note in found.notes if "is flat, so that a plane opens it to radius" in note]
+        assert len(notes) == flat and all("instead of 8" in note for note in notes)
         lowest = min(rims(found), key=lambda rim: float(rim[:, 2].mean()))
         length = 120.0 if flat == 2 else 130.0
         assert lowest[:, 2] == pytest.approx(0.01 * length, rel=0.05)

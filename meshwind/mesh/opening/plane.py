@@ -61,7 +61,7 @@ def new_rim(before: CurvedFacets, after: CurvedFacets) -> Rim:
 
 
 def linked(faces: Ints, mask: Bools, seeds: Ints) -> Bools:
-    """The vertices of the mask (n,) that hang together, within it, with one of the seeds in it."""
+    """The vertices of the mask (n,) that are connected, within it, with one of the seeds in it."""
     ends = edges(faces).ends
     ends = ends[mask[ends].all(axis=1)]
     label = components(len(mask), ends[:, 0], ends[:, 1])
@@ -86,7 +86,7 @@ class Plane:
         return np.asarray((points - self.pole) @ self.outward + self.depth)
 
     def beyond(self, surface: CurvedFacets) -> Bools:
-        """Mask (n,) of the vertices above the plane that hang together with the one nearest to the pole."""
+        """Mask (n,) of the vertices above the plane that are connected with the one nearest to the pole."""
         above = self.height(surface.vertices) > 0.0
         away = np.where(above, np.linalg.norm(surface.vertices - self.pole, axis=1), np.inf)
         return linked(surface.faces, above, np.argmin(away, keepdims=True))

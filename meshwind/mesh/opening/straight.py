@@ -43,7 +43,7 @@ def straightened(surface: CurvedFacets, points: Floats) -> CurvedFacets:
 
 
 def _cut(surface: CurvedFacets, loop: Ints, outward: Floats, level: float) -> CurvedFacets | None:
-    """Cut off what lies beyond a plane and hangs together with a rim; None where that leaves no rim in its place."""
+    """Cut off what lies beyond a plane and is connected with a rim; None where that leaves no rim in its place."""
     above = linked(surface.faces, surface.vertices @ outward > level, loop)
     parted, side = split_where(surface, lambda points: points @ outward - level, above)
     beyond = (side[parted.faces] >= 0).all(axis=1)

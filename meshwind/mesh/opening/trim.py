@@ -98,8 +98,8 @@ def annulus(
             surface = straightened(surface, vertices[loop])
     surface, openings = open_ends(surface, pair, opening, opening_by, mesh.name)
     found = _assembled(mesh, split_chords(surface), pair, [_ends_in_words(words, pair, openings, opening), *notes])
-    told = (*(in_words(wall) for wall in [wall] if wall), *(each.why for each in openings if each.why))
-    return replace(found, notes=told, wall=wall)
+    decided = (*(in_words(wall) for wall in [wall] if wall), *(each.why for each in openings if each.why))
+    return replace(found, notes=decided, wall=wall)
 
 
 def _check_opening(opening: float | None) -> None:

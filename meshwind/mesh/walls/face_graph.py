@@ -47,7 +47,7 @@ class FaceGraph:
         return components(len(self.area), self.first[inside], self.second[inside])
 
     def linked(self, mask: Bools, seed: Bools) -> Bools:
-        """The faces of the mask (m,) that hang together, within it, with a seed (m,) in it."""
+        """The faces of the mask (m,) that are connected, within it, with a seed (m,) in it."""
         label = self.pieces(mask)
         reached = np.zeros(len(label), dtype=bool)
         reached[label[mask & seed]] = True

@@ -9,9 +9,9 @@ from meshwind.mesh.walls.sight import Sight
 OUTER, RIM, INNER = 1, 0, -1
 """Labels of faces: of the outer skin, of the rims between the skins, of the inner skin."""
 _SAMPLES, _FEW = 6000, 2000
-"""Faces that look about, by area: to tell sides, and to find whether there are any."""
+"""Faces whose sky view factor is computed, by area: to find the sides, and whether there are any."""
 _HOLLOW = (-0.2, 0.15)
-"""A part is hollow where this share of its surface sees so much less of the sky than the face behind it.
+"""A part is hollow where this share of its surface has a sky view factor so much less than the face behind it.
 
 Samples: 0.25 to 0.5 on pipes, rings and bottles; below 0.1 on solid parts, 0.2 on one with wings close to its body.
 """
@@ -36,7 +36,7 @@ def hollow(sight: Sight, area: Floats, hardly: bool) -> bool:
 def sides(sight: Sight, graph: FaceGraph) -> Ints:
     """OUTER or INNER (m,) for each face; each in one piece, if there are any.
 
-    Through a wall, the outer face sees more of the sky than the inner one, however little either sees: the difference,
+    Of the faces on both sides of a wall the outer one has the larger sky view factor, however small: the difference,
     smoothed over the surface, has a sign.
     """
     chosen, worth = _sampled(graph.area, _SAMPLES)
@@ -68,12 +68,12 @@ def _sampled(area: Floats, count: int) -> tuple[Ints, Floats]:
 
 
 def _contrast(sight: Sight, chosen: Ints, count: int) -> tuple[Floats, Bools]:
-    """How much more of the sky a face sees than the one behind it (m,), and for which of the faces it is known (m,)."""
+    """Difference (m,) of the sky view factors of a face and the one behind it, and where (m,) it is known."""
     behind, _ = sight.behind(chosen)
     front, behind = chosen[behind >= 0], behind[behind >= 0]
-    looking = np.union1d(front, behind)
+    viewing = np.union1d(front, behind)
     sky = np.zeros(count)
-    sky[looking] = sight.sky(looking)
+    sky[viewing] = sight.sky_view(viewing)
     facing = np.maximum(0.0, -np.einsum("ij,ij->i", sight.normals[front], sight.normals[behind]))
     value, seen = np.zeros(count), np.zeros(count, dtype=bool)
     value[front] = (sky[front] - sky[behind]) * facing

@@ -1,4 +1,4 @@
-"""What the faces of a mesh see: the sky, and the face behind them, through the material."""
+"""Sky view factors of the faces of a mesh, and the face behind each of them, through the material."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from meshwind.mesh.geometry.facet_tree import FacetTree
 from meshwind.mesh.geometry.rays import cast
 
 _RAYS = 16
-"""Directions by which the share of the sky is estimated, to about a tenth."""
+"""Directions by which the sky view factor is estimated, to about a tenth."""
 _SKIN = 1e-7
 """Over the diagonal, how far a ray passes before it can meet a face: that of its start is not met."""
 
@@ -45,8 +45,11 @@ class Sight:
         """The face (k,) behind each of the given ones, straight through the material, or -1; its distance (k,)."""
         return cast(self.tree, self.middles[faces], -self.normals[faces], _SKIN * self.diagonal)
 
-    def sky(self, faces: Ints) -> Floats:
-        """Share (k,) of the sky that each of the given faces sees, weighted by the cosine."""
+    def sky_view(self, faces: Ints) -> Floats:
+        """Sky view factor (k,) of the given faces: the share of directions in which a ray from it meets no face.
+
+        Directions are weighted by the cosine of their angle with the normal.
+        """
         pattern = _hemisphere(_RAYS)
         up, side = self.normals[faces], self.along[faces]
         frame = np.stack([side, np.cross(up, side), up], axis=1)
