@@ -7,15 +7,14 @@ random.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import igl
 import numpy as np
-import scipy.sparse as sparse
 
 from meshwind.core.cast import Bools, Floats
 from meshwind.core.threads import parallel_for
 from meshwind.surface.fitting.infill import CREASE, spans_across
+from meshwind.surface.fitting.neighbours import ALIKE, Neighbourhoods, alike
 from meshwind.surface.fitting.quadrature import FacetPoints, facet_points
 from meshwind.surface.fitting.samples import Samples
 from meshwind.surface.fitting.vertex_fit import VertexFit
@@ -28,36 +27,8 @@ BARE, ACROSS = 0.02, 2
 """A net whose facets cross more than so many spans over this share of the area is not held by vertices there."""
 STRAY = 0.01
 """Share of the area over which a surface may lie further off the facets than twice their own sagitta."""
-ALIKE = 0.15
-"""Most likeness of neighbours' distances that is taken for noise: noise shows -0.2 to 0, a missed shape up to 0.9."""
 RESOLVED = 0.1
 """Vertices that a net predicts to this share of the mesh's own elevation are resolved by it, whatever their noise."""
-
-
-@dataclass(frozen=True)
-class Neighbourhoods:
-    """Means over the neighbours of each vertex, and over the facets about each facet, of an annulus's mesh."""
-
-    samples: Samples
-
-    @cached_property
-    def _around(self) -> sparse.csr_matrix:
-        faces, count = self.samples.facets.faces, len(self.samples.points)
-        i, j = faces.ravel(), faces[:, [1, 2, 0]].ravel()
-        near = sparse.coo_matrix((np.ones(2 * len(i)), (np.r_[i, j], np.r_[j, i])), shape=(count, count)).tocsr()
-        near.data[:] = 1.0
-        return sparse.diags(1.0 / np.maximum(np.asarray(near.sum(axis=1)).ravel(), 1.0)) @ near
-
-    def mean(self, values: Floats) -> Floats:
-        """Mean of values at the vertices (n, ...) over each one's neighbours."""
-        return np.asarray(self._around @ values)
-
-    def facet_mean(self, values: Floats) -> Floats:
-        """Mean of values of the facets (m,) over the facets that share a vertex with each."""
-        faces, count = self.samples.facets.faces, len(self.samples.points)
-        total = np.bincount(faces.ravel(), np.repeat(values, 3), count)
-        mean = total / np.maximum(np.bincount(faces.ravel(), minlength=count), 1)
-        return np.asarray(mean[faces].mean(axis=1))
 
 
 @dataclass(frozen=True)
@@ -96,9 +67,9 @@ def standing(surface: Surface, samples: Samples, near: Neighbourhoods) -> Standi
     rough, uneven = (off - near.mean(off))[inner], (elevation - near.mean(elevation))[inner]
     correlation = rank_correlation(rough, uneven)
     height = float(np.sqrt(np.mean(elevation[inner] ** 2))) if inner.any() else 0.0
-    square = float((off[inner] ** 2).sum())
-    alike = float((off * near.mean(off))[inner].sum()) / square if square > 0.0 else 0.0
-    return Standing(height, correlation, correlation * float(np.sqrt(max(inner.sum(), 1))), alike)
+    return Standing(
+        height, correlation, correlation * float(np.sqrt(max(inner.sum(), 1))), alike(surface, samples, near)
+    )
 
 
 def rank_correlation(a: Floats, b: Floats) -> float:

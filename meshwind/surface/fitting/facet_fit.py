@@ -15,8 +15,9 @@ from meshwind.core.cast import Floats
 from meshwind.core.threads import parallel_for
 from meshwind.surface.evaluate import DEGREE
 from meshwind.surface.fitting import normal_equations
-from meshwind.surface.fitting.evidence import Neighbourhoods, rms_away_from_creases, straddling
+from meshwind.surface.fitting.evidence import rms_away_from_creases, straddling
 from meshwind.surface.fitting.linear_systems import solve
+from meshwind.surface.fitting.neighbours import Neighbourhoods
 from meshwind.surface.fitting.quadrature import FacetPoints, facet_points, heights
 from meshwind.surface.fitting.resample import resampled
 from meshwind.surface.fitting.samples import CLOSE, Facets, Samples
@@ -38,13 +39,14 @@ FEWEST = 1e-2
 """The coarsest net that is tried, over the finest: coarser ones cost as much of the facets' time and show nothing."""
 EXACT, ROUGHLY = 1e-7, 1e-3
 """Tolerances of the solutions: for the points, and for a random right side, of which only a mean is wanted."""
-RESOLVING_NONE = 1.0
-"""Control points per vertex of a net that smooths the facets: finer ones follow them, and show less of their error."""
 COMPARED, CURVED = 0.6, 0.4
 """Control points per vertex at which curved triangles and flat ones are compared; and how much less of the curved
 than of the flat ones a net must leave there.  On sampled parts it leaves 0.15 to 0.27, on decimated ones from 0.59."""
-SMOOTHED = 2
-"""Rings of neighbours over which the two are compared: few facets may lie close by chance."""
+PROBED = 20_000
+"""Points at which a random noise is compared with what a net follows of it."""
+SMOOTHED, BY_CHANCE = 2, 0.03
+"""Rings of neighbours over which the two are compared, and the share of a part over which curved facets come closer by
+chance."""
 RESOLVING = 20
 """Fewest spans around of a net that is compared: coarser ones leave more of a circle than its facets do."""
 
@@ -55,8 +57,8 @@ class FacetFit:
 
     points, data (k, 3): points on the flat facets, and those, on flat or curved ones, that are fitted; curved (n,): by
     which share the data lie on curved facets, at the vertices; uv (k, 2): where each of the data is on the surface;
-    noise, followed (k,): a random noise of the vertices, and what the net follows of it; straddle (m,): how far the
-    facets lie off the part, found from a net that does not resolve them.
+    passed: the share of the amplitude of a noise of the vertices that the net does not follow; straddle (m,): how far
+    the facets lie off the part, found from a net that does not resolve them.
     """
 
     surface: Surface
@@ -65,8 +67,7 @@ class FacetFit:
     curved: Floats
     data: Floats
     uv: Floats
-    noise: Floats
-    followed: Floats
+    passed: float
     straddle: Floats | None = None
 
     @cached_property
@@ -110,11 +111,6 @@ class FacetFit:
         means = self.points.per_facet(self.off, len(self.samples.facets.faces))
         return self._rms(means[self.points.facet])
 
-    @cached_property
-    def passed(self) -> float:
-        """The share of the amplitude of a noise of the vertices that the net does not follow."""
-        return self._rms(self.noise - self.followed) / self._rms(self.noise)
-
     @property
     def vertex_noise(self) -> float:
         """Noise of the vertices, were all that is left of the facets noise."""
@@ -142,18 +138,51 @@ class FacetFitter:
         data = points.curved(samples.facets, curved)
         uv, noise = points.places(samples.uv), points.between(self._noise)
         net = self._solve(spans, points, uv, np.concatenate([data, noise], axis=1), before.surface if before else None)
-        answer = Surface(np.ascontiguousarray(net[..., 3:].repeat(3, axis=2))).points(uv)[:, 0]
-        surface = Surface(np.ascontiguousarray(net[..., :3]))
-        return FacetFit(surface, samples, points, curved, data, uv, noise[:, 0], answer)
+        few = slice(None, None, len(uv) // PROBED + 1)
+        answer = Surface(np.ascontiguousarray(net[..., 3:].repeat(3, axis=2))).points(uv[few])[:, 0]
+        passed = float(np.sqrt(np.mean((noise[few, 0] - answer) ** 2) / np.mean(noise[few] ** 2)))
+        return FacetFit(Surface(np.ascontiguousarray(net[..., :3])), samples, points, curved, data, uv, passed)
 
     def corrected(self, fitted: FacetFit) -> FacetFit:
         """The same net fitted again with the points at their feet on it."""
         uv, distance = fitted.uv.copy(), np.empty(len(fitted.uv))
         parallel_for(near_feet, len(uv), 6000, fitted.surface.net, fitted.data, CLOSE, uv, distance)
         surface = Surface(self._solve(fitted.surface.spans, fitted.points, uv, fitted.data, fitted.surface))
-        parallel_for(near_feet, len(uv), 6000, surface.net, fitted.data, CLOSE, uv, distance)
         samples, _ = fitted.samples.corrected(surface)
         return replace(fitted, surface=surface, samples=samples, uv=uv)
+
+    def compared(self, nets: list[tuple[int, int]], near: Neighbourhoods, *, flat: bool) -> FacetFit:
+        """A fit to curved facets where a smooth surface comes much closer to these than to the flat ones.
+
+        Its net smooths the facets.  flat: do not compare, and take the flat ones.
+        """
+        count = len(self.samples.points)
+        spans = self._near(COMPARED, [net for net in nets if net[0] >= RESOLVING])
+        fitted = self.fit(spans, np.zeros(count))
+        if flat:
+            return fitted
+        bent = self.fit(spans, np.ones(count), fitted)
+        faces = self.samples.facets.faces
+        left = []
+        for each in (fitted, bent):
+            square = each.points.per_facet(each.off**2, len(faces))
+            for _ in range(SMOOTHED):
+                square = near.facet_mean(square)
+            left.append(square)
+        closer = (left[1] < CURVED**2 * left[0]).astype(np.float64)
+        around = np.maximum(np.bincount(faces.ravel(), minlength=count), 1)
+        curved = np.bincount(faces.ravel(), np.repeat(closer, 3), count) / around
+        return self.fit(spans, curved, bent) if curved.mean() > BY_CHANCE else fitted
+
+    def smoothing(self, nets: list[tuple[int, int]], fitted: FacetFit) -> FacetFit:
+        """A fit whose net does not resolve the facets: the given one, or if its net is too fine another one."""
+        spans = self._near(COMPARED, nets)
+        return fitted if _size(spans) >= _size(fitted.surface.spans) else self.fit(spans, fitted.curved)
+
+    def _near(self, per_vertex: float, nets: list[tuple[int, int]]) -> tuple[int, int]:
+        """The net that comes next to so many control points per vertex, of those that are not too large."""
+        wanted = per_vertex * len(self.samples.points)
+        return min((net for net in nets if _size(net) <= MOST), key=lambda net: abs(np.log(_size(net) / wanted)))
 
     def _solve(
         self, spans: tuple[int, int], points: FacetPoints, uv: Floats, values: Floats, before: Surface | None
@@ -161,7 +190,7 @@ class FacetFitter:
         weight = points.area / points.area.sum()
         stencil = normal_equations.bending(spans, self.lengths, SMOOTHING / (self.lengths[0] * self.lengths[1]))
         right = np.zeros((spans[0], spans[1] + DEGREE, values.shape[1]))
-        normal_equations.accumulate(uv, values, weight, *spans, stencil, right)
+        normal_equations.accumulate(uv, values, weight, stencil, right)
         start = np.zeros_like(right)
         if before is not None:
             start[..., :3] = resampled(before, spans)
@@ -183,50 +212,59 @@ def fit_facets(
     where it no longer lowers the noise that the net leaves: then all but noise is resolved.
     """
     fitter, count = FacetFitter(samples, lengths), len(samples.points)
-    curved = np.zeros(count) if flat else _curved(fitter, nets, near)
-    share = float(curved.mean())
-    first, *finer = _within(nets, MOST_CURVED**share * MOST_PER_VERTEX ** (1.0 - share) * count)
     size = float(np.linalg.norm(np.ptp(samples.points, axis=0)))
-    enough = tolerance if share > 0.5 else max(tolerance, ENOUGH * size)
-    fitted = fitter.fit(first, curved)
-    noise, idle, straddle = fitted.vertex_noise, 0, fitted.own_error(near)
-    for spans in finer:
-        if fitted.left <= enough or idle >= IDLE_NETS:
+    fitted = fitter.compared(nets, near, flat=flat)
+    share = float(fitted.curved.mean())
+    smooth = fitter.smoothing(nets, fitted)
+    limits = _Limits(tolerance if share > 0.5 else max(tolerance, ENOUGH * size), near, smooth.own_error(near))
+    within = _within(nets, MOST_CURVED**share * MOST_PER_VERTEX ** (1.0 - share) * count)
+    if limits.fine_enough(fitted):  # so may a coarser one be
+        spans = fitted.surface.spans
+        within = [net for net in within if _size(net) < _size(spans)] + [spans]
+        fitted = fitter.fit(within[0], fitted.curved)
+    noise, idle = fitted.vertex_noise, 0
+    for spans in within:
+        if idle >= IDLE_NETS:
             break
-        if fitted.means <= ROUGH_SHARE * fitted.sagitta(near):
+        if limits.fine_enough(fitted):
             corrected = fitter.corrected(fitted)
-            if corrected.means <= SHARE * corrected.sagitta(near):
-                return replace(corrected, straddle=straddle)
-        fitted = fitter.fit(spans, curved, fitted)
+            if limits.met(corrected):
+                return replace(corrected, straddle=limits.straddle)
+        if _size(spans) <= _size(fitted.surface.spans):
+            continue
+        fitted = fitter.fit(spans, fitted.curved, fitted)
         idle = idle + 1 if fitted.vertex_noise > LEVEL * noise else 0
         noise = min(noise, fitted.vertex_noise)
-        if _size(spans) <= RESOLVING_NONE * count:
-            straddle = fitted.own_error(near)
-    return replace(fitter.corrected(fitted), straddle=straddle)
+    return replace(fitter.corrected(fitted), straddle=limits.straddle)
+
+
+@dataclass(frozen=True)
+class _Limits:
+    """When a fit is fine enough: enough is the rms distance that need not be bettered, a length.
+
+    straddle (m,): how far the facets lie off the part, found from a net that does not resolve them.
+    """
+
+    enough: float
+    near: Neighbourhoods
+    straddle: Floats
+
+    def fine_enough(self, fitted: FacetFit) -> bool:
+        """Whether a fit whose points are where the chart has them is worth a correction."""
+        return self._met(fitted, ROUGH_SHARE)
+
+    def met(self, fitted: FacetFit) -> bool:
+        """Whether a fit leaves little of the facets against what they are worth."""
+        return self._met(fitted, SHARE)
+
+    def _met(self, fitted: FacetFit, share: float) -> bool:
+        return fitted.left <= self.enough or fitted.means <= share * fitted.sagitta(self.near)
 
 
 def _within(nets: list[tuple[int, int]], most: float) -> list[tuple[int, int]]:
     """The nets with up to so many control points that are worth a try, at least one."""
     most = min(most, MOST)
     return [net for net in nets if FEWEST * most <= _size(net) <= most] or [nets[0]]
-
-
-def _curved(fitter: FacetFitter, nets: list[tuple[int, int]], near: Neighbourhoods) -> Floats:
-    """Where (n,) a smooth surface comes much closer to curved triangles through the vertices than to the flat ones."""
-    fine, count = [net for net in nets if net[0] >= RESOLVING], len(fitter.samples.points)
-    spans = min(fine, key=lambda net: abs(np.log(_size(net) / (COMPARED * count))))
-    flat = fitter.fit(spans, np.zeros(count))
-    bent = fitter.fit(spans, np.ones(count), flat)
-    faces = fitter.samples.facets.faces
-    left = []
-    for each in (flat, bent):
-        square = each.points.per_facet(each.off**2, len(faces))
-        for _ in range(SMOOTHED):
-            square = near.facet_mean(square)
-        left.append(square)
-    closer = (left[1] < CURVED**2 * left[0]).astype(np.float64)
-    count_at = np.bincount(faces.ravel(), minlength=count)
-    return np.asarray(np.bincount(faces.ravel(), np.repeat(closer, 3), count) / np.maximum(count_at, 1))
 
 
 def _size(spans: tuple[int, int]) -> int:

@@ -12,8 +12,9 @@ from meshwind.chart.chart import Chart, speeds
 from meshwind.core.defaults import FIT_TOLERANCE
 from meshwind.core.errors import BadInputError
 from meshwind.surface.fitting.certify import certify
-from meshwind.surface.fitting.evidence import Neighbourhoods, standing, vertices_lead
+from meshwind.surface.fitting.evidence import standing, vertices_lead
 from meshwind.surface.fitting.facet_fit import fit_facets
+from meshwind.surface.fitting.neighbours import Neighbourhoods
 from meshwind.surface.fitting.samples import Samples
 from meshwind.surface.fitting.uncertainty import of_facets, of_vertices
 from meshwind.surface.fitting.vertex_fit import fit_vertices
@@ -69,7 +70,7 @@ def fit(chart: Chart, tolerance: float = FIT_TOLERANCE) -> Surface:
     nets, near = _nets(lengths), Neighbourhoods(samples)
     # one thread of BLAS: the bands are narrow, more threads cost up to ten times as much and blur the last bits
     with ThreadpoolController().limit(limits=1, user_api="blas"):
-        led = fit_vertices(samples, nets, lengths, limit)
+        led = fit_vertices(samples, nets, lengths, near, limit)
         found = standing(led.surface, led.samples, near)
         if led.largest <= limit or vertices_lead(led, found):
             surface, samples, doubt = led.surface, led.samples, of_vertices(led, near)

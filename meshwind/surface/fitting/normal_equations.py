@@ -6,19 +6,38 @@ import numpy as np
 from numba import njit
 
 from meshwind.core.cast import Floats
+from meshwind.core.threads import parallel_for
 from meshwind.surface.evaluate import basis
 
 REACH = 3
 """Largest number of rows or columns between two control points that share a span."""
 
 
-@njit(cache=True)
-def accumulate(uv, points, weight, spans_u, spans_v, stencil, right):
-    """Add weighted data (k, m) to the normal matrix's stencil (nu, nv, 4, 7) and right sides (nu, nv, m).
+PARTS, LARGE = 4, 100_000
+"""Parts that large data are divided into, which are summed at the same time, and their least number."""
 
+
+def accumulate(uv: Floats, values: Floats, weight: Floats, stencil: Floats, right: Floats) -> None:
+    """Add weighted data to the normal matrix's stencil (nu, nv, 4, 7) and right sides (nu, nv, m) of a net.
+
+    uv (k, 2) are the data's places, values (k, m) what the net is to be there, weight (k,) what each counts.
     stencil[i, j, r, s] couples control point (i, j) to (i + r, j + s - 3).  The matrix is symmetric: only the half
     ahead is kept, that is s >= 3 where r is 0; the other entries have no meaning.
     """
+    if len(uv) < LARGE:
+        _accumulate(uv, values, weight, stencil, right)
+        return
+    # as many parts on any number of threads, so that the sums are the same to the last bit
+    stencils, rights = np.zeros((PARTS, *stencil.shape)), np.zeros((PARTS, *right.shape))
+    parallel_for(_accumulate_parts, PARTS, 1, uv, values, weight, stencils, rights)
+    stencil += stencils.sum(axis=0)
+    right += rights.sum(axis=0)
+
+
+@njit(nogil=True, cache=True)
+def _accumulate(uv, points, weight, stencil, right):
+    """Add data to a stencil and right sides."""
+    spans_u, spans_v = right.shape[0], right.shape[1] - REACH
     # flat and unsigned, so that no index can be negative: a third of the time
     flat, sums, one, row_of = stencil.reshape(-1), right.reshape(-1), np.uint64(1), np.uint64(2 * REACH + 1)
     sides = points.shape[1]
@@ -42,6 +61,14 @@ def accumulate(uv, points, weight, spans_u, spans_v, stencil, right):
                         flat[at] += share * c[s]
                         at += one
                     row += row_of
+
+
+@njit(nogil=True, cache=True)
+def _accumulate_parts(first, last, uv, points, weight, stencils, rights):
+    """Add parts first to last of the data each to its own sums."""
+    for part in range(first, last):
+        a, b = part * len(uv) // len(rights), (part + 1) * len(uv) // len(rights)
+        _accumulate(uv[a:b], points[a:b], weight[a:b], stencils[part], rights[part])
 
 
 def _gram(order: int) -> Floats:

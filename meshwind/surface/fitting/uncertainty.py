@@ -10,8 +10,9 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from meshwind.core.cast import Floats, frozen
-from meshwind.surface.fitting.evidence import Neighbourhoods, rms_away_from_creases, straddling
+from meshwind.surface.fitting.evidence import rms_away_from_creases, straddling
 from meshwind.surface.fitting.facet_fit import FacetFit
+from meshwind.surface.fitting.neighbours import Neighbourhoods
 from meshwind.surface.fitting.quadrature import facet_points, heights
 from meshwind.surface.fitting.vertex_fit import VertexFit
 

@@ -12,6 +12,7 @@ from meshwind.core.cast import Floats
 from meshwind.surface.evaluate import DEGREE
 from meshwind.surface.fitting import normal_equations
 from meshwind.surface.fitting.linear_systems import solve
+from meshwind.surface.fitting.neighbours import ALIKE, Neighbourhoods, alike
 from meshwind.surface.fitting.resample import resampled
 from meshwind.surface.fitting.samples import Samples
 from meshwind.surface.surface import Surface
@@ -25,6 +26,9 @@ SMOOTHING = 1e-4
 """Bending energy against data at the net's own wave length: small beside the spline's error, of the same order."""
 GAIN = 0.95
 """A finer net must bring the expected error below this share of the best so far, or the mesh supports no finer."""
+SLOW, SLOW_NETS = 0.65, 3
+"""Gain of a finer net that is slow (a crease allows 0.7, smooth parts 0.25), and how many such nets in a row end the
+search, where what is left is no noise."""
 FLAT = 0.9
 """A finer net that leaves more than this share of the least noise so far resolves nothing more: what a part's smooth
 shape leaves falls by more from net to net, and by 0.7 along a crease."""
@@ -67,15 +71,20 @@ class VertexFit:
 
 
 def fit_vertices(
-    samples: Samples, nets: list[tuple[int, int]], lengths: tuple[float, float], tolerance: float
+    samples: Samples,
+    nets: list[tuple[int, int]],
+    lengths: tuple[float, float],
+    near: Neighbourhoods,
+    tolerance: float,
 ) -> VertexFit:
     """The net of least expected error, or the coarsest that meets the tolerance, a length.
 
-    nets: spans in u and v, from coarse to fine; lengths: of the part around and from end to end.
+    nets: spans in u and v, from coarse to fine; lengths: of the part around and from end to end.  Where finer nets gain
+    little though neighbouring vertices miss the surface alike, vertices alone do not hold it, and the search ends.
     """
     best, *finer = nets
     fitted = _fit(samples, best, lengths, PASSING)
-    noise, idle, level, final = fitted.noise, 0, 0, False
+    noise, idle, level, slow, final = fitted.noise, 0, 0, 0, False
     for spans in finer:
         if not final and fitted.largest <= NEARLY * tolerance:
             fitted, final = _refit(fitted, lengths), True
@@ -85,6 +94,9 @@ def fit_vertices(
         if size > SUPPORT * len(samples.points) or idle >= IDLE_NETS:
             break
         trial = _fit(fitted.samples, spans, lengths, PASSING, fitted.surface)
+        slow = slow + 1 if trial.expected > SLOW * fitted.expected else 0
+        if slow >= SLOW_NETS and alike(trial.surface, trial.samples, near) > ALIKE:
+            return trial
         level = level + 1 if trial.noise > FLAT * noise else 0
         noise = min(noise, trial.noise)
         idle = 0 if trial.expected < GAIN * fitted.expected else idle + 1
@@ -112,7 +124,7 @@ def _fit(
     stencil, right = _equations(samples, spans, bending)
     noise = np.random.default_rng(0).standard_normal((len(samples.points), PROBES))
     probe = np.zeros((*right.shape[:2], PROBES))
-    normal_equations.accumulate(samples.uv, noise, samples.weight, *spans, np.zeros_like(stencil), probe)
+    normal_equations.accumulate(samples.uv, noise, samples.weight, np.zeros_like(stencil), probe)
     start = None if start is None else np.concatenate([start, np.zeros_like(probe)], axis=2)
     tolerance = np.repeat([EXACT, ROUGHLY], [3, PROBES])
     net = solve(stencil, np.concatenate([right, probe], axis=2), tolerance, start)
@@ -128,9 +140,9 @@ def _fit(
 def _equations(samples: Samples, spans: tuple[int, int], bending: Floats) -> tuple[Floats, Floats]:
     """Stencil and right side of a net's normal equations: the vertices, points between them, and the bending energy."""
     stencil, right = bending.copy(), np.zeros((spans[0], spans[1] + DEGREE, 3))
-    normal_equations.accumulate(samples.uv, samples.points, samples.weight, *spans, stencil, right)
+    normal_equations.accumulate(samples.uv, samples.points, samples.weight, stencil, right)
     inner, points, weight = samples.between(spans)
-    normal_equations.accumulate(inner, points, weight, *spans, stencil, right)
+    normal_equations.accumulate(inner, points, weight, stencil, right)
     return stencil, right
 
 
