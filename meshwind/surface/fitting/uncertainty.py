@@ -44,8 +44,11 @@ def of_vertices(fitted: VertexFit, near: Neighbourhoods) -> Doubt:
     """What the vertices leave, where they led."""
     surface, samples = fitted.surface, fitted.samples
     off = ((samples.points - surface.points(samples.uv)) * surface.normals(samples.uv)).sum(axis=1)
-    weight = samples.trusted.astype(np.float64) / max(1.0 - fitted.kept, 1e-3)
-    table = _table(surface.spans, samples.uv, weight * off**2, samples.trusted.astype(np.float64))
+    trusted = samples.trusted.astype(np.float64)
+    square = off**2 / max(1.0 - fitted.kept, 1e-3)
+    if fitted.settled:  # what is left is noise, of which a fit keeps a share, and next to none is left of many vertices
+        square = fitted.kept * square + near.mean(near.mean(off)) ** 2
+    table = _table(surface.spans, samples.uv, trusted * square, trusted)
     points = facet_points(samples, surface.spans)
     uv, chord = points.places(samples.uv), points.between(surface.points(samples.uv))
     _, height = heights(surface, uv, chord, chord)
