@@ -36,11 +36,19 @@ def _surface(surface: SurfaceFigures, size: float, units: str) -> list[str]:
     vertices, facets = surface["fit_error"]["to_surface"]["max"], surface["fit_error"]["to_mesh"]["max"]
     tolerance = surface["tolerance"]
     fitted_to = "" if tolerance is None else f", tolerance {ratio(tolerance)}"
-    return [
+    lines = [
         f"surface   {around} x {along} control points; largest distance to the vertices {quantity(vertices, units, 2)} "
         f"({ratio(vertices / size)} of the part{fitted_to}), "
         f"to the facets {quantity(facets, units, 2)} ({ratio(facets / size)})"
     ]
+    if "evidence" in surface:
+        found = surface["evidence"]
+        lines.append(
+            f"          fitted to the {found['data']}; noise of the vertices {quantity(found['noise'], units, 2)}, "
+            f"sagitta of the facets {quantity(found['sagitta'], units, 2)}, "
+            f"uncertain by {quantity(found['uncertainty']['rms'], units, 2)}"
+        )
+    return lines
 
 
 def _paths(paths: PathsFigures, units: str) -> list[str]:

@@ -25,6 +25,8 @@ SHOWS = 1e-4
 """... where it is also more than this share of the diagonal: less than the facets of most meshes are off."""
 UNRESOLVED = 1e-2
 """An error in either direction of more than this share of the diagonal means that the surface has another shape."""
+APART, APART_RMS = 3e-3, 3e-4
+"""Largest distance between surface and facets, and its root mean square, over the diagonal, without a warning."""
 
 LEFT_OUT = 5e-4
 """Least share of the fibre that is off the surface and not counted, of which a note tells: it shows as 0.1 %."""
@@ -126,7 +128,7 @@ def about_spacing(spaced: Spaced | None, units: str = "") -> tuple[Note, ...]:
 
 
 def about_fit(surface: Surface, chart: Chart, tolerance: float, worst_fit: float, units: str = "") -> tuple[Note, ...]:
-    """Note on the fit; raises BadInputError where it is off by more than `worst_fit` of the part.
+    """Notes on the fit; raises BadInputError where it is off by more than `worst_fit` of the part.
 
     A warning has FIT_PICTURE for its picture.
     """
@@ -138,6 +140,8 @@ def about_fit(surface: Surface, chart: Chart, tolerance: float, worst_fit: float
         if error.relative_max > worst_fit:
             raise BadInputError(f"{text}, or raise worst_fit (--worst-fit), now {worst_fit:g}")
         return (Note(text, True, FIT_PICTURE),)
+    if error.data != "vertices":
+        return _followed(surface, chart, error, units)
     missed = error.to_surface_max / error.diagonal
     if missed <= tolerance:
         return ()
@@ -145,6 +149,30 @@ def about_fit(surface: Surface, chart: Chart, tolerance: float, worst_fit: float
     if missed <= max(MISSED * tolerance, SHOWS):
         return (Note(text),)
     return (Note(f"{text}; surface and mesh lie furthest apart {_places(surface, chart)}", True, FIT_PICTURE),)
+
+
+def _followed(surface: Surface, chart: Chart, error: FitError, units: str) -> tuple[Note, ...]:
+    """Notes on a surface that the facets led: why, and a warning where it lies far off them."""
+    notes = list[Note]()
+    if error.data == "facets":
+        scatter = quantity(error.noise, units, 2)
+        notes.append(
+            Note(
+                f"the vertices lie off a smooth surface, by {scatter} root mean square, as in a decimated or creased mesh: "
+                "the surface follows the facets"
+            )
+        )
+    else:
+        text = "the vertices lie too far apart to hold a surface alone: it follows curved facets between them"
+        notes.append(Note(text))
+    if max(error.to_mesh_max / APART, error.to_mesh_rms / APART_RMS) > error.diagonal:
+        text = (
+            f"surface and facets lie up to {quantity(error.to_mesh_max, units, 2)} "
+            f"({100.0 * error.to_mesh_max / error.diagonal:.2g}% of the part) apart {_places(surface, chart)}; "
+            f"{_cause(chart)}"
+        )
+        notes.append(Note(text, True, FIT_PICTURE))
+    return tuple(notes)
 
 
 def _missed(error: FitError, missed: float, tolerance: float, units: str) -> str:
@@ -156,12 +184,16 @@ def _missed(error: FitError, missed: float, tolerance: float, units: str) -> str
 
 
 def _unresolved(surface: Surface, chart: Chart, error: FitError, units: str) -> str:
-    squeezed = float(np.quantile(chart.stretch, 0.99)) > SQUEEZED
     return (
         f"the surface does not resolve the part: it lies up to {quantity(error.max, units, 2)} "
-        f"({100.0 * error.relative_max:.2g}% of the part) off the mesh {_places(surface, chart)}; "
-        + (_PROTRUSIONS if squeezed else _COARSE)
+        f"({100.0 * error.relative_max:.2g}% of the part) off the mesh {_places(surface, chart)}; {_cause(chart)}"
     )
+
+
+def _cause(chart: Chart) -> str:
+    """Why a surface lies far off the mesh, and what helps."""
+    squeezed = float(np.quantile(chart.stretch, 0.99)) > SQUEEZED
+    return _PROTRUSIONS if squeezed else _COARSE
 
 
 def _places(surface: Surface, chart: Chart) -> str:

@@ -60,17 +60,18 @@ def of_facets(fitted: FacetFit, near: Neighbourhoods) -> Doubt:
     """What the facets leave and how far they straddle the part, where they led."""
     surface, samples, points = fitted.surface, fitted.samples, fitted.points
     reach = max(REACH, float(np.sqrt(np.prod(surface.spans) / len(samples.points))))
-    square, own = fitted.off**2, fitted.straddling(near)
+    own = fitted.own_error(near)
     if fitted.straddle is not None:
-        square += np.maximum(fitted.own_error(near), fitted.straddle)[points.facet] ** 2
-    table = _table(surface.spans, fitted.uv, points.area * square, points.area, reach)
+        own = np.maximum(own, fitted.straddle)
+    square, straddle = fitted.off**2, own[points.facet]
+    table = _table(surface.spans, fitted.uv, points.area * (square + straddle**2), points.area, reach)
     stands = ((samples.points - surface.points(samples.uv)) * surface.normals(samples.uv)).sum(axis=1)
     noise = float(np.sqrt(np.mean(stands[samples.trusted] ** 2)))
     if fitted.curved.any():  # where the vertices are to lie on the part
         weight = samples.trusted * fitted.curved
         missed = _table(surface.spans, samples.uv, weight * stands**2, samples.trusted.astype(np.float64), reach)
         table = frozen(np.hypot(table, missed))
-    sagitta = rms_away_from_creases(own, points, samples)
+    sagitta = rms_away_from_creases(straddle, points, samples)
     return Doubt("curved facets" if fitted.curved.mean() > 0.5 else "facets", table, noise, sagitta)
 
 
