@@ -158,8 +158,8 @@ def _followed(surface: Surface, chart: Chart, error: FitError, units: str) -> tu
         scatter = quantity(error.noise, units, 2)
         notes.append(
             Note(
-                f"the vertices lie off a smooth surface, by {scatter} root mean square, as in a decimated or creased mesh: "
-                "the surface follows the facets"
+                f"the vertices lie {scatter} off a smooth surface (root mean square), as in a decimated or "
+                "creased mesh: the surface follows the facets"
             )
         )
     else:

@@ -115,12 +115,10 @@ def straddling(heights: Floats, points: FacetPoints, near: Neighbourhoods) -> Fl
     return np.asarray(heights - level[points.facet])
 
 
-def rms_away_from_creases(values: Floats, points: FacetPoints, samples: Samples) -> float:
-    """Rms of values (k,) at points on facets none of whose corners lies at a crease; 0 if there are none."""
-    smooth = _smooth(samples)[points.facet]
-    if not smooth.any():
-        return 0.0
-    return float(np.sqrt(np.average(values[smooth] ** 2, weights=points.area[smooth])))
+def rms_away_from_creases(values: Floats, weight: Floats, points: FacetPoints, samples: Samples) -> float:
+    """Weighted rms of values (k,) at points on facets none of whose corners lies at a crease; 0 if there are none."""
+    weight = weight * _smooth(samples)[points.facet]
+    return float(np.sqrt((weight * values**2).sum() / max(weight.sum(), 1e-300)))
 
 
 def _smooth(samples: Samples) -> Bools:

@@ -29,6 +29,8 @@ SMOOTHING = 1e-4
 SHARE, ROUGH_SHARE = 0.3, 0.36
 """A net that leaves no more of the facets' mean distances than this share of their own error is fine enough; it is
 worth a correction of the points, which lowers what is left by up to a fifth, below the second share."""
+STEADY = 0.1
+"""Nor is a net refined that leaves less than this share of their error as a net shows it that does not follow them."""
 ENOUGH = 4e-5
 """Rms distance over the part's size that is left of no facets' fit: no mesh shows that its part is known better."""
 LEVEL, IDLE_NETS = 0.97, 3
@@ -44,9 +46,9 @@ COMPARED, CURVED = 0.6, 0.4
 than of the flat ones a net must leave there.  On sampled parts it leaves 0.15 to 0.27, on decimated ones from 0.59."""
 PROBED = 20_000
 """Points at which a random noise is compared with what a net follows of it."""
-SMOOTHED, BY_CHANCE = 2, 0.03
-"""Rings of neighbours over which the two are compared, and the share of a part over which curved facets come closer by
-chance."""
+SMOOTHED, MUCH = 2, 0.45
+"""Rings of neighbours over which the two are compared, and the share of the facets on which the curved ones must come
+closer: sampled parts with creases and fillets show 0.49 to 0.86, decimated ones up to 0.41."""
 RESOLVING = 20
 """Fewest spans around of a net that is compared: coarser ones leave more of a circle than its facets do."""
 
@@ -55,8 +57,8 @@ RESOLVING = 20
 class FacetFit:
     """One net's fit to the facets.
 
-    points, data (k, 3): points on the flat facets, and those, on flat or curved ones, that are fitted; curved (n,): by
-    which share the data lie on curved facets, at the vertices; uv (k, 2): where each of the data is on the surface;
+    points, data (k, 3): points on the flat facets, and those, on flat or curved ones, that are fitted; curved: whether
+    the data lie on curved facets; uv (k, 2): where each of the data is on the surface;
     passed: the share of the amplitude of a noise of the vertices that the net does not follow; straddle (m,): how far
     the facets lie off the part, found from a net that does not resolve them.
     """
@@ -64,7 +66,7 @@ class FacetFit:
     surface: Surface
     samples: Samples
     points: FacetPoints
-    curved: Floats
+    curved: bool
     data: Floats
     uv: Floats
     passed: float
@@ -73,7 +75,7 @@ class FacetFit:
     @cached_property
     def _heights(self) -> tuple[Floats, Floats]:
         feet = Facets(self.surface.points(self.samples.uv), self.samples.facets.faces)
-        return heights(self.surface, self.uv, self.data, self.points.curved(feet, self.curved))
+        return heights(self.surface, self.uv, self.data, self.points.on(feet, curved=self.curved))
 
     @property
     def off(self) -> Floats:
@@ -86,38 +88,22 @@ class FacetFit:
         The heights of the surface over its own flat or curved triangles, whose corners are the feet of the vertices.
         """
         height = self._heights[1]
-        if not self.curved.any():
-            return straddling(height, self.points, near)
-        flat = 1.0 - self.points.between(self.curved[:, None])[:, 0]
-        return np.asarray(height + flat * (straddling(height, self.points, near) - height))
+        return height if self.curved else straddling(height, self.points, near)
 
     def own_error(self, near: Neighbourhoods) -> Floats:
         """Rms (m,) of `straddling` on each of the facets."""
         square = self.points.per_facet(self.straddling(near) ** 2, len(self.samples.facets.faces))
         return np.asarray(np.sqrt(square))
 
-    def sagitta(self, near: Neighbourhoods) -> float:
-        """Rms of `straddling`, away from creases."""
-        return rms_away_from_creases(self.straddling(near), self.points, self.samples)
-
     @property
     def left(self) -> float:
-        """Rms distance of the facets from the surface."""
-        return self._rms(self.off)
-
-    @property
-    def means(self) -> float:
-        """Rms of the facets' mean distances from the surface."""
-        means = self.points.per_facet(self.off, len(self.samples.facets.faces))
-        return self._rms(means[self.points.facet])
+        """Rms distance of the data from the surface."""
+        return rms(self.off, self.points.area)
 
     @property
     def vertex_noise(self) -> float:
         """Noise of the vertices, were all that is left of the facets noise."""
         return self.left / max(self.passed, 1e-3)
-
-    def _rms(self, values: Floats) -> float:
-        return float(np.sqrt(np.average(values**2, weights=self.points.area)))
 
 
 @dataclass(frozen=True)
@@ -131,11 +117,11 @@ class FacetFitter:
     def _noise(self) -> Floats:
         return np.random.default_rng(0).standard_normal((len(self.samples.points), 1))
 
-    def fit(self, spans: tuple[int, int], curved: Floats, before: FacetFit | None = None) -> FacetFit:
+    def fit(self, spans: tuple[int, int], before: FacetFit | None = None, *, curved: bool) -> FacetFit:
         """Fit one net, the points where the chart has them; before: a coarser fit to start from."""
         samples = self.samples
         points = facet_points(samples, spans)
-        data = points.curved(samples.facets, curved)
+        data = points.on(samples.facets, curved=curved)
         uv, noise = points.places(samples.uv), points.between(self._noise)
         net = self._solve(spans, points, uv, np.concatenate([data, noise], axis=1), before.surface if before else None)
         few = slice(None, None, len(uv) // PROBED + 1)
@@ -152,32 +138,29 @@ class FacetFitter:
         return replace(fitted, surface=surface, samples=samples, uv=uv)
 
     def compared(self, nets: list[tuple[int, int]], near: Neighbourhoods, *, flat: bool) -> FacetFit:
-        """A fit to curved facets where a smooth surface comes much closer to these than to the flat ones.
+        """A fit to curved facets if a smooth surface comes much closer to these than to flat ones on much of the part.
 
         Its net smooths the facets.  flat: do not compare, and take the flat ones.
         """
-        count = len(self.samples.points)
         spans = self._near(COMPARED, [net for net in nets if net[0] >= RESOLVING])
-        fitted = self.fit(spans, np.zeros(count))
+        fitted = self.fit(spans, curved=False)
         if flat:
             return fitted
-        bent = self.fit(spans, np.ones(count), fitted)
-        faces = self.samples.facets.faces
+        bent = self.fit(spans, fitted, curved=True)
+        faces = len(self.samples.facets.faces)
         left = []
         for each in (fitted, bent):
-            square = each.points.per_facet(each.off**2, len(faces))
+            square = each.points.per_facet(each.off**2, faces)
             for _ in range(SMOOTHED):
                 square = near.facet_mean(square)
             left.append(square)
-        closer = (left[1] < CURVED**2 * left[0]).astype(np.float64)
-        around = np.maximum(np.bincount(faces.ravel(), minlength=count), 1)
-        curved = np.bincount(faces.ravel(), np.repeat(closer, 3), count) / around
-        return self.fit(spans, curved, bent) if curved.mean() > BY_CHANCE else fitted
+        closer = (left[1] < CURVED**2 * left[0]).mean()
+        return bent if closer > MUCH else fitted
 
     def smoothing(self, nets: list[tuple[int, int]], fitted: FacetFit) -> FacetFit:
         """A fit whose net does not resolve the facets: the given one, or if its net is too fine another one."""
         spans = self._near(COMPARED, nets)
-        return fitted if _size(spans) >= _size(fitted.surface.spans) else self.fit(spans, fitted.curved)
+        return fitted if _size(spans) >= _size(fitted.surface.spans) else self.fit(spans, curved=fitted.curved)
 
     def _near(self, per_vertex: float, nets: list[tuple[int, int]]) -> tuple[int, int]:
         """The net that comes next to so many control points per vertex, of those that are not too large."""
@@ -214,14 +197,13 @@ def fit_facets(
     fitter, count = FacetFitter(samples, lengths), len(samples.points)
     size = float(np.linalg.norm(np.ptp(samples.points, axis=0)))
     fitted = fitter.compared(nets, near, flat=flat)
-    share = float(fitted.curved.mean())
     smooth = fitter.smoothing(nets, fitted)
-    limits = _Limits(tolerance if share > 0.5 else max(tolerance, ENOUGH * size), near, smooth.own_error(near))
-    within = _within(nets, MOST_CURVED**share * MOST_PER_VERTEX ** (1.0 - share) * count)
+    limits = _Limits(tolerance, max(tolerance, ENOUGH * size), near, smooth.own_error(near))
+    within = _within(nets, (MOST_CURVED if fitted.curved else MOST_PER_VERTEX) * count)
     if limits.fine_enough(fitted):  # so may a coarser one be
         spans = fitted.surface.spans
         within = [net for net in within if _size(net) < _size(spans)] + [spans]
-        fitted = fitter.fit(within[0], fitted.curved)
+        fitted = fitter.fit(within[0], curved=fitted.curved)
     noise, idle = fitted.vertex_noise, 0
     for spans in within:
         if idle >= IDLE_NETS:
@@ -232,7 +214,7 @@ def fit_facets(
                 return replace(corrected, straddle=limits.straddle)
         if _size(spans) <= _size(fitted.surface.spans):
             continue
-        fitted = fitter.fit(spans, fitted.curved, fitted)
+        fitted = fitter.fit(spans, fitted, curved=fitted.curved)
         idle = idle + 1 if fitted.vertex_noise > LEVEL * noise else 0
         noise = min(noise, fitted.vertex_noise)
     return replace(fitter.corrected(fitted), straddle=limits.straddle)
@@ -240,11 +222,13 @@ def fit_facets(
 
 @dataclass(frozen=True)
 class _Limits:
-    """When a fit is fine enough: enough is the rms distance that need not be bettered, a length.
+    """When a fit is fine enough: on curved facets at the tolerance, on flat ones at a share of their own error.
 
-    straddle (m,): how far the facets lie off the part, found from a net that does not resolve them.
+    enough: rms distance of flat facets that need not be bettered, a length; straddle (m,): how far the facets lie off
+    the part, found from a net that does not resolve them.
     """
 
+    tolerance: float
     enough: float
     near: Neighbourhoods
     straddle: Floats
@@ -258,7 +242,20 @@ class _Limits:
         return self._met(fitted, SHARE)
 
     def _met(self, fitted: FacetFit, share: float) -> bool:
-        return fitted.left <= self.enough or fitted.means <= share * fitted.sagitta(self.near)
+        points = fitted.points
+        own, steady = (
+            rms_away_from_creases(each, points.area, points, fitted.samples)
+            for each in (fitted.straddling(self.near), self.straddle[points.facet])
+        )
+        if fitted.curved:
+            return fitted.left <= max(self.tolerance, share * steady)
+        means = points.per_facet(fitted.off, len(self.straddle))
+        return fitted.left <= self.enough or rms(means[points.facet], points.area) <= max(share * own, STEADY * steady)
+
+
+def rms(values: Floats, weight: Floats) -> float:
+    """Weighted root mean square of values (k,)."""
+    return float(np.sqrt((weight * values**2).sum() / max(weight.sum(), 1e-300)))
 
 
 def _within(nets: list[tuple[int, int]], most: float) -> list[tuple[int, int]]:

@@ -46,18 +46,14 @@ class FacetPoints:
         out[:, 0] += (self.share * self.turns).sum(axis=1)
         return out
 
-    def curved(self, facets: Facets, share: Floats) -> Floats:
-        """The points (k, 3) moved by a share (n,), at the vertices, from facets to curved triangles with their corners.
-
-        The curved point-normal triangles are flat at creases.
-        """
-        flat = self.between(facets.points)
-        if not share.any():
-            return flat
+    def on(self, facets: Facets, *, curved: bool) -> Floats:
+        """The points (k, 3) on facets, or on curved point-normal triangles with their corners, flat at creases."""
+        if not curved:
+            return self.between(facets.points)
         normals = tangent_normals(facets.points[facets.faces], facets.normals[facets.faces])
         out = np.empty((len(self.facet), 3))
         parallel_for(_curved, len(out), 20_000, self.facet, self.corners, self.share, facets.points, normals, out)
-        return np.asarray(flat + self.between(share[:, None]) * (out - flat))
+        return out
 
     def per_facet(self, values: Floats, faces: int) -> Floats:
         """Means (m,) over each of the facets of values (k,) at the points."""

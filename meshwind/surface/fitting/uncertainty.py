@@ -13,8 +13,10 @@ from meshwind.core.cast import Floats, frozen
 from meshwind.surface.fitting.evidence import rms_away_from_creases, straddling
 from meshwind.surface.fitting.facet_fit import FacetFit
 from meshwind.surface.fitting.neighbours import Neighbourhoods
-from meshwind.surface.fitting.quadrature import facet_points, heights
+from meshwind.surface.fitting.quadrature import FacetPoints, facet_points, heights
+from meshwind.surface.fitting.samples import Samples
 from meshwind.surface.fitting.vertex_fit import VertexFit
+from meshwind.surface.surface import Surface
 
 REACH = 2.0
 """Least spans over which what the data leave is smoothed: a control point moves the surface two spans either way."""
@@ -49,10 +51,7 @@ def of_vertices(fitted: VertexFit, near: Neighbourhoods) -> Doubt:
     if fitted.settled:  # what is left is noise, of which a fit keeps a share, and next to none is left of many vertices
         square = fitted.kept * square + near.mean(near.mean(off)) ** 2
     table = _table(surface.spans, samples.uv, trusted * square, trusted)
-    points = facet_points(samples, surface.spans)
-    uv, chord = points.places(samples.uv), points.between(surface.points(samples.uv))
-    _, height = heights(surface, uv, chord, chord)
-    own = rms_away_from_creases(straddling(height, points, near), points, samples)
+    own = _sagitta(surface, samples, facet_points(samples, surface.spans), near)
     return Doubt("vertices", table, fitted.noise, own)
 
 
@@ -63,16 +62,23 @@ def of_facets(fitted: FacetFit, near: Neighbourhoods) -> Doubt:
     own = fitted.own_error(near)
     if fitted.straddle is not None:
         own = np.maximum(own, fitted.straddle)
-    square, straddle = fitted.off**2, own[points.facet]
-    table = _table(surface.spans, fitted.uv, points.area * (square + straddle**2), points.area, reach)
+    square = fitted.off**2 + own[points.facet] ** 2
+    table = _table(surface.spans, fitted.uv, points.area * square, points.area, reach)
     stands = ((samples.points - surface.points(samples.uv)) * surface.normals(samples.uv)).sum(axis=1)
     noise = float(np.sqrt(np.mean(stands[samples.trusted] ** 2)))
-    if fitted.curved.any():  # where the vertices are to lie on the part
-        weight = samples.trusted * fitted.curved
-        missed = _table(surface.spans, samples.uv, weight * stands**2, samples.trusted.astype(np.float64), reach)
-        table = frozen(np.hypot(table, missed))
-    sagitta = rms_away_from_creases(straddle, points, samples)
-    return Doubt("curved facets" if fitted.curved.mean() > 0.5 else "facets", table, noise, sagitta)
+    if not fitted.curved:
+        return Doubt("facets", table, noise, rms_away_from_creases(own[points.facet], points.area, points, samples))
+    # the vertices are to lie on the part here
+    trusted = samples.trusted.astype(np.float64)
+    missed = _table(surface.spans, samples.uv, trusted * stands**2, trusted, reach)
+    return Doubt("curved facets", frozen(np.hypot(table, missed)), noise, _sagitta(surface, samples, points, near))
+
+
+def _sagitta(surface: Surface, samples: Samples, points: FacetPoints, near: Neighbourhoods) -> float:
+    """How far flat facets lie off the part where they straddle it, were a surface the part: rms away from creases."""
+    uv, chord = points.places(samples.uv), points.between(surface.points(samples.uv))
+    _, height = heights(surface, uv, chord, chord)
+    return rms_away_from_creases(straddling(height, points, near), points.area, points, samples)
 
 
 def _table(spans: tuple[int, int], uv: Floats, square: Floats, weight: Floats, reach: float = REACH) -> Floats:

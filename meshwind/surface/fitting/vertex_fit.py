@@ -17,9 +17,9 @@ from meshwind.surface.fitting.resample import resampled
 from meshwind.surface.fitting.samples import Samples
 from meshwind.surface.surface import Surface
 
-PASSING, ROUNDS = 2, 4
-"""Fits of a net that is passed through, and more of the one that is kept: before each every vertex's parameters are
-moved to its foot.  The error settles in 3 or 4."""
+ROUNDS, PASSING, MANY = 4, 2, 10_000
+"""Fits of a net, before each of which every vertex's parameters are moved to its foot: the error settles in 3 or 4.
+Nets of more than so many vertices that are only passed through have fewer."""
 NEARLY = 3.0
 """A net that misses the tolerance by less than this factor is fitted again to see whether it meets it then."""
 SMOOTHING = 1e-4
@@ -83,8 +83,9 @@ def fit_vertices(
     little though neighbouring vertices miss the surface alike, vertices alone do not hold it, and the search ends.
     """
     best, *finer = nets
-    fitted = _fit(samples, best, lengths, PASSING)
-    noise, idle, level, slow, final = fitted.noise, 0, 0, 0, False
+    rounds = PASSING if len(samples.points) > MANY else ROUNDS
+    fitted = _fit(samples, best, lengths, rounds)
+    noise, idle, level, slow, final = fitted.noise, 0, 0, 0, rounds == ROUNDS
     for spans in finer:
         if not final and fitted.largest <= NEARLY * tolerance:
             fitted, final = _refit(fitted, lengths), True
@@ -93,7 +94,7 @@ def fit_vertices(
         size = spans[0] * (spans[1] + DEGREE)
         if size > SUPPORT * len(samples.points) or idle >= IDLE_NETS:
             break
-        trial = _fit(fitted.samples, spans, lengths, PASSING, fitted.surface)
+        trial = _fit(fitted.samples, spans, lengths, rounds, fitted.surface)
         slow = slow + 1 if trial.expected > SLOW * fitted.expected else 0
         if slow >= SLOW_NETS and alike(trial.surface, trial.samples, near) > ALIKE:
             return trial
@@ -101,7 +102,7 @@ def fit_vertices(
         noise = min(noise, trial.noise)
         idle = 0 if trial.expected < GAIN * fitted.expected else idle + 1
         if trial.expected < fitted.expected:
-            fitted, final = trial, False
+            fitted, final = trial, rounds == ROUNDS
     fitted = fitted if final else _refit(fitted, lengths)
     return replace(fitted, settled=level >= IDLE_NETS)
 
