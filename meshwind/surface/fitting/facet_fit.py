@@ -35,7 +35,7 @@ ENOUGH = 4e-5
 """Rms distance over the part's size that is left of no facets' fit: no mesh shows that its part is known better."""
 LEVEL, IDLE_NETS = 0.97, 3
 """A net that lowers the noise found by less than this resolves nothing more; so many in a row end the refinement."""
-MOST_PER_VERTEX, MOST_CURVED, MOST = 24.0, 1.0, 150_000
+MOST_PER_VERTEX, MOST_CURVED, MOST = 24.0, 2.0, 150_000
 """Most control points per vertex, on flat facets and on curved ones, which say no more than their corners; in all."""
 FEWEST = 1e-2
 """The coarsest net that is tried, over the finest: coarser ones cost as much of the facets' time and show nothing."""
@@ -242,13 +242,13 @@ class _Limits:
         return self._met(fitted, SHARE)
 
     def _met(self, fitted: FacetFit, share: float) -> bool:
+        if fitted.curved:
+            return fitted.left <= self.tolerance
         points = fitted.points
         own, steady = (
             rms_away_from_creases(each, points.area, points, fitted.samples)
             for each in (fitted.straddling(self.near), self.straddle[points.facet])
         )
-        if fitted.curved:
-            return fitted.left <= max(self.tolerance, share * steady)
         means = points.per_facet(fitted.off, len(self.straddle))
         return fitted.left <= self.enough or rms(means[points.facet], points.area) <= max(share * own, STEADY * steady)
 
