@@ -64,9 +64,9 @@ def test_what_does_not_count_is_contact(threshold: float | None) -> None:
     assert np.array_equal(lengths(doubted(1.0, threshold)).unresolved_length, each.bridged_length)
     assert about_contact(bridged()) == ()
     (note,) = about_contact(doubted(1.0, threshold), "mm")
-    less = "the surface's own error" if threshold is None else "the threshold of 1 mm"
-    share = f"{100 * plain.bridged_share:.1f}%"
-    assert note.text == f"{share} of the fibre runs off the surface by less than {less} and is not counted"
+    less = "the surface's uncertainty" if threshold is None else "the threshold of 1 mm"
+    share = f"{100 * plain.bridged_share:.1f} %"
+    assert note.text == f"{share} of the fibre is off the surface by less than {less}, and counts as contact"
     assert not note.warning
 
 
@@ -86,7 +86,7 @@ def test_a_run_counts_by_its_threshold_and_keeps_it(tmp_path: Path) -> None:
     assert none["unresolved"]["threshold"] == limit
     assert none["unresolved"]["fraction"] == pytest.approx(every["bridged_fraction"])
     assert none["unresolved"]["max_gap"] == pytest.approx(every["max_gap"])
-    assert any("is not counted" in note for note in result.report()["notes"])
+    assert any("counts as contact" in note for note in result.report()["notes"])
     held, own = read_results(tmp_path / "out").surface, result.surface.uncertainty
     assert held.threshold == limit
     assert held.uncertainty is not None and own is not None and np.array_equal(held.uncertainty, own)

@@ -67,7 +67,7 @@ def test_an_unresolved_part_has_a_warning_with_coordinates() -> None:
     (note,) = about_fit(surface, chart, 1e-5, 0.1, "mm")
     assert note.warning
     assert "does not resolve the part" in note.text
-    assert "3% of the part" in note.text
+    assert "3 % of the part" in note.text
     near = np.array([float(x) for x in note.text.split("near (")[1].split(")")[0].split(",")])
     assert np.linalg.norm(near - peak) < 0.02 * chart.annulus.mesh.diagonal
     assert "sharp" in note.text
@@ -108,7 +108,7 @@ def test_a_horn_is_warned_of_in_summary_and_report(tmp_path: Path) -> None:
     assert result.surface.error is not None
     (line,) = [line for line in run_lines(result.report()) if "does not resolve" in line]
     assert line.startswith("warning   the surface")
-    assert f"({100 * result.surface.error.relative_max:.2g}% of the part)" in line
+    assert f"({100 * result.surface.error.relative_max:.2g} % of the part)" in line
     (note,) = [
         note for note in json.loads((tmp_path / "report.json").read_text())["notes"] if note.startswith("warning")
     ]
@@ -121,3 +121,32 @@ def test_words() -> None:
     assert (quantity(12345.6, "mm"), quantity(0.5), quantity(0.012345, "in", 2)) == ("12,350 mm", "0.5", "0.012 in")
     assert (ratio(1e-5), ratio(2.34e-4), ratio(0.0)) == ("1e-5", "2.3e-4", "0")
     assert (power(1e-3), power(1.1e-3), power(0.99e-3)) == ("1e-3", "1e-2", "1e-3")
+
+
+@pytest.mark.parametrize(("vertices", "facets", "words"), [
+    (2e-3, 2e-3, ()), (3.1e-3, 2e-3, ("surface and mesh lie up to 0.031 mm (0.31 % of the part)", "sharp")),
+    (2e-4, 2.5e-3, ()), (2e-4, 3.1e-3, ("up to 0.031 mm", "chords", "more vertices on them")),
+])  # fmt: skip
+def test_a_surface_that_follows_facets_is_warned_of_where_it_lies_off_the_mesh(
+    fitted: tuple[mw.Surface, mw.Chart], vertices: float, facets: float, words: tuple[str, ...]
+) -> None:
+    error = mw.FitError(1e-5, vertices * DIAGONAL, 1e-5, facets * DIAGONAL, DIAGONAL, "facets", 0.02)
+    why, *warnings = about_fit(replace(fitted[0], error=error), fitted[1], 1e-5, 0.1, "mm")
+    assert "the vertices lie 0.02 mm off a smooth surface" in why.text and not why.warning
+    assert len(warnings) == bool(words)
+    for note in warnings:
+        assert note.warning and all(each in note.text for each in words)
+
+
+def test_the_summary_names_the_tolerance_only_where_the_vertices_are_fitted() -> None:
+    report = mw.wind(horned(), paths=3, revolutions=0.2, worst_fit=0.5).report()
+    report["surface"]["evidence"] = {
+        "data": "vertices", "noise": 0.1, "sagitta": 0.2, "uncertainty": {"rms": 0.3, "max": 0.4}
+    }  # fmt: skip
+    assert ", tolerance 1e-5)" in run_lines(report)[1]
+    assert run_lines(report)[2].endswith(
+        "fitted to the vertices; noise of the vertices 0.1, sagitta of the facets 0.2; "
+        "uncertain by 0.3 (root mean squares), at most 0.4"
+    )
+    report["surface"]["evidence"]["data"] = "facets"
+    assert "tolerance" not in run_lines(report)[1]

@@ -35,18 +35,20 @@ def _surface(surface: SurfaceFigures, size: float, units: str) -> list[str]:
     around, along = surface["control_points"]
     vertices, facets = surface["fit_error"]["to_surface"]["max"], surface["fit_error"]["to_mesh"]["max"]
     tolerance = surface["tolerance"]
-    fitted_to = "" if tolerance is None else f", tolerance {ratio(tolerance)}"
+    led = surface["evidence"]["data"] if "evidence" in surface else "vertices"
+    fitted_to = "" if tolerance is None or led != "vertices" else f", tolerance {ratio(tolerance)}"
     lines = [
         f"surface   {around} x {along} control points; largest distance to the vertices {quantity(vertices, units, 2)} "
         f"({ratio(vertices / size)} of the part{fitted_to}), "
         f"to the facets {quantity(facets, units, 2)} ({ratio(facets / size)})"
     ]
     if "evidence" in surface:
-        found = surface["evidence"]
+        found, doubt = surface["evidence"], surface["evidence"]["uncertainty"]
         lines.append(
-            f"          fitted to the {found['data']}; noise of the vertices {quantity(found['noise'], units, 2)}, "
-            f"sagitta of the facets {quantity(found['sagitta'], units, 2)}, "
-            f"uncertain by {quantity(found['uncertainty']['rms'], units, 2)}"
+            f"          fitted to the {led}; noise of the vertices {quantity(found['noise'], units, 2)}, "
+            f"sagitta of the facets {quantity(found['sagitta'], units, 2)}; "
+            f"uncertain by {quantity(doubt['rms'], units, 2)} (root mean squares), "
+            f"at most {quantity(doubt['max'], units, 2)}"
         )
     return lines
 

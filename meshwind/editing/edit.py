@@ -157,7 +157,7 @@ def _rounds(
         if not lifted(now.paths, FIRM).any():
             break
         if progress is not None:
-            progress(f"round {number + 1}: {100 * now.bridged:.2g}% bridged, gap {now.gap:.3g}")
+            progress(f"round {number + 1}: {100 * now.bridged:.2g} % bridged, gap {now.gap:.3g}")
         found = problem.step(now)
         if found.shortfall > max(limit, FAR_SHORT * now.gap):
             outcome = Outcome.OUT_OF_REACH

@@ -64,7 +64,7 @@ class EditOptions:
         for name in ("bound", "threshold"):
             value = getattr(self, name)
             if value is not None and not (isfinite(value) and value > 0):
-                raise BadInputError(f"{name} is {value}; give a length above 0, or None")
+                raise BadInputError(f"{name} is {value}; give a length above 0, or none at all")
         for name in ("fairness", "pressing"):
             value = getattr(self, name)
             if not (isfinite(value) and value >= 0):

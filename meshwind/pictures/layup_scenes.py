@@ -37,7 +37,7 @@ def quads_scene(of: Subject) -> QuadsScene:
     off = int((~mesh.on_surface).sum())
     where = "every corner on the surface"
     if off:
-        where = f"{off} of {len(mesh.points)} corners off the surface, where a fibre bridges"
+        where = f"{off} of {len(mesh.points)} corners off the surface"
     subtitle = f"{len(mesh.quads)} quads, {len(mesh.triangles)} triangles  ·  {where}"
     if not len(mesh.quads) + len(mesh.triangles):
         subtitle = f"no quad mesh: {mesh.note}" if mesh.note else "no quad mesh"

@@ -25,7 +25,7 @@ def draw(window: Any, scene: MapScene, page: Page) -> Any:
     image = canvas.portrait(window, page, view, scene.part.points)
     pen = canvas.titled(image, page, scene.frame)
     if fans is not None:
-        canvas.note(pen, page, ["fans: directions", "that press; none", "where all but all do"])
+        canvas.note(pen, page, ["fans: directions", "that press; none", "where nearly all do"])
     canvas.scale_bar(image, pen, page, scene.scale)
     canvas.ruler(pen, page, canvas.fitting(page, view), scene.frame.units)
     canvas.axes(pen, page, view)

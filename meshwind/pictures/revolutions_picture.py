@@ -51,7 +51,7 @@ def _histogram(axes: Any, chosen: Revolutions, last: float) -> None:
     share = chosen.pressing.share(0.5 * (edges[1:] + edges[:-1]))
     axes.stairs(share, edges, fill=True, color=_PRESSES, label="share of the surface on which both families press")
     for k, (low, high) in enumerate(chosen.common):
-        words = f"most common interval ({100.0 * chosen.common_share:.3g}% of the surface)" if k == 0 else None
+        words = f"most common interval ({100.0 * chosen.common_share:.3g} % of the surface)" if k == 0 else None
         axes.plot([low, min(high, last)], [chosen.common_share] * 2, color=_COMMON, linewidth=4, label=words)
 
 

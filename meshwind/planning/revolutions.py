@@ -71,7 +71,7 @@ class Revolutions:
         if not self.feasible.any:
             return f"{self.choice:.3g} revolutions: none keeps every fibre on the part; most fibres hold at this number"
         share = self.chosen.bridged_share
-        bridged = "no fibre bridges" if share == 0.0 else f"{100.0 * share:.2g}% of the fibre bridges, the least"
+        bridged = "no fibre bridges" if share == 0.0 else f"{100.0 * share:.2g} % of the fibre bridges, the least"
         return f"{self.choice:.3g} revolutions: {bridged}; {bound}"
 
 

@@ -26,7 +26,7 @@ SHOWS = 1e-4
 UNRESOLVED = 1e-2
 """An error in either direction of more than this share of the diagonal means that the surface has another shape."""
 APART, APART_RMS = 3e-3, 3e-4
-"""Largest distance between surface and facets, and its root mean square, over the diagonal, without a warning."""
+"""Largest distance between surface and mesh, and the facets' root mean square, over the diagonal, without a warning."""
 
 LEFT_OUT = 5e-4
 """Least share of the fibre that is off the surface and not counted, of which a note tells: it shows as 0.1 %."""
@@ -36,6 +36,12 @@ _MAX_LISTED = 3
 """Places where surface and mesh lie far apart that are listed with their coordinates."""
 _PROTRUSIONS = "protrusions such as fingers and ears are squeezed by the chart; wind a part without them"
 _COARSE = "its edges there are too sharp for the mesh; give a finer mesh, or round them"
+_CHORDS = (
+    "its facets there are chords of the smooth surface through their corners; where the part itself is flat, give a "
+    "mesh with more vertices on them"
+)
+_HELD = 0.2
+"""Vertices that are off the surface by less than this share of what the facets are off by lie on it."""
 
 
 @dataclass(frozen=True)
@@ -83,8 +89,8 @@ def about_contact(paths: Paths, units: str = "") -> tuple[Note, ...]:
     if share < LEFT_OUT:
         return ()
     limit = paths.surface.threshold
-    less = "the surface's own error" if limit is None else f"the threshold of {quantity(limit, units, 2)}"
-    return (Note(f"{100.0 * share:.1f}% of the fibre runs off the surface by less than {less} and is not counted"),)
+    less = "the surface's uncertainty" if limit is None else f"the threshold of {quantity(limit, units, 2)}"
+    return (Note(f"{100.0 * share:.1f} % of the fibre is off the surface by less than {less}, and counts as contact"),)
 
 
 def about_layup(layup: Layup) -> tuple[Note, ...]:
@@ -165,11 +171,10 @@ def _followed(surface: Surface, chart: Chart, error: FitError, units: str) -> tu
     else:
         text = "the vertices lie too far apart to hold a surface alone: it follows curved facets between them"
         notes.append(Note(text))
-    if max(error.to_mesh_max / APART, error.to_mesh_rms / APART_RMS) > error.diagonal:
+    if max(error.max / APART, error.to_mesh_rms / APART_RMS) > error.diagonal:
         text = (
-            f"surface and facets lie up to {quantity(error.to_mesh_max, units, 2)} "
-            f"({100.0 * error.to_mesh_max / error.diagonal:.2g}% of the part) apart {_places(surface, chart)}; "
-            f"{_cause(chart)}"
+            f"surface and mesh lie up to {quantity(error.max, units, 2)} "
+            f"({100.0 * error.relative_max:.2g} % of the part) apart {_places(surface, chart)}; {_cause(chart, error)}"
         )
         notes.append(Note(text, True, FIT_PICTURE))
     return tuple(notes)
@@ -186,12 +191,15 @@ def _missed(error: FitError, missed: float, tolerance: float, units: str) -> str
 def _unresolved(surface: Surface, chart: Chart, error: FitError, units: str) -> str:
     return (
         f"the surface does not resolve the part: it lies up to {quantity(error.max, units, 2)} "
-        f"({100.0 * error.relative_max:.2g}% of the part) off the mesh {_places(surface, chart)}; {_cause(chart)}"
+        f"({100.0 * error.relative_max:.2g} % of the part) off the mesh {_places(surface, chart)}; "
+        f"{_cause(chart, error)}"
     )
 
 
-def _cause(chart: Chart) -> str:
+def _cause(chart: Chart, error: FitError) -> str:
     """Why a surface lies far off the mesh, and what helps."""
+    if error.to_surface_max < _HELD * error.to_mesh_max:
+        return _CHORDS
     squeezed = float(np.quantile(chart.stretch, 0.99)) > SQUEEZED
     return _PROTRUSIONS if squeezed else _COARSE
 

@@ -96,8 +96,9 @@ def annulus(
         words = words.replace("open rims", f"rims of the {side} skin").replace("open rim", f"rim of the {side} skin")
         for loop in [end.loop for end in pair if end.loop is not None]:
             surface = straightened(surface, vertices[loop])
+    asked = opening is not None or opening_by != "auto"
     surface, openings = open_ends(surface, pair, opening, opening_by, mesh.name)
-    found = _assembled(mesh, split_chords(surface), pair, [_ends_in_words(words, pair, openings, opening), *notes])
+    found = _assembled(mesh, split_chords(surface), pair, [_ends_in_words(words, pair, openings, asked), *notes])
     decided = (*(in_words(wall) for wall in [wall] if wall), *(each.why for each in openings if each.why))
     return replace(found, notes=decided, wall=wall)
 
@@ -157,13 +158,13 @@ def _offset(rim: Floats, pair: list[End]) -> float:
     return near[0] - near[1]
 
 
-def _ends_in_words(words: str, pair: list[End], openings: list[Opening], opening: float | None) -> str:
-    """How the ends were chosen, in a sentence."""
+def _ends_in_words(words: str, pair: list[End], openings: list[Opening], asked: bool) -> str:
+    """How the ends were chosen, in a sentence; asked: whether a size or a kind of opening was wanted."""
     positions = " and ".join(end.position for end in pair)
     if any(end.lip is not None for end in pair):
         words += ", the lip where one is hollow"
     if not openings:
-        unused = "" if opening is None else ", no opening cut as both are open"
+        unused = ", no opening cut as both are open" if asked else ""
         return f"{words}, at {positions}{unused}"
     sizes = " and ".join(dict.fromkeys(map(str, openings))).replace(" and radius ", " and ")
     return f"{words}, at {positions}, opened to {sizes}"

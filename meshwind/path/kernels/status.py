@@ -53,7 +53,7 @@ _ADVICE = {
     Status.UNSTABLE: "no stable path: the fibre is balanced on a ridge and falls off it (a conjugate point, or "
     "windings too long for the bulge): use fewer revolutions",
     Status.LEFT_CHART: "the fibre slides off an open edge of the surface (u=0 or u=1): move the ends away from it",
-    Status.TOO_COARSE: "at rest, but the fibre turns over an edge that is sharper than its particles are far apart: "
+    Status.TOO_COARSE: "the fibre turns over an edge that is too sharp for the distance of its particles: "
     "use more particles (--particles)",
     Status.STALLED: "the solver stopped before the fibre was at rest: use fewer revolutions, or a smoother surface "
     "(--tolerance 1e-3)",
