@@ -1,5 +1,6 @@
 """Taut paths, each with its certificate."""
 
+import math
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
@@ -168,7 +169,10 @@ class Paths:
         return sharpest_turn(self.normal, self.on_surface)
 
     def advice(self, path: int) -> str:
-        """Say what became of a path and, where it is not in equilibrium, what would help.
+        """Say what became of a path and, where it is not in equilibrium, what may help.
+
+        The revolutions and the friction that are named held the path when it was tried with them, on a part with a
+        rough surface with fewer particles than its own: wind it again to see.
 
         Parameters
         ----------
@@ -192,10 +196,16 @@ class Paths:
         if status in (Status.CONVERGED, Status.TOO_COARSE):
             return status.advice
         if self.holding_turns[path] > 0.0:
-            ways.append(f"{self.holding_turns[path]:.2g} revolutions")
+            ways.append(f"{_below(self.holding_turns[path])} revolutions")
         if self.holding_friction[path] > 0.0:
             ways.append(f"friction {self.holding_friction[path]:g}")
-        return status.advice + (f"; {' or '.join(ways)} would hold it" if ways else "")
+        return status.advice + (f"; {' or '.join(ways)} may hold it" if ways else "")
+
+
+def _below(turns: float) -> str:
+    """Revolutions to two digits, rounded down: more might not hold."""
+    step = 10.0 ** (math.floor(math.log10(turns)) - 1)
+    return f"{step * math.floor(turns / step + 1e-9):.2g}"
 
 
 def converged_or_all(status: Ints, among: Bools | None = None) -> Bools:

@@ -184,7 +184,7 @@ def _paths(paths: Paths) -> PathsFigures:
 
 
 def failures(paths: Paths) -> list[Failure]:
-    """Paths that did not converge, each with the reason and what would hold it."""
+    """Paths that did not converge, each with the reason and what may hold it."""
     return [_failure(paths, int(k)) for k in np.flatnonzero(paths.status != Status.CONVERGED)]
 
 

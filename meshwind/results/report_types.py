@@ -82,7 +82,7 @@ class WindingFigures(TypedDict):
 
 
 class Failure(TypedDict):
-    """A path that did not converge: number, status, name of the status, and reason with what would hold the path."""
+    """A path that did not converge: number, status, name of the status, and reason with what may hold the path."""
 
     path: int
     status: int
