@@ -1,5 +1,7 @@
 """How closed ends are opened: along a level line of the distance to the pole, by a plane, or by the more even one."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from mesh_shapes import Part, ball, rotation
@@ -103,3 +105,9 @@ def test_openings_that_do_not_fit_are_refused_with_those_that_do(by: str, radius
 def test_other_words_are_refused() -> None:
     with pytest.raises(mw.BadInputError, match="give auto, level or plane"):
         mw.annulus(mesh_from(*ball()), opening_by="knife")
+
+
+@pytest.mark.parametrize(("by", "said"), [("auto", False), ("plane", True), ("level", True)])
+def test_a_kind_of_opening_that_is_not_needed_is_said_to_be_unused(by: str, said: bool) -> None:
+    vase = mw.read(Path(__file__).parents[1] / "data" / "vase.stl")
+    assert ("no opening cut as both are open" in mw.annulus(vase, opening_by=by).ends) == said
