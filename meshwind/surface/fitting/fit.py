@@ -76,7 +76,8 @@ def fit(chart: Chart, tolerance: float = FIT_TOLERANCE) -> Surface:
             surface, samples, doubt = led.surface, led.samples, of_vertices(led, near)
         else:
             followed = fit_facets(samples, nets, lengths, near, limit, flat=found.decimated)
-            surface, samples, doubt = followed.surface, followed.samples, of_facets(followed, near)
+            surface, samples = followed.surface, followed.samples
+            doubt = of_facets(followed, near, straddle=found.decimated)
     error = replace(certify(surface, samples), data=doubt.data, noise=doubt.noise, sagitta=doubt.sagitta)
     return Surface(surface.control_points + samples.middle, True, error, doubt.table)
 

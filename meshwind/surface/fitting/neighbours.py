@@ -10,7 +10,7 @@ from meshwind.core.cast import Floats
 from meshwind.surface.fitting.samples import Samples
 from meshwind.surface.surface import Surface
 
-ALIKE = 0.15
+ALIKE = 0.1
 """Most likeness of neighbours' distances that is taken for noise: noise shows -0.2 to 0, a missed shape up to 0.9."""
 
 

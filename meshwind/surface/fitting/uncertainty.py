@@ -55,8 +55,12 @@ def of_vertices(fitted: VertexFit, near: Neighbourhoods) -> Doubt:
     return Doubt("vertices", table, fitted.noise, own)
 
 
-def of_facets(fitted: FacetFit, near: Neighbourhoods) -> Doubt:
-    """What the facets leave and how far they straddle the part, where they led."""
+def of_facets(fitted: FacetFit, near: Neighbourhoods, *, straddle: bool) -> Doubt:
+    """What the facets leave and how far they straddle the part, where they led.
+
+    straddle: whether they are known to straddle it.  Otherwise the part may pass through the vertices, and lie on one
+    side of the surface wherever these do.
+    """
     surface, samples, points = fitted.surface, fitted.samples, fitted.points
     reach = max(REACH, float(np.sqrt(np.prod(surface.spans) / len(samples.points))))
     own = fitted.own_error(near)
@@ -66,12 +70,14 @@ def of_facets(fitted: FacetFit, near: Neighbourhoods) -> Doubt:
     table = _table(surface.spans, fitted.uv, points.area * square, points.area, reach)
     stands = ((samples.points - surface.points(samples.uv)) * surface.normals(samples.uv)).sum(axis=1)
     noise = float(np.sqrt(np.mean(stands[samples.trusted] ** 2)))
-    if not fitted.curved:
+    if straddle:
         return Doubt("facets", table, noise, rms_away_from_creases(own[points.facet], points.area, points, samples))
-    # the vertices are to lie on the part here
     trusted = samples.trusted.astype(np.float64)
-    missed = _table(surface.spans, samples.uv, trusted * stands**2, trusted, reach)
-    return Doubt("curved facets", frozen(np.hypot(table, missed)), noise, _sagitta(surface, samples, points, near))
+    aside = stands if fitted.curved else near.mean(near.mean(stands))
+    table = frozen(np.hypot(table, _table(surface.spans, samples.uv, trusted * aside**2, trusted, reach)))
+    if fitted.curved:
+        return Doubt("curved facets", table, noise, _sagitta(surface, samples, points, near))
+    return Doubt("facets", table, noise, rms_away_from_creases(own[points.facet], points.area, points, samples))
 
 
 def _sagitta(surface: Surface, samples: Samples, points: FacetPoints, near: Neighbourhoods) -> float:

@@ -32,6 +32,8 @@ search, where what is left is no noise."""
 FLAT = 0.9
 """A finer net that leaves more than this share of the least noise so far resolves nothing more: what a part's smooth
 shape leaves falls by more from net to net, and by 0.7 along a crease."""
+SETTLED = 1
+"""So many finer nets that resolve nothing more show that what is left is noise, where it looks like noise."""
 SUPPORT = 0.5
 """Most control points per vertex where vertices alone are followed."""
 NEAR = 1e-3
@@ -104,7 +106,7 @@ def fit_vertices(
         if trial.expected < fitted.expected:
             fitted, final = trial, rounds == ROUNDS
     fitted = fitted if final else _refit(fitted, lengths)
-    return replace(fitted, settled=level >= IDLE_NETS)
+    return replace(fitted, settled=level >= SETTLED)
 
 
 def _refit(fitted: VertexFit, lengths: tuple[float, float]) -> VertexFit:
