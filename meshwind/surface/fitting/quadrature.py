@@ -9,13 +9,15 @@ from numba import njit
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.threads import parallel_for
 from meshwind.surface.evaluate import SU, SV, S, frame
-from meshwind.surface.fitting.infill import spans_across, tangent_normals
+from meshwind.surface.fitting.infill import tangent_normals
 from meshwind.surface.fitting.samples import Facets, Samples
 from meshwind.surface.surface import Surface
 
-FEWEST, FINEST = 2, 24
-"""Pieces that the edge of a facet is divided into: one more than the spans that it crosses, within these bounds."""
-
+FEWEST, WIDEST = 2, 4.0
+"""Least number of pieces that the edge of a facet is divided into, and the spans that a facet may cross undivided: each
+gets one more piece than the spans that it crosses, and larger ones are halved across their longest edge first."""
+DEPTH = 48
+"""Most halvings on the way to a part of a facet."""
 TINY = 1e-300
 """Keeps a quotient finite where a normal vanishes."""
 
@@ -64,16 +66,14 @@ class FacetPoints:
 def facet_points(samples: Samples, spans: tuple[int, int]) -> FacetPoints:
     """Points on the facets of a mesh, several for each span of a net that a facet crosses."""
     faces = samples.facets.faces
-    pieces = np.empty(len(faces), dtype=np.int8)
-    parallel_for(spans_across, len(pieces), 20_000, faces, samples.uv, samples.turns, spans, pieces)
-    pieces = np.clip(pieces + 1, FEWEST, FINEST).astype(np.int8)
+    count = np.empty(len(faces), dtype=np.int64)
+    parallel_for(_count, len(faces), 10_000, faces, samples.uv, samples.turns, spans, count)
     first = np.zeros(len(faces) + 1, dtype=np.int64)
-    np.cumsum(pieces.astype(np.int64) ** 2, out=first[1:])
-    facet = np.repeat(np.arange(len(faces)), np.diff(first))
-    share = np.empty((first[-1], 3))
-    parallel_for(_divide, len(faces), 10_000, pieces, first, share)
-    area = igl.doublearea(samples.points, faces) / 2
-    area = area[facet] / (pieces.astype(np.float64) ** 2)[facet]
+    np.cumsum(count, out=first[1:])
+    share, area = np.empty((first[-1], 3)), np.empty(first[-1])
+    parallel_for(_fill, len(faces), 10_000, faces, samples.uv, samples.turns, spans, first, share, area)
+    facet = np.repeat(np.arange(len(faces)), count)
+    area *= (igl.doublearea(samples.points, faces) / 2)[facet]
     return FacetPoints(facet, faces[facet], share, samples.turns[facet].astype(np.float64), area)
 
 
@@ -102,17 +102,74 @@ def _heights(first, last, spline, uv, above, below, high, low):
 
 
 @njit(nogil=True, cache=True)
-def _divide(first, last, pieces, start, share):
-    """Write the centres of the like parts of triangles first to last, as shares of their corners."""
+def _count(first, last, faces, uv, turns, spans, count):
+    """Write the numbers of the points on facets first to last."""
+    none, stack = np.empty((0, 3)), np.empty((DEPTH + 1, 3, 3))
     for m in range(first, last):
-        n, k = pieces[m], start[m]
-        for i in range(n):
-            for j in range(n - i):
-                for turned in range(2 if i + j < n - 1 else 1):
-                    offset = (1 + turned) / 3.0
-                    share[k, 0], share[k, 1] = (i + offset) / n, (j + offset) / n
-                    share[k, 2] = 1.0 - share[k, 0] - share[k, 1]
-                    k += 1
+        count[m] = _points(m, faces, uv, turns, spans, stack, 0, none, none[:, 0])
+
+
+@njit(nogil=True, cache=True)
+def _fill(first, last, faces, uv, turns, spans, start, share, area):
+    """Write the points on facets first to last as shares of their corners, and their shares of the facets' areas."""
+    stack = np.empty((DEPTH + 1, 3, 3))
+    for m in range(first, last):
+        _points(m, faces, uv, turns, spans, stack, start[m], share, area)
+
+
+@njit(nogil=True, cache=True)
+def _points(m, faces, uv, turns, spans, stack, at, share, area):
+    """Divide facet m into parts that cross few spans, and write their points from number `at` on; their number.
+
+    Only counts where `share` has no rows.  stack holds corners (3, 3) of parts, as shares of the facet's.
+    """
+    x, depths, count = np.empty((3, 2)), np.zeros(DEPTH + 1, dtype=np.int64), 0
+    for c in range(3):
+        i = faces[m, c]
+        x[c, 0], x[c, 1] = (uv[i, 0] + turns[m, c]) * spans[0], uv[i, 1] * spans[1]
+    stack[0] = np.eye(3)
+    top = 0
+    while top >= 0:
+        depth, part = depths[top], stack[top].copy()
+        at_corners = part @ x
+        widest, longest, edge = 0.0, -1.0, 0
+        for c in range(3):
+            du = at_corners[(c + 1) % 3, 0] - at_corners[c, 0]
+            dv = at_corners[(c + 1) % 3, 1] - at_corners[c, 1]
+            widest = max(widest, abs(du), abs(dv))
+            if du * du + dv * dv > longest:
+                longest, edge = du * du + dv * dv, c
+        if widest > WIDEST and depth < DEPTH:
+            after = (edge + 1) % 3
+            stack[top + 1] = part
+            middle = 0.5 * (part[edge] + part[after])
+            stack[top, edge], stack[top + 1, after] = middle, middle
+            depths[top], depths[top + 1] = depth + 1, depth + 1
+            top += 1
+            continue
+        top -= 1
+        n = max(int(np.ceil(widest)) + 1, FEWEST)
+        if len(share):
+            _lattice(
+                part, n, 0.5**depth / n**2, share[at + count : at + count + n**2], area[at + count : at + count + n**2]
+            )
+        count += n**2
+    return count
+
+
+@njit(nogil=True, cache=True)
+def _lattice(part, n, each, share, area):
+    """Write the centres of the n^2 like parts of a triangle, as shares of the facet's corners, and their area."""
+    k = 0
+    for i in range(n):
+        for j in range(n - i):
+            for turned in range(2 if i + j < n - 1 else 1):
+                offset = (1 + turned) / 3.0
+                a, b = (i + offset) / n, (j + offset) / n
+                for c in range(3):
+                    share[k, c] = a * part[0, c] + b * part[1, c] + (1.0 - a - b) * part[2, c]
+                area[k] = each
+                k += 1
 
 
 @njit(nogil=True, cache=True)
