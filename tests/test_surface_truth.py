@@ -15,6 +15,8 @@ from meshwind.chart import flatten
 from meshwind.chart.chart import Chart
 from meshwind.core.cast import Floats, Ints
 from meshwind.mesh import mesh_from
+from meshwind.surface.fitting.quadrature import facet_points
+from meshwind.surface.fitting.samples import Samples
 
 Profile = Callable[[Floats], tuple[Floats, Floats]]
 """Radius and height of a shape of revolution by v."""
@@ -144,12 +146,31 @@ def test_sampled_parts_are_followed_at_their_vertices(name: str) -> None:
 
 def test_long_triangles_through_true_vertices_are_curved() -> None:
     """A cylinder meshed in one strip between its rims: no vertices hold a net there, and flat facets cut its circle."""
-    around = 64
+    surface = mw.fit(flatten(mw.annulus(strip(64))))
+    points = surface.points(inner())
+    assert np.abs(np.hypot(points[:, 0], points[:, 1]) - 1.0).max() < 2e-4  # the facets' sagitta is 1.2e-3
+
+
+def strip(around: int) -> mw.Mesh:
+    """A tube of radius 1 and length 3 meshed in one strip between its rims."""
     angle = TURN * np.arange(around) / around
     ring = np.stack([np.cos(angle), np.sin(angle), np.zeros(around)], axis=1)
     a = np.arange(around)
     b = (a + 1) % around
     faces = np.concatenate([np.stack([a, b, b + around], -1), np.stack([a, b + around, a + around], -1)])
-    surface = mw.fit(flatten(mw.annulus(mesh_from(np.concatenate([ring, ring + [0.0, 0.0, 3.0]]), faces))))
-    points = surface.points(inner())
-    assert np.abs(np.hypot(points[:, 0], points[:, 1]) - 1.0).max() < 2e-4  # the facets' sagitta is 1.2e-3
+    return mesh_from(np.concatenate([ring, ring + [0.0, 0.0, 3.0]]), faces)
+
+
+def test_facets_across_many_spans_leave_none_without_a_point() -> None:
+    """However long facets are, a net that is fitted to them has data in all its spans, and their integral is exact."""
+    samples = Samples.of(flatten(mw.annulus(strip(12))))
+    spans = (40, 300)
+    points = facet_points(samples, spans)
+    uv = points.places(samples.uv)
+    assert np.histogram2d(uv[:, 0] % 1.0, uv[:, 1], spans, ((0.0, 1.0), (0.0, 1.0)))[0].min() > 0
+    faces = samples.facets.faces
+    area = igl.doublearea(samples.points, faces) / 2
+    np.testing.assert_allclose(np.bincount(points.facet, points.area), area, rtol=1e-12)
+    centre = [points.per_facet(each, len(faces)) for each in points.between(samples.points).T]
+    np.testing.assert_allclose(np.stack(centre, 1), samples.points[faces].mean(axis=1), atol=1e-12)
+    assert len(points.facet) < 60 * spans[0] * spans[1]

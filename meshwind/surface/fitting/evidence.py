@@ -53,9 +53,13 @@ class Standing:
 
 def vertices_lead(fitted: VertexFit, found: Standing) -> bool:
     """Whether the vertices, noisy or not, are truer than the facets, and hold the net that was fitted to them."""
-    surface, samples = fitted.surface, fitted.samples
-    resolved = (fitted.settled and found.alike < ALIKE) or fitted.expected < RESOLVED * found.elevation
-    return resolved and not (found.decimated or bare(samples, surface.spans) or strays(fitted))
+    if found.decimated or strays(fitted):
+        return False
+    noisy = fitted.settled and found.alike < ALIKE
+    if noisy and fitted.expected > found.elevation:  # facets show nothing but noise
+        return True
+    resolved = noisy or fitted.expected < RESOLVED * found.elevation
+    return resolved and not bare(fitted.samples, fitted.surface.spans)
 
 
 def standing(surface: Surface, samples: Samples, near: Neighbourhoods) -> Standing:

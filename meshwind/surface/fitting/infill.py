@@ -19,7 +19,7 @@ Int8s: TypeAlias = NDArray[np.int8]
 ANGLE = igl.PER_VERTEX_NORMALS_WEIGHTING_TYPE_ANGLE
 CREASE = np.cos(np.radians(30))
 """Cosine of the angle between vertex normal and facet normal beyond which a corner lies at a crease."""
-FINEST = 24
+FINEST = 64
 """Maximum number of pieces that an edge is divided into."""
 
 

@@ -13,7 +13,7 @@ from meshwind.surface.fitting.infill import tangent_normals
 from meshwind.surface.fitting.samples import Facets, Samples
 from meshwind.surface.surface import Surface
 
-FEWEST, WIDEST = 2, 4.0
+FEWEST, WIDEST = 2, 8.0
 """Least number of pieces that the edge of a facet is divided into, and the spans that a facet may cross undivided: each
 gets one more piece than the spans that it crosses, and larger ones are halved across their longest edge first."""
 DEPTH = 48
@@ -67,11 +67,14 @@ def facet_points(samples: Samples, spans: tuple[int, int]) -> FacetPoints:
     """Points on the facets of a mesh, several for each span of a net that a facet crosses."""
     faces = samples.facets.faces
     count = np.empty(len(faces), dtype=np.int64)
-    parallel_for(_count, len(faces), 10_000, faces, samples.uv, samples.turns, spans, count)
+    corners = samples.uv[faces]
+    corners[..., 0] += samples.turns
+    corners *= spans
+    parallel_for(_count, len(faces), 10_000, corners, count)
     first = np.zeros(len(faces) + 1, dtype=np.int64)
     np.cumsum(count, out=first[1:])
     share, area = np.empty((first[-1], 3)), np.empty(first[-1])
-    parallel_for(_fill, len(faces), 10_000, faces, samples.uv, samples.turns, spans, first, share, area)
+    parallel_for(_fill, len(faces), 10_000, corners, first, share, area)
     facet = np.repeat(np.arange(len(faces)), count)
     area *= (igl.doublearea(samples.points, faces) / 2)[facet]
     return FacetPoints(facet, faces[facet], share, samples.turns[facet].astype(np.float64), area)
@@ -102,36 +105,34 @@ def _heights(first, last, spline, uv, above, below, high, low):
 
 
 @njit(nogil=True, cache=True)
-def _count(first, last, faces, uv, turns, spans, count):
+def _count(first, last, corners, count):
     """Write the numbers of the points on facets first to last."""
     none, stack = np.empty((0, 3)), np.empty((DEPTH + 1, 3, 3))
     for m in range(first, last):
-        count[m] = _points(m, faces, uv, turns, spans, stack, 0, none, none[:, 0])
+        count[m] = _points(corners[m], stack, 0, none, none[:, 0])
 
 
 @njit(nogil=True, cache=True)
-def _fill(first, last, faces, uv, turns, spans, start, share, area):
+def _fill(first, last, corners, start, share, area):
     """Write the points on facets first to last as shares of their corners, and their shares of the facets' areas."""
     stack = np.empty((DEPTH + 1, 3, 3))
     for m in range(first, last):
-        _points(m, faces, uv, turns, spans, stack, start[m], share, area)
+        _points(corners[m], stack, start[m], share, area)
 
 
 @njit(nogil=True, cache=True)
-def _points(m, faces, uv, turns, spans, stack, at, share, area):
-    """Divide facet m into parts that cross few spans, and write their points from number `at` on; their number.
+def _points(corners, stack, at, share, area):
+    """Divide a facet into parts that cross few spans, and write their points from number `at` on; their number.
 
-    Only counts where `share` has no rows.  stack holds corners (3, 3) of parts, as shares of the facet's.
+    corners (3, 2) are in spans of the net.  Only counts where `share` has no rows.  stack holds corners (3, 3) of
+    parts, as shares of the facet's.
     """
-    x, depths, count = np.empty((3, 2)), np.zeros(DEPTH + 1, dtype=np.int64), 0
-    for c in range(3):
-        i = faces[m, c]
-        x[c, 0], x[c, 1] = (uv[i, 0] + turns[m, c]) * spans[0], uv[i, 1] * spans[1]
+    depths, count = np.zeros(DEPTH + 1, dtype=np.int64), 0
     stack[0] = np.eye(3)
     top = 0
     while top >= 0:
         depth, part = depths[top], stack[top].copy()
-        at_corners = part @ x
+        at_corners = part @ corners
         widest, longest, edge = 0.0, -1.0, 0
         for c in range(3):
             du = at_corners[(c + 1) % 3, 0] - at_corners[c, 0]
@@ -150,9 +151,8 @@ def _points(m, faces, uv, turns, spans, stack, at, share, area):
         top -= 1
         n = max(int(np.ceil(widest)) + 1, FEWEST)
         if len(share):
-            _lattice(
-                part, n, 0.5**depth / n**2, share[at + count : at + count + n**2], area[at + count : at + count + n**2]
-            )
+            here = slice(at + count, at + count + n**2)
+            _lattice(part, n, 0.5**depth / n**2, share[here], area[here])
         count += n**2
     return count
 
