@@ -55,11 +55,16 @@ def vertices_lead(fitted: VertexFit, found: Standing) -> bool:
     """Whether the vertices, noisy or not, are truer than the facets, and hold the net that was fitted to them."""
     if found.decimated or strays(fitted):
         return False
-    noisy = fitted.settled and found.alike < ALIKE
-    if noisy and fitted.expected > found.elevation:  # facets show nothing but noise
+    settled = fitted.settled and found.alike < ALIKE
+    if settled and fitted.expected > found.elevation:  # facets show nothing but noise
         return True
-    resolved = noisy or fitted.expected < RESOLVED * found.elevation
+    resolved = settled or fitted.expected < RESOLVED * found.elevation
     return resolved and not bare(fitted.samples, fitted.surface.spans)
+
+
+def noisy(fitted: VertexFit, found: Standing) -> bool:
+    """Whether what a net leaves of the vertices is noise, rather than what is left of a shape that is resolved."""
+    return fitted.settled and found.alike < ALIKE and fitted.expected > RESOLVED * found.elevation
 
 
 def standing(surface: Surface, samples: Samples, near: Neighbourhoods) -> Standing:

@@ -12,7 +12,7 @@ from meshwind.chart.chart import Chart, speeds
 from meshwind.core.defaults import FIT_TOLERANCE
 from meshwind.core.errors import BadInputError
 from meshwind.surface.fitting.certify import certify
-from meshwind.surface.fitting.evidence import standing, vertices_lead
+from meshwind.surface.fitting.evidence import noisy, standing, vertices_lead
 from meshwind.surface.fitting.facet_fit import fit_facets
 from meshwind.surface.fitting.neighbours import Neighbourhoods
 from meshwind.surface.fitting.samples import Samples
@@ -73,7 +73,8 @@ def fit(chart: Chart, tolerance: float = FIT_TOLERANCE) -> Surface:
         led = fit_vertices(samples, nets, lengths, near, limit)
         found = standing(led.surface, led.samples, near)
         if led.largest <= limit or vertices_lead(led, found):
-            surface, samples, doubt = led.surface, led.samples, of_vertices(led, near)
+            surface, samples = led.surface, led.samples
+            doubt = of_vertices(led, near, noisy=noisy(led, found))
         else:
             followed = fit_facets(samples, nets, lengths, near, limit, flat=found.decimated)
             surface, samples = followed.surface, followed.samples

@@ -42,13 +42,13 @@ class Doubt:
     sagitta: float
 
 
-def of_vertices(fitted: VertexFit, near: Neighbourhoods) -> Doubt:
-    """What the vertices leave, where they led."""
+def of_vertices(fitted: VertexFit, near: Neighbourhoods, *, noisy: bool) -> Doubt:
+    """What the vertices leave, where they led; if that is noise, what remains of it in the surface."""
     surface, samples = fitted.surface, fitted.samples
     off = ((samples.points - surface.points(samples.uv)) * surface.normals(samples.uv)).sum(axis=1)
     trusted = samples.trusted.astype(np.float64)
     square = off**2 / max(1.0 - fitted.kept, 1e-3)
-    if fitted.settled:  # what is left is noise, of which a fit keeps a share, and next to none is left of many vertices
+    if noisy:  # a fit keeps a share of it, and next to none of it is left of the mean of many vertices
         square = fitted.kept * square + near.mean(near.mean(off)) ** 2
     table = _table(surface.spans, samples.uv, trusted * square, trusted)
     own = _sagitta(surface, samples, facet_points(samples, surface.spans), near)
