@@ -8,8 +8,8 @@ from meshwind.mesh.walls.sight import Sight
 
 OUTER, RIM, INNER = 1, 0, -1
 """Labels of faces: of the outer skin, of the rims between the skins, of the inner skin."""
-_SAMPLES, _FEW = 6000, 2000
-"""Faces whose sky view factor is computed, by area: to find the sides, and whether there are any."""
+_SAMPLES, _FEW, _FEWEST = 6000, 2000, 500
+"""Faces whose sky view factor is computed, by area: to find the sides, whether there are any, and whether to ask."""
 _HOLLOW = (-0.2, 0.15)
 """A part is hollow where this share of its surface has a sky view factor so much less than the face behind it.
 
@@ -28,9 +28,12 @@ _LOOSE = 0.05
 def hollow(sight: Sight, area: Floats, hardly: bool) -> bool:
     """Whether much of the surface is the inside of a hollow; with `hardly`, whether any is."""
     least, share = _HARDLY if hardly else _HOLLOW
-    chosen, worth = _sampled(area, _FEW)
-    darker, seen = _contrast(sight, chosen, len(area))
-    return bool(worth[seen & (darker < least)].sum() > share * worth.sum())
+    for count, enough in ((_FEWEST, share / 3.0), (_FEW, share)):
+        chosen, worth = _sampled(area, count)
+        darker, seen = _contrast(sight, chosen, len(area))
+        if worth[seen & (darker < least)].sum() <= enough * worth.sum():
+            return False
+    return True
 
 
 def sides(sight: Sight, graph: FaceGraph) -> Ints:

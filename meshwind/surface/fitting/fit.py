@@ -71,10 +71,10 @@ def fit(chart: Chart, tolerance: float = FIT_TOLERANCE) -> Surface:
     # one thread of BLAS: the bands are narrow, more threads cost up to ten times as much and blur the last bits
     with ThreadpoolController().limit(limits=1, user_api="blas"):
         led = fit_vertices(samples, nets, lengths, near, limit)
-        found = standing(led.surface, led.samples, near)
-        if led.largest <= limit or vertices_lead(led, found):
+        found = None if led.largest <= limit else standing(led.surface, led.samples, near)
+        if found is None or vertices_lead(led, found):
             surface, samples = led.surface, led.samples
-            doubt = of_vertices(led, near, noisy=noisy(led, found))
+            doubt = of_vertices(led, near, noisy=found is not None and noisy(led, found))
         else:
             followed = fit_facets(samples, nets, lengths, near, limit, flat=found.decimated)
             surface, samples = followed.surface, followed.samples

@@ -6,7 +6,7 @@ from meshwind.core.cast import Floats
 from meshwind.surface.fitting.banded import band_width, solve_banded
 from meshwind.surface.fitting.conjugate_gradients import solve_iteratively
 
-DIRECT = 2e7
+DIRECT = 1e8
 """Products of a banded factorisation (unknowns times the square of its width) up to which it costs less."""
 MOST_STEPS = 150
 """Steps of the iteration after which a factorisation is cheaper; nets with data in all their spans take 5 to 60."""

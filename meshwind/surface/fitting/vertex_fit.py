@@ -124,13 +124,10 @@ def _fit(
         surface = Surface(solve(*_equations(samples, spans, bending), np.full(3, EXACT), start))
         samples, _ = samples.corrected(surface)
         start = surface.control_points
-    stencil, right = _equations(samples, spans, bending)
     noise = np.random.default_rng(0).standard_normal((len(samples.points), PROBES))
-    probe = np.zeros((*right.shape[:2], PROBES))
-    normal_equations.accumulate(samples.uv, noise, samples.weight, np.zeros_like(stencil), probe)
-    start = None if start is None else np.concatenate([start, np.zeros_like(probe)], axis=2)
-    tolerance = np.repeat([EXACT, ROUGHLY], [3, PROBES])
-    net = solve(stencil, np.concatenate([right, probe], axis=2), tolerance, start)
+    stencil, right = _equations(samples, spans, bending, noise)
+    start = None if start is None else np.concatenate([start, np.zeros((*start.shape[:2], PROBES))], axis=2)
+    net = solve(stencil, right, np.repeat([EXACT, ROUGHLY], [3, PROBES]), start)
     kept = _share_kept(noise, Surface(net[..., 3:]).points(samples.uv), samples.weight)
     surface = Surface(net[..., :3])
     samples, distance = samples.corrected(surface)
@@ -140,12 +137,20 @@ def _fit(
     return VertexFit(surface, replace(samples, near=near), float(np.sqrt(np.mean(distance**2))), largest, kept)
 
 
-def _equations(samples: Samples, spans: tuple[int, int], bending: Floats) -> tuple[Floats, Floats]:
-    """Stencil and right side of a net's normal equations: the vertices, points between them, and the bending energy."""
-    stencil, right = bending.copy(), np.zeros((spans[0], spans[1] + DEGREE, 3))
-    normal_equations.accumulate(samples.uv, samples.points, samples.weight, stencil, right)
+def _equations(
+    samples: Samples, spans: tuple[int, int], bending: Floats, noise: Floats | None = None
+) -> tuple[Floats, Floats]:
+    """Stencil and right sides of a net's normal equations: the vertices, points between them, and the bending energy.
+
+    noise (n, m): of m more right sides, for values at the vertices, none between them.
+    """
+    values = samples.points if noise is None else np.concatenate([samples.points, noise], axis=1)
+    stencil, right = bending.copy(), np.zeros((spans[0], spans[1] + DEGREE, values.shape[1]))
+    normal_equations.accumulate(samples.uv, values, samples.weight, stencil, right)
     inner, points, weight = samples.between(spans)
-    normal_equations.accumulate(inner, points, weight, stencil, right)
+    if len(inner):
+        between = np.concatenate([points, np.zeros((len(points), values.shape[1] - 3))], axis=1)
+        normal_equations.accumulate(inner, between, weight, stencil, right)
     return stencil, right
 
 
