@@ -10,6 +10,7 @@ from numba import njit
 from scipy.linalg import cho_solve_banded, cholesky_banded
 
 from meshwind.core.cast import Floats
+from meshwind.core.vectors import TINY
 from meshwind.surface.fitting.normal_equations import REACH, gram_bands
 
 
@@ -58,12 +59,12 @@ def solve_iteratively(stencil: Floats, right: Floats, tolerance: Floats, start: 
         if np.all(size <= enough):
             return net
         _multiply(stencil, way, image)
-        step = size / np.maximum((way * image).sum(axis=(0, 1)), 1e-300)
+        step = size / np.maximum((way * image).sum(axis=(0, 1)), TINY)
         net += step * way
         rest -= step * image
         ahead = inverse.solve(rest)
         before, size = size, (rest * ahead).sum(axis=(0, 1))
-        way = ahead + size / np.maximum(before, 1e-300) * way
+        way = ahead + size / np.maximum(before, TINY) * way
     return None
 
 

@@ -8,14 +8,12 @@ random.
 
 from dataclasses import dataclass
 
-import igl
 import numpy as np
 
-from meshwind.core.cast import Bools, Floats
-from meshwind.core.threads import parallel_for
-from meshwind.surface.fitting.infill import CREASE, spans_across
+from meshwind.core.cast import Floats
+from meshwind.core.vectors import TINY
 from meshwind.surface.fitting.neighbours import ALIKE, Neighbourhoods, alike
-from meshwind.surface.fitting.quadrature import FacetPoints, facet_points
+from meshwind.surface.fitting.quadrature import FacetPoints, facet_points, heights
 from meshwind.surface.fitting.samples import Samples
 from meshwind.surface.fitting.vertex_fit import VertexFit
 from meshwind.surface.surface import Surface
@@ -71,14 +69,12 @@ def standing(surface: Surface, samples: Samples, near: Neighbourhoods) -> Standi
     """How the inner vertices of the part stand to a surface on whose feet they are."""
     inner = samples.trusted & ~samples.rim
     feet, normals = surface.points(samples.uv), surface.normals(samples.uv)
-    off = ((samples.points - feet) * normals).sum(axis=1)
+    off = samples.heights(surface)
     elevation = ((feet - near.mean(feet)) * normals).sum(axis=1)
     rough, uneven = (off - near.mean(off))[inner], (elevation - near.mean(elevation))[inner]
     correlation = rank_correlation(rough, uneven)
     height = float(np.sqrt(np.mean(elevation[inner] ** 2))) if inner.any() else 0.0
-    return Standing(
-        height, correlation, correlation * float(np.sqrt(max(inner.sum(), 1))), alike(surface, samples, near)
-    )
+    return Standing(height, correlation, correlation * float(np.sqrt(max(inner.sum(), 1))), alike(off, samples, near))
 
 
 def rank_correlation(a: Floats, b: Floats) -> float:
@@ -100,40 +96,32 @@ def strays(fitted: VertexFit) -> bool:
         allowed = np.maximum(allowed, np.linalg.norm(samples.points[i] - samples.points[j], axis=1) * angle / 8.0)
     points = facet_points(samples, (1, 1))
     uv = points.places(samples.uv)
-    off = ((points.between(samples.points) - surface.points(uv)) * surface.normals(uv)).sum(axis=1)
-    off = np.sqrt(points.per_facet(off**2, len(faces)))
-    area = igl.doublearea(samples.points, faces)
+    flat = points.between(samples.points)
+    off = np.sqrt(points.per_facet(heights(surface, uv, flat, flat)[0] ** 2, len(faces)))
+    area = samples.facets.areas
     return bool(area[off > 2.0 * allowed + 0.1 * np.median(allowed) + 3.0 * fitted.noise].sum() > STRAY * area.sum())
 
 
 def bare(samples: Samples, spans: tuple[int, int]) -> bool:
     """Whether a net lies free of vertices over more of the part than can be bridged from the vertices about it."""
-    faces = samples.facets.faces
-    across = np.empty(len(faces), dtype=np.int8)
-    parallel_for(spans_across, len(faces), 20_000, faces, samples.uv, samples.turns, spans, across)
-    area = igl.doublearea(samples.points, faces)
-    return bool(area[across > ACROSS].sum() > BARE * area.sum())
+    area = samples.facets.areas
+    return bool(area[samples.across(spans) > ACROSS].sum() > BARE * area.sum())
 
 
-def straddling(heights: Floats, points: FacetPoints, near: Neighbourhoods) -> Floats:
+def straddling(height: Floats, points: FacetPoints, near: Neighbourhoods) -> Floats:
     """How far points on facets (k,) would lie off the part where facets straddle it, were a surface the part.
 
-    heights (k,) are those of the surface over its own triangles; the mean about each triangle is taken off.
+    height (k,) is that of the surface over its own triangles; the mean about each triangle is taken off.
     """
-    level = near.facet_mean(points.per_facet(heights, len(near.samples.facets.faces)))
-    return np.asarray(heights - level[points.facet])
+    level = near.facet_mean(points.per_facet(height, len(near.samples.facets.faces)))
+    return np.asarray(height - level[points.facet])
 
 
-def rms_away_from_creases(values: Floats, weight: Floats, points: FacetPoints, samples: Samples) -> float:
-    """Weighted rms of values (k,) at points on facets none of whose corners lies at a crease; 0 if there are none."""
-    weight = weight * _smooth(samples)[points.facet]
-    return float(np.sqrt((weight * values**2).sum() / max(weight.sum(), 1e-300)))
+def rms(values: Floats, weight: Floats) -> float:
+    """Weighted root mean square of values (k,)."""
+    return float(np.sqrt((weight * values**2).sum() / max(weight.sum(), TINY)))
 
 
-def _smooth(samples: Samples) -> Bools:
-    """Which facets (m,) have no corner at a crease."""
-    faces, normals = samples.facets.faces, samples.facets.normals
-    a, b, c = (samples.points[faces[:, k]] for k in range(3))
-    flat = np.cross(b - a, c - a)
-    flat /= np.maximum(np.linalg.norm(flat, axis=1, keepdims=True), 1e-300)
-    return np.asarray(((normals[faces] * flat[:, None]).sum(axis=2) > CREASE).all(axis=1))
+def rms_away_from_creases(values: Floats, points: FacetPoints, samples: Samples) -> float:
+    """Rms of values (k,) at points on facets none of whose corners lies at a crease; 0 if there are none."""
+    return rms(values, points.area * samples.facets.smooth[points.facet])

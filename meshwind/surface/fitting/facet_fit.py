@@ -15,9 +15,10 @@ from meshwind.core.cast import Floats
 from meshwind.core.threads import parallel_for
 from meshwind.surface.evaluate import DEGREE
 from meshwind.surface.fitting import normal_equations
-from meshwind.surface.fitting.evidence import rms_away_from_creases, straddling
+from meshwind.surface.fitting.evidence import rms, rms_away_from_creases, straddling
 from meshwind.surface.fitting.linear_systems import solve
 from meshwind.surface.fitting.neighbours import Neighbourhoods
+from meshwind.surface.fitting.normal_equations import control_points
 from meshwind.surface.fitting.quadrature import FacetPoints, facet_points, heights
 from meshwind.surface.fitting.resample import resampled
 from meshwind.surface.fitting.samples import CLOSE, Facets, Samples
@@ -58,9 +59,9 @@ class FacetFit:
     """One net's fit to the facets.
 
     points, data (k, 3): points on the flat facets, and those, on flat or curved ones, that are fitted; curved: whether
-    the data lie on curved facets; uv (k, 2): where each of the data is on the surface;
-    passed: the share of the amplitude of a noise of the vertices that the net does not follow; straddle (m,): how far
-    the facets lie off the part, found from a net that does not resolve them.
+    the data lie on curved facets; uv (k, 2): where each of the data is on the surface; passed: the share of the
+    amplitude of a noise of the vertices that the net does not follow; straddle (m,): how far the facets lie off the
+    part, found from a net that does not resolve them.
     """
 
     surface: Surface
@@ -160,12 +161,19 @@ class FacetFitter:
     def smoothing(self, nets: list[tuple[int, int]], fitted: FacetFit) -> FacetFit:
         """A fit whose net does not resolve the facets: the given one, or if its net is too fine another one."""
         spans = self._near(COMPARED, nets)
-        return fitted if _size(spans) >= _size(fitted.surface.spans) else self.fit(spans, curved=fitted.curved)
+        return (
+            fitted
+            if control_points(spans) >= control_points(fitted.surface.spans)
+            else self.fit(spans, curved=fitted.curved)
+        )
 
     def _near(self, per_vertex: float, nets: list[tuple[int, int]]) -> tuple[int, int]:
         """The net that comes next to so many control points per vertex, of those that are not too large."""
         wanted = per_vertex * len(self.samples.points)
-        return min((net for net in nets if _size(net) <= MOST), key=lambda net: abs(np.log(_size(net) / wanted)))
+        return min(
+            (net for net in nets if control_points(net) <= MOST),
+            key=lambda net: abs(np.log(control_points(net) / wanted)),
+        )
 
     def _solve(
         self, spans: tuple[int, int], points: FacetPoints, uv: Floats, values: Floats, before: Surface | None
@@ -195,28 +203,26 @@ def fit_facets(
     where it no longer lowers the noise that the net leaves: then all but noise is resolved.
     """
     fitter, count = FacetFitter(samples, lengths), len(samples.points)
-    size = float(np.linalg.norm(np.ptp(samples.points, axis=0)))
     fitted = fitter.compared(nets, near, flat=flat)
     smooth = fitter.smoothing(nets, fitted)
-    limits = _Limits(tolerance, max(tolerance, ENOUGH * size), near, smooth.own_error(near))
+    limits = _Limits(tolerance, max(tolerance, ENOUGH * samples.size), near, smooth.own_error(near))
     within = _within(nets, (MOST_CURVED if fitted.curved else MOST_PER_VERTEX) * count)
+    size = control_points(fitted.surface.spans)
+    finer = [net for net in within if control_points(net) > size]
     if limits.fine_enough(fitted):  # so may a coarser one be
-        spans = fitted.surface.spans
-        within = [net for net in within if _size(net) < _size(spans)] + [spans]
-        fitted = fitter.fit(within[0], curved=fitted.curved)
+        first, *finer = [*(net for net in within if control_points(net) < size), fitted.surface.spans]
+        fitted = fitter.fit(first, curved=fitted.curved) if finer else fitted
     noise, idle = fitted.vertex_noise, 0
-    for spans in within:
-        if idle >= IDLE_NETS:
-            break
+    for spans in finer:
         if limits.fine_enough(fitted):
             corrected = fitter.corrected(fitted)
             if limits.met(corrected):
                 return replace(corrected, straddle=limits.straddle)
-        if _size(spans) <= _size(fitted.surface.spans):
-            continue
         fitted = fitter.fit(spans, fitted, curved=fitted.curved)
         idle = idle + 1 if fitted.vertex_noise > LEVEL * noise else 0
         noise = min(noise, fitted.vertex_noise)
+        if idle >= IDLE_NETS:
+            break
     return replace(fitter.corrected(fitted), straddle=limits.straddle)
 
 
@@ -246,23 +252,14 @@ class _Limits:
             return fitted.left <= self.tolerance
         points = fitted.points
         own, steady = (
-            rms_away_from_creases(each, points.area, points, fitted.samples)
+            rms_away_from_creases(each, points, fitted.samples)
             for each in (fitted.straddling(self.near), self.straddle[points.facet])
         )
         means = points.per_facet(fitted.off, len(self.straddle))
         return fitted.left <= self.enough or rms(means[points.facet], points.area) <= max(share * own, STEADY * steady)
 
 
-def rms(values: Floats, weight: Floats) -> float:
-    """Weighted root mean square of values (k,)."""
-    return float(np.sqrt((weight * values**2).sum() / max(weight.sum(), 1e-300)))
-
-
 def _within(nets: list[tuple[int, int]], most: float) -> list[tuple[int, int]]:
     """The nets with up to so many control points that are worth a try, at least one."""
     most = min(most, MOST)
-    return [net for net in nets if FEWEST * most <= _size(net) <= most] or [nets[0]]
-
-
-def _size(spans: tuple[int, int]) -> int:
-    return spans[0] * (spans[1] + DEGREE)
+    return [net for net in nets if FEWEST * most <= control_points(net) <= most] or [nets[0]]

@@ -1,8 +1,7 @@
 """Points between the vertices, where triangles are larger than the net's spans.
 
 Vertices alone leave the net free over large triangles (a cylinder meshed in one strip), and it would swing there.
-The points lie on curved point-normal triangles (Vlachos et al. 2001), which follow a smooth part one or two orders
-closer than the facets do, and on the flat facets next to creases.
+The points lie on curved triangles (`point_normal`), and on the flat facets next to creases.
 """
 
 from typing import TypeAlias
@@ -12,13 +11,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.core.cast import Floats, Ints
+from meshwind.surface.fitting import point_normal
 
 Int8s: TypeAlias = NDArray[np.int8]
 
 ANGLE = igl.PER_VERTEX_NORMALS_WEIGHTING_TYPE_ANGLE
-CREASE = np.cos(np.radians(30))
-"""Cosine of the angle between vertex normal and facet normal beyond which a corner lies at a crease."""
 FINEST = 64
 """Maximum number of pieces that an edge is divided into."""
 
@@ -29,7 +27,7 @@ def infill(corners: Floats, normals: Floats, corner_uv: Floats, pieces: Int8s) -
     Each triangle has corners (c, 3, 3) in space, normals (c, 3, 3) there and corner_uv (c, 3, 2) in the plane.  It gets
     a lattice that divides its edges into `pieces` (c,), without the corners.
     """
-    tangent = tangent_normals(corners, normals)
+    tangent, _ = point_normal.tangent_normals(corners, normals)
     found = []
     for count in np.unique(pieces):
         chosen = np.flatnonzero(pieces == count)
@@ -61,33 +59,7 @@ def _lattice(corners: Floats, normals: Floats, corner_uv: Floats, pieces: int) -
     i, j = np.meshgrid(np.arange(pieces + 1), np.arange(pieces + 1), indexing="ij")
     inside = (i + j <= pieces) & (np.maximum(np.maximum(i, j), pieces - i - j) < pieces)
     weight = np.stack([i[inside], j[inside], (pieces - i - j)[inside]], axis=1) / pieces
-    points = _curved(corners, normals, weight)
-    uv = np.einsum("sk,mkd->msd", weight, corner_uv)
-    return uv.reshape(-1, 2), points.reshape(-1, 3)
-
-
-def tangent_normals(corners: Floats, normals: Floats) -> Floats:
-    """Corner normals (m, 3, 3); the facet's own wherever one of its corners lies at a crease."""
-    flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    flat /= np.linalg.norm(flat, axis=1, keepdims=True)
-    smooth: Bools = ((normals * flat[:, None]).sum(axis=2) > CREASE).all(axis=1)
-    return np.asarray(np.where(smooth[:, None, None], normals, flat[:, None]))
-
-
-def _curved(P: Floats, N: Floats, weight: Floats) -> Floats:
-    """Cubic point-normal triangles with corners P and normals N (m, 3, 3) at barycentric weights (s, 3)."""
-    edge = {}
-    for a in range(3):
-        for b in range(3):
-            if a != b:
-                rise = ((P[:, b] - P[:, a]) * N[:, a]).sum(axis=1, keepdims=True)
-                edge[a, b] = (2 * P[:, a] + P[:, b] - rise * N[:, a]) / 3
-    mean = sum(edge.values()) / 6
-    centre = mean + (mean - P.mean(axis=1)) / 2
-    w = weight.T[:, None, :, None]
-    out = 6 * w[0] * w[1] * w[2] * centre[:, None]
-    for a in range(3):
-        out = out + w[a] ** 3 * P[:, a, None]
-    for (a, b), point in edge.items():
-        out = out + 3 * w[a] ** 2 * w[b] * point[:, None]
-    return np.asarray(out)
+    uv = np.einsum("sk,mkd->msd", weight, corner_uv).reshape(-1, 2)
+    facet, share = np.repeat(np.arange(len(corners)), len(weight)), np.tile(weight, (len(corners), 1))
+    corner = 3 * facet[:, None] + np.arange(3)
+    return uv, point_normal.curved(facet, corner, share, corners.reshape(-1, 3), normals)

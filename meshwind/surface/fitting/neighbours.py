@@ -8,7 +8,6 @@ import scipy.sparse as sparse
 
 from meshwind.core.cast import Floats
 from meshwind.surface.fitting.samples import Samples
-from meshwind.surface.surface import Surface
 
 ALIKE = 0.1
 """Most likeness of neighbours' distances that is taken for noise: noise shows -0.2 to 0, a missed shape up to 0.9."""
@@ -40,9 +39,8 @@ class Neighbourhoods:
         return np.asarray(mean[faces].mean(axis=1))
 
 
-def alike(surface: Surface, samples: Samples, near: Neighbourhoods) -> float:
-    """Correlation of the inner vertices' distances from a surface with their neighbours' means; 0 if it meets all."""
+def alike(off: Floats, samples: Samples, near: Neighbourhoods) -> float:
+    """Correlation of inner vertices' heights (n,) over a surface with their neighbours' means; 0 if it meets all."""
     inner = samples.trusted & ~samples.rim
-    off = ((samples.points - surface.points(samples.uv)) * surface.normals(samples.uv)).sum(axis=1)
     square = float((off[inner] ** 2).sum())
     return float((off * near.mean(off))[inner].sum()) / square if square > 0.0 else 0.0

@@ -11,10 +11,13 @@ from meshwind.surface.evaluate import basis
 
 REACH = 3
 """Largest number of rows or columns between two control points that share a span."""
-
-
 PARTS, LARGE = 4, 100_000
 """Parts that large data are divided into, which are summed at the same time, and their least number."""
+
+
+def control_points(spans: tuple[int, int]) -> int:
+    """Number of control points of a net with so many spans, periodic in u."""
+    return spans[0] * (spans[1] + REACH)
 
 
 def accumulate(uv: Floats, values: Floats, weight: Floats, stencil: Floats, right: Floats) -> None:

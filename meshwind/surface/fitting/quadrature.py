@@ -2,14 +2,14 @@
 
 from dataclasses import dataclass
 
-import igl
 import numpy as np
 from numba import njit
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.threads import parallel_for
+from meshwind.core.vectors import TINY
 from meshwind.surface.evaluate import SU, SV, S, frame
-from meshwind.surface.fitting.infill import tangent_normals
+from meshwind.surface.fitting import point_normal
 from meshwind.surface.fitting.samples import Facets, Samples
 from meshwind.surface.surface import Surface
 
@@ -18,8 +18,6 @@ FEWEST, WIDEST = 2, 8.0
 gets one more piece than the spans that it crosses, and larger ones are halved across their longest edge first."""
 DEPTH = 48
 """Most halvings on the way to a part of a facet."""
-TINY = 1e-300
-"""Keeps a quotient finite where a normal vanishes."""
 
 
 @dataclass(frozen=True)
@@ -52,31 +50,26 @@ class FacetPoints:
         """The points (k, 3) on facets, or on curved point-normal triangles with their corners, flat at creases."""
         if not curved:
             return self.between(facets.points)
-        normals = tangent_normals(facets.points[facets.faces], facets.normals[facets.faces])
-        out = np.empty((len(self.facet), 3))
-        parallel_for(_curved, len(out), 20_000, self.facet, self.corners, self.share, facets.points, normals, out)
-        return out
+        return point_normal.curved(self.facet, self.corners, self.share, facets.points, facets.tangent_normals)
 
     def per_facet(self, values: Floats, faces: int) -> Floats:
         """Means (m,) over each of the facets of values (k,) at the points."""
         total = np.bincount(self.facet, self.area * values, faces)
-        return np.asarray(total / np.maximum(np.bincount(self.facet, self.area, faces), 1e-300))
+        return np.asarray(total / np.maximum(np.bincount(self.facet, self.area, faces), TINY))
 
 
 def facet_points(samples: Samples, spans: tuple[int, int]) -> FacetPoints:
     """Points on the facets of a mesh, several for each span of a net that a facet crosses."""
     faces = samples.facets.faces
     count = np.empty(len(faces), dtype=np.int64)
-    corners = samples.uv[faces]
-    corners[..., 0] += samples.turns
-    corners *= spans
+    corners = samples.corner_uv() * spans
     parallel_for(_count, len(faces), 10_000, corners, count)
     first = np.zeros(len(faces) + 1, dtype=np.int64)
     np.cumsum(count, out=first[1:])
     share, area = np.empty((first[-1], 3)), np.empty(first[-1])
     parallel_for(_fill, len(faces), 10_000, corners, first, share, area)
     facet = np.repeat(np.arange(len(faces)), count)
-    area *= (igl.doublearea(samples.points, faces) / 2)[facet]
+    area *= samples.facets.areas[facet]
     return FacetPoints(facet, faces[facet], share, samples.turns[facet].astype(np.float64), area)
 
 
@@ -181,32 +174,3 @@ def _between(first, last, corners, share, values, out):
             for c in range(3):
                 total += share[k, c] * values[corners[k, c], d]
             out[k, d] = total
-
-
-@njit(nogil=True, cache=True)
-def _curved(first, last, facet, corners, share, points, normals, out):
-    """Move points first to last from their facets to cubic point-normal triangles (Vlachos et al. 2001)."""
-    edge, middle = np.empty((3, 3, 3)), np.empty(3)
-    for k in range(first, last):
-        middle[:] = 0.0
-        for a in range(3):
-            for b in range(3):
-                if a == b:
-                    continue
-                p, q = points[corners[k, a]], points[corners[k, b]]
-                n, rise = normals[facet[k], a], 0.0
-                for d in range(3):
-                    rise += (q[d] - p[d]) * n[d]
-                for d in range(3):
-                    edge[a, b, d] = (2.0 * p[d] + q[d] - rise * n[d]) / 3.0
-                    middle[d] += edge[a, b, d] / 4.0
-        for d in range(3):
-            total, mean = 0.0, 0.0
-            for a in range(3):
-                w, p = share[k, a], points[corners[k, a], d]
-                total += w * w * w * p
-                mean += p / 6.0
-                for b in range(3):
-                    if a != b:
-                        total += 3.0 * w * w * share[k, b] * edge[a, b, d]
-            out[k, d] = total + 6.0 * share[k, 0] * share[k, 1] * share[k, 2] * (middle[d] - mean)

@@ -11,6 +11,7 @@ from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.threads import parallel_for
 from meshwind.mesh.geometry.facet_tree import FacetTree
 from meshwind.surface.fitting.infill import ANGLE, Int8s, infill, spans_across
+from meshwind.surface.fitting.point_normal import tangent_normals
 from meshwind.surface.foot import near_feet
 from meshwind.surface.surface import Surface
 
@@ -42,6 +43,25 @@ class Facets:
     def normals(self) -> Floats:
         """Unit normals (n, 3) at the points, faces weighted by their angles there."""
         return np.asarray(igl.per_vertex_normals(self.points, self.faces, ANGLE))
+
+    @cached_property
+    def areas(self) -> Floats:
+        """Areas (m,)."""
+        return np.asarray(igl.doublearea(self.points, self.faces) / 2)
+
+    @property
+    def tangent_normals(self) -> Floats:
+        """Normals (m, 3, 3) at the corners of curved triangles."""
+        return self._tangent[0]
+
+    @property
+    def smooth(self) -> Bools:
+        """Which triangles (m,) have no corner at a crease."""
+        return self._tangent[1]
+
+    @cached_property
+    def _tangent(self) -> tuple[Floats, Bools]:
+        return tangent_normals(self.points[self.faces], self.normals[self.faces])
 
     def distances(self, points: Floats) -> Floats:
         """Distances (k,) of points (k, 3) to the nearest triangle."""
@@ -85,17 +105,36 @@ class Samples:
         facets = Facets(points, annulus.faces)
         return Samples(points, np.array(chart.uv), weight, rim, annulus.trusted, middle, chart, turns, facets)
 
+    @cached_property
+    def size(self) -> float:
+        """Diagonal of the vertices' bounding box."""
+        return float(np.linalg.norm(np.ptp(self.points, axis=0)))
+
+    def corner_uv(self, chosen: Ints | slice = slice(None)) -> Floats:
+        """Parameters (k, 3, 2) of the corners of all triangles, or of the chosen ones: connected across the seam."""
+        corners = self.uv[self.facets.faces[chosen]]
+        corners[..., 0] += self.turns[chosen]
+        return corners
+
+    def across(self, spans: tuple[int, int]) -> Int8s:
+        """Widths (m,) of the triangles in spans of a net."""
+        faces = self.facets.faces
+        across = np.empty(len(faces), dtype=np.int8)
+        parallel_for(spans_across, len(across), 20_000, faces, self.uv, self.turns, spans, across)
+        return across
+
+    def heights(self, surface: Surface) -> Floats:
+        """Heights (n,) of the vertices over a surface, along its normals at their parameters."""
+        return np.asarray(((self.points - surface.points(self.uv)) * surface.normals(self.uv)).sum(axis=1))
+
     def between(self, spans: tuple[int, int]) -> tuple[Floats, Floats, Floats]:
         """Points between vertices for a net with so many spans: uv (k, 2), positions (k, 3) and weights (k,)."""
-        annulus = self.chart.annulus
-        across = np.empty(len(annulus.faces), dtype=np.int8)
-        parallel_for(spans_across, len(across), 20_000, annulus.faces, self.uv, self.turns, spans, across)
+        across = self.across(spans)
         coarse = np.flatnonzero(across > 1)
         if not len(coarse):
             return np.zeros((0, 2)), np.zeros((0, 3)), np.zeros(0)
-        corners = self.uv[annulus.faces[coarse]]
-        corners[..., 0] += self.turns[coarse]
-        chosen = annulus.faces[coarse]
+        chosen = self.facets.faces[coarse]
+        corners = self.corner_uv(coarse)
         uv, points = infill(self.points[chosen], self.facets.normals[chosen], corners, across[coarse])
         return uv, points, self._infill_weights(uv, spans)
 

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from meshwind.core.cast import Floats, frozen
+from meshwind.core.vectors import TINY
 from meshwind.surface.fitting.evidence import rms_away_from_creases, straddling
 from meshwind.surface.fitting.facet_fit import FacetFit
 from meshwind.surface.fitting.neighbours import Neighbourhoods
@@ -45,7 +46,7 @@ class Doubt:
 def of_vertices(fitted: VertexFit, near: Neighbourhoods, *, noisy: bool) -> Doubt:
     """What the vertices leave, where they led; if that is noise, what remains of it in the surface."""
     surface, samples = fitted.surface, fitted.samples
-    off = ((samples.points - surface.points(samples.uv)) * surface.normals(samples.uv)).sum(axis=1)
+    off = samples.heights(surface)
     trusted = samples.trusted.astype(np.float64)
     square = off**2 / max(1.0 - fitted.kept, 1e-3)
     if noisy:  # a fit keeps a share of it, and next to none of it is left of the mean of many vertices
@@ -68,23 +69,22 @@ def of_facets(fitted: FacetFit, near: Neighbourhoods, *, straddle: bool) -> Doub
         own = np.maximum(own, fitted.straddle)
     square = fitted.off**2 + own[points.facet] ** 2
     table = _table(surface.spans, fitted.uv, points.area * square, points.area, reach)
-    stands = ((samples.points - surface.points(samples.uv)) * surface.normals(samples.uv)).sum(axis=1)
+    stands = samples.heights(surface)
     noise = float(np.sqrt(np.mean(stands[samples.trusted] ** 2)))
-    if straddle:
-        return Doubt("facets", table, noise, rms_away_from_creases(own[points.facet], points.area, points, samples))
-    trusted = samples.trusted.astype(np.float64)
-    aside = stands if fitted.curved else near.mean(near.mean(stands))
-    table = frozen(np.hypot(table, _table(surface.spans, samples.uv, trusted * aside**2, trusted, reach)))
+    if not straddle:
+        trusted = samples.trusted.astype(np.float64)
+        aside = stands if fitted.curved else near.mean(near.mean(stands))
+        table = frozen(np.hypot(table, _table(surface.spans, samples.uv, trusted * aside**2, trusted, reach)))
     if fitted.curved:
         return Doubt("curved facets", table, noise, _sagitta(surface, samples, points, near))
-    return Doubt("facets", table, noise, rms_away_from_creases(own[points.facet], points.area, points, samples))
+    return Doubt("facets", table, noise, rms_away_from_creases(own[points.facet], points, samples))
 
 
 def _sagitta(surface: Surface, samples: Samples, points: FacetPoints, near: Neighbourhoods) -> float:
     """How far flat facets lie off the part where they straddle it, were a surface the part: rms away from creases."""
     uv, chord = points.places(samples.uv), points.between(surface.points(samples.uv))
     _, height = heights(surface, uv, chord, chord)
-    return rms_away_from_creases(straddling(height, points, near), points.area, points, samples)
+    return rms_away_from_creases(straddling(height, points, near), points, samples)
 
 
 def _table(spans: tuple[int, int], uv: Floats, square: Floats, weight: Floats, reach: float = REACH) -> Floats:
@@ -95,7 +95,7 @@ def _table(spans: tuple[int, int], uv: Floats, square: Floats, weight: Floats, r
     cell = i * columns + j
     total = np.asarray(np.bincount(cell, square, rows * columns), dtype=np.float64).reshape(spans)
     count = np.asarray(np.bincount(cell, weight, rows * columns), dtype=np.float64).reshape(spans)
-    mean, usual = float(total.sum() / max(count.sum(), 1e-300)), max(float(count.mean()), 1e-300)
+    mean, usual = float(total.sum() / max(count.sum(), TINY)), max(float(count.mean()), TINY)
     # a slight pull to the mean of the whole, for spans that hold next to no data
     total, count = _smooth(total, reach) + PULL * mean * usual, _smooth(count, reach) + PULL * usual
     return frozen(COVER * np.sqrt(np.maximum(total / count, FLOOR**2 * mean)))

@@ -93,12 +93,11 @@ def fit_vertices(
             fitted, final = _refit(fitted, lengths), True
         if fitted.largest <= tolerance:
             return fitted
-        size = spans[0] * (spans[1] + DEGREE)
-        if size > SUPPORT * len(samples.points) or idle >= IDLE_NETS:
+        if normal_equations.control_points(spans) > SUPPORT * len(samples.points) or idle >= IDLE_NETS:
             break
         trial = _fit(fitted.samples, spans, lengths, rounds, fitted.surface)
         slow = slow + 1 if trial.expected > SLOW * fitted.expected else 0
-        if slow >= SLOW_NETS and alike(trial.surface, trial.samples, near) > ALIKE:
+        if slow >= SLOW_NETS and alike(trial.samples.heights(trial.surface), trial.samples, near) > ALIKE:
             return trial
         level = level + 1 if trial.noise > FLAT * noise else 0
         noise = min(noise, trial.noise)
@@ -133,7 +132,7 @@ def _fit(
     samples, distance = samples.corrected(surface)
     distance = distance[samples.trusted]
     largest = float(distance.max())
-    near = largest <= NEAR * float(np.linalg.norm(np.ptp(samples.points, axis=0)))
+    near = largest <= NEAR * samples.size
     return VertexFit(surface, replace(samples, near=near), float(np.sqrt(np.mean(distance**2))), largest, kept)
 
 
