@@ -203,25 +203,23 @@ def _distances(first: int, last: int, corners: Floats, boxes: Floats, points: Fl
 
 
 @njit(nogil=True, cache=True)
-def _meets(corners: Floats, m: int, x: float, y: float, z: float, dx: float, dy: float, dz: float) -> float:
-    """Share of the ray d at which it meets triangle m, or 2 if it does not (Moeller and Trumbore 1997)."""
-    ax, ay, az = (
-        corners[m, 1, 0] - corners[m, 0, 0], corners[m, 1, 1] - corners[m, 0, 1], corners[m, 1, 2] - corners[m, 0, 2],
-    )  # fmt: skip
-    bx, by, bz = (
-        corners[m, 2, 0] - corners[m, 0, 0], corners[m, 2, 1] - corners[m, 0, 1], corners[m, 2, 2] - corners[m, 0, 2],
-    )  # fmt: skip
+def meets(triangle: Floats, x: float, y: float, z: float, dx: float, dy: float, dz: float, wider: float) -> float:
+    """Share of the vector d at which a line along it from a point meets a triangle (Moeller and Trumbore 1997).
+
+    The triangle counts as wider by that share of its sides.  Infinity if the line misses it or grazes its plane.
+    """
+    ax, ay, az = triangle[1, 0] - triangle[0, 0], triangle[1, 1] - triangle[0, 1], triangle[1, 2] - triangle[0, 2]
+    bx, by, bz = triangle[2, 0] - triangle[0, 0], triangle[2, 1] - triangle[0, 1], triangle[2, 2] - triangle[0, 2]
     nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
     volume = -(nx * dx + ny * dy + nz * dz)
     if volume**2 <= GRAZE**2 * (dx * dx + dy * dy + dz * dz) * (nx * nx + ny * ny + nz * nz):
-        return 2.0
-    tx, ty, tz = x - corners[m, 0, 0], y - corners[m, 0, 1], z - corners[m, 0, 2]
-    t = (nx * tx + ny * ty + nz * tz) / volume
-    if not 0.0 <= t <= 1.0:
-        return 2.0
+        return np.inf
+    tx, ty, tz = x - triangle[0, 0], y - triangle[0, 1], z - triangle[0, 2]
     qx, qy, qz = dy * tz - dz * ty, dz * tx - dx * tz, dx * ty - dy * tx
     u, v = -(bx * qx + by * qy + bz * qz) / volume, (ax * qx + ay * qy + az * qz) / volume
-    return t if u >= 0.0 and v >= 0.0 and u + v <= 1.0 else 2.0
+    if u < -wider or v < -wider or u + v > 1.0 + wider:
+        return np.inf
+    return (nx * tx + ny * ty + nz * tz) / volume
 
 
 @njit(nogil=True, cache=True)
@@ -246,8 +244,8 @@ def _first_hits(
                 continue
             if box >= leaves:
                 for m in range((box - leaves) * LEAF, min((box - leaves + 1) * LEAF, len(corners))):
-                    t = _meets(corners, m, x, y, z, dx, dy, dz)
-                    if t < least:
+                    t = meets(corners[m], x, y, z, dx, dy, dz, 0.0)
+                    if 0.0 <= t <= 1.0 and t < least:
                         least, found = t, m
                 continue
             stack[size], stack[size + 1] = 2 * box, 2 * box + 1

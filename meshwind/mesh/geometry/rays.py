@@ -7,10 +7,12 @@ from numba import njit
 
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.threads import parallel_for
-from meshwind.mesh.geometry.facet_tree import GRAZE, LEAF, FacetTree
+from meshwind.mesh.geometry.facet_tree import LEAF, FacetTree, meets
 
 _BLOCK = 500
 """Fewest rays that are worth a thread."""
+_WIDER = 1e-9
+"""Share by which triangles count as wider, so that no ray slips through between two of them."""
 
 
 def cast(tree: FacetTree, start: Floats, ray: Floats, least: float) -> tuple[Ints, Floats]:
@@ -69,28 +71,6 @@ def _inverse(d: float) -> float:
 
 
 @njit(nogil=True, cache=True)
-def _meets(corners: Floats, m: int, x: float, y: float, z: float, dx: float, dy: float, dz: float) -> float:
-    """Distance along the ray at which it meets triangle m, or infinity (Moeller and Trumbore 1997)."""
-    ax, ay, az = (
-        corners[m, 1, 0] - corners[m, 0, 0], corners[m, 1, 1] - corners[m, 0, 1], corners[m, 1, 2] - corners[m, 0, 2],
-    )  # fmt: skip
-    bx, by, bz = (
-        corners[m, 2, 0] - corners[m, 0, 0], corners[m, 2, 1] - corners[m, 0, 1], corners[m, 2, 2] - corners[m, 0, 2],
-    )  # fmt: skip
-    nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-    volume = -(nx * dx + ny * dy + nz * dz)
-    if volume**2 <= GRAZE**2 * (nx * nx + ny * ny + nz * nz):
-        return np.inf
-    tx, ty, tz = x - corners[m, 0, 0], y - corners[m, 0, 1], z - corners[m, 0, 2]
-    qx, qy, qz = dy * tz - dz * ty, dz * tx - dx * tz, dx * ty - dy * tx
-    u, v = -(bx * qx + by * qy + bz * qz) / volume, (ax * qx + ay * qy + az * qz) / volume
-    # a billionth larger, so that no ray slips through between two triangles
-    if u < -1e-9 or v < -1e-9 or u + v > 1.0 + 1e-9:
-        return np.inf
-    return (nx * tx + ny * ty + nz * tz) / volume
-
-
-@njit(nogil=True, cache=True)
 def _cast(first: int, last: int, tree: _Boxes, rays: _Rays, met: _Met) -> None:
     """The faces that the rays first to last meet first."""
     corners, numbers, boxes = tree.corners, tree.numbers, tree.boxes
@@ -110,7 +90,7 @@ def _cast(first: int, last: int, tree: _Boxes, rays: _Rays, met: _Met) -> None:
                 continue
             if box >= leaves:
                 for m in range((box - leaves) * LEAF, min((box - leaves + 1) * LEAF, len(corners))):
-                    t = _meets(corners, m, x, y, z, dx, dy, dz)
+                    t = meets(corners[m], x, y, z, dx, dy, dz, _WIDER)
                     if least < t < reach or (found >= 0 and t == reach and numbers[m] < numbers[found]):
                         reach, found = t, m
                 continue
