@@ -56,9 +56,7 @@ class Bridges:
 
 def lengths(paths: Paths) -> Lengths:
     """Measure every path."""
-    steps = np.linalg.norm(np.diff(paths.points, axis=1), axis=2)
-    arc = np.zeros(paths.gap.shape)
-    np.cumsum(steps, axis=1, out=arc[:, 1:])
+    steps, arc = _steps(paths)
     off = bridging(paths)
     clear = ~(paths.on_surface[:, :-1] & paths.on_surface[:, 1:])
     bridged = clear & (off[:, :-1] | off[:, 1:])
@@ -73,19 +71,28 @@ def lengths(paths: Paths) -> Lengths:
     )
 
 
+def _steps(paths: Paths) -> tuple[Floats, Floats]:
+    """Distances (p, n - 1) between particles, and arc length (p, n) of the polylines from their starts."""
+    steps = np.linalg.norm(np.diff(paths.points, axis=1), axis=2)
+    arc = np.zeros(paths.gap.shape)
+    np.cumsum(steps, axis=1, out=arc[:, 1:])
+    return steps, arc
+
+
 def bridged_share(*counted: tuple[Lengths, Bools]) -> float:
     """Share of the polylines' length that is off the surface, over the counted paths (p,) of one or more batches."""
-    total = bridged = 0.0
-    for each, mask in counted:
-        total += float(each.polyline_length[mask].sum())
-        bridged += float(each.bridged_length[mask].sum())
-    return bridged / total if total > 0.0 else 0.0
+    return _share([(each.bridged_length[mask], each.polyline_length[mask]) for each, mask in counted])
 
 
 def unresolved_share(*counted: tuple[Lengths, Bools]) -> float:
     """As `bridged_share`, in spans that the surface's uncertainty does not resolve."""
-    total = sum(float(each.polyline_length[mask].sum()) for each, mask in counted)
-    return sum(float(each.unresolved_length[mask].sum()) for each, mask in counted) / total if total > 0.0 else 0.0
+    return _share([(each.unresolved_length[mask], each.polyline_length[mask]) for each, mask in counted])
+
+
+def _share(lengths: list[tuple[Floats, Floats]]) -> float:
+    """Sum of parts over that of wholes, batch by batch; 0 where there is nothing."""
+    total = sum(float(whole.sum()) for _, whole in lengths)
+    return sum(float(part.sum()) for part, _ in lengths) / total if total > 0.0 else 0.0
 
 
 class _Spans(NamedTuple):
@@ -160,7 +167,7 @@ def bridges(paths: Paths) -> Bridges:
     """Find every span of particles off the surface, path by path from the start."""
     spans = _spans(paths)
     first, last = np.maximum(spans.start - 1, 0), np.minimum(spans.stop, paths.gap.shape[1] - 1)
-    arc = lengths(paths).arc_length
+    _, arc = _steps(paths)
     length = arc[spans.path, last] - arc[spans.path, first]
     ends, _ = touchdowns(paths.surface, paths.points, paths.uv, spans.path, first, last)
     found = spans.path, first, last, length, _largest(paths.gap, spans), _resolved(paths, spans), ends
