@@ -228,23 +228,6 @@ def energy_and_length(X):
 
 
 @njit(cache=True)
-def sag(X, after):
-    """Largest distance of a lifted particle from where it should be: spread evenly on the chord between contacts."""
-    worst = 0.0
-    i, n = 0, len(X)
-    while i < n - 1:
-        j = after[i]
-        for m in range(i + 1, j):
-            t = (m - i) / (j - i)
-            d = 0.0
-            for k in range(3):
-                d += (X[m, k] - (1.0 - t) * X[i, k] - t * X[j, k]) ** 2
-            worst = max(worst, d)
-        i = j
-    return np.sqrt(worst)
-
-
-@njit(cache=True)
 def mean_angle(X, normal, touching):
     """Mean angle between the normals of curve and surface (3.15) over the touching particles, radians."""
     total = 0.0

@@ -21,9 +21,9 @@ from meshwind.methods.chain import (
     energy_and_length,
     link,
     mean_angle,
-    sag,
 )
 from meshwind.methods.strand import kinetic_energy, move_by, unbalanced, update_gaps
+from meshwind.path.kernels.landing import sag
 
 PENALTY, KKT = range(2)
 

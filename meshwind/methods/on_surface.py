@@ -27,11 +27,11 @@ from meshwind.methods.chain import (
     mean_angle,
     move_contacts,
     put_on_surface,
-    sag,
     slow_by_friction,
 )
 from meshwind.methods.lifting import PULL, update_touching
 from meshwind.methods.runge_kutta import Stages, stages_for
+from meshwind.path.kernels.landing import sag
 
 EXPLICIT, SYMPLECTIC, RUNGE_KUTTA, BACKWARD = range(4)
 
