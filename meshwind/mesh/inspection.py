@@ -111,8 +111,8 @@ def inspect(
     if isinstance(mesh, Mesh):
         name, kind, vertices, faces = mesh.name, "", mesh.vertices, mesh.faces
     else:
-        vertices, faces = load(mesh)
-        name, kind = Path(mesh).name, Path(mesh).suffix[1:].upper()
+        held = load(mesh)
+        name, kind, vertices, faces = Path(mesh).name, Path(mesh).suffix[1:].upper(), held.vertices, held.faces
     pieces, notes = made_manifold(vertices, faces, name)
     used = vertices[np.unique(faces)]
     extent = np.ptp(used, axis=0)

@@ -25,6 +25,10 @@ class Mesh(PicklableRecord):
         What was changed, in words.
     read_vertices, read_faces : int, default 0
         What the file held before it was repaired.
+    units : str, default ""
+        Unit of length that the file names: "mm", "cm", "m", "um", "in" or "ft"; "" if it names none.
+    warnings : tuple of str, optional
+        What the file holds beside the mesh, or was read otherwise than it is written, in words.
 
     Examples
     --------
@@ -40,6 +44,8 @@ class Mesh(PicklableRecord):
     repairs: tuple[str, ...] = ()
     read_vertices: int = 0
     read_faces: int = 0
+    units: str = ""
+    warnings: tuple[str, ...] = ()
 
     @property
     def diagonal(self) -> float:

@@ -4,7 +4,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from meshwind.core.cast import Ints
+from meshwind.core.cast import Floats, Ints
+from meshwind.mesh.io.file_mesh import FileMesh
 
 CellBlock: TypeAlias = tuple[str, tuple[Ints, Ints]]
 """Kind of the cells, their sizes (c,), and the nodes of one cell after the other."""
@@ -21,14 +22,20 @@ _SIDES = {
 """Faces of a volume cell, outward; the last corner of a triangle is -1."""
 
 
-def triangles(blocks: list[CellBlock], points: int) -> Ints:
-    """Triangles (m, 3) of the blocks: the outer faces of the volume cells, or the surface cells if there are none.
+def surface_mesh(points: Floats, blocks: list[CellBlock], units: str = "", warnings: tuple[str, ...] = ()) -> FileMesh:
+    """The surface of the blocks: the outer faces of the volume cells, or the surface cells if there are none.
 
-    Raises ValueError if a cell refers to a node that does not exist.
+    points (n, 3); units and warnings are those of the file.  Raises ValueError if a cell refers to a node that does not
+    exist.
     """
     for _, (_, nodes) in blocks:
-        if len(nodes) and (nodes.min() < 0 or nodes.max() >= points):
+        if len(nodes) and (nodes.min() < 0 or nodes.max() >= len(points)):
             raise ValueError("a cell refers to a vertex that is not in the file")
+    return FileMesh(points, _triangles(blocks), units, warnings)
+
+
+def _triangles(blocks: list[CellBlock]) -> Ints:
+    """Triangles (m, 3) of the blocks."""
     sides = [_sides(kind, cells) for kind, cells in blocks if _base(kind) in _SIDES]
     if sides:
         return _cut_quads(_skin(np.concatenate(sides)))

@@ -8,46 +8,49 @@ import struct
 import zipfile
 import zlib
 from collections.abc import Callable
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from xml.etree.ElementTree import ParseError
 
-from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.geometry.mesh import Mesh
+from meshwind.mesh.io.by_trimesh import by_trimesh
+from meshwind.mesh.io.deck import read_deck
+from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.in_subprocess import DAMAGED, Arrays, in_subprocess
-from meshwind.mesh.io.msh_inp import read_msh_inp
-from meshwind.mesh.io.stl_ply_obj import read_stl_ply_obj
+from meshwind.mesh.io.msh import read_msh
+from meshwind.mesh.io.obj import read_obj
+from meshwind.mesh.io.stl import read_stl
 from meshwind.mesh.io.threemf import read_3mf
 from meshwind.mesh.io.vtk_vtu_vtp import read_vtk
 from meshwind.mesh.repair.repair import mesh_from
 
-_Reader = Callable[[Path], tuple[Floats, Ints]]
+_Reader = Callable[[Path], FileMesh]
 
 
 def _separate(work: Callable[[Path], Arrays]) -> _Reader:
     """Reader that runs in a separate process, as it can end its own."""
 
-    def read(path: Path) -> tuple[Floats, Ints]:
-        arrays = in_subprocess(work, path)
-        return arrays["vertices"], arrays["faces"]
+    def read(path: Path) -> FileMesh:
+        return FileMesh.unpacked(in_subprocess(work, path))
 
     return read
 
 
 _READERS: dict[str, _Reader] = {
-    ".stl": read_stl_ply_obj,
-    ".ply": read_stl_ply_obj,
-    ".obj": read_stl_ply_obj,
-    ".off": read_stl_ply_obj,
-    ".glb": read_stl_ply_obj,
-    ".gltf": read_stl_ply_obj,
+    ".stl": read_stl,
+    ".ply": by_trimesh,
+    ".obj": read_obj,
+    ".off": by_trimesh,
+    ".glb": by_trimesh,
+    ".gltf": by_trimesh,
     ".3mf": read_3mf,
     ".vtk": _separate(read_vtk),
     ".vtu": _separate(read_vtk),
     ".vtp": _separate(read_vtk),
-    ".msh": _separate(read_msh_inp),
-    ".inp": _separate(read_msh_inp),
+    ".msh": _separate(read_msh),
+    ".inp": _separate(read_deck),
 }
 SUFFIXES = tuple(_READERS)
 """File name endings that `read` understands."""
@@ -93,11 +96,13 @@ def read(path: str | PathLike[str], component: int = 0) -> Mesh:
     >>> mesh.repairs
     ()
     """
-    return mesh_from(*load(path), Path(path).name, component)
+    held = load(path)
+    mesh = mesh_from(held.vertices, held.faces, Path(path).name, component)
+    return replace(mesh, units=held.units, warnings=held.warnings)
 
 
-def load(path: str | PathLike[str]) -> tuple[Floats, Ints]:
-    """Vertices (n, 3) and triangles (m, 3) of a file without repair; m > 0.  Raises BadInputError."""
+def load(path: str | PathLike[str]) -> FileMesh:
+    """The surface in a file without repair; it has at least a triangle.  Raises BadInputError."""
     if not isinstance(path, str | PathLike):
         raise BadInputError(f"mesh is {_type(path)}: give the path of a triangle mesh (STL, OBJ, PLY, ...)")
     file = Path(path)
@@ -105,7 +110,7 @@ def load(path: str | PathLike[str]) -> tuple[Floats, Ints]:
     try:
         # what the libraries print is replaced by the one line below
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-            vertices, faces = reader(file)
+            held = reader(file)
     except BadInputError:
         raise
     except _READER_ERRORS as error:
@@ -113,9 +118,9 @@ def load(path: str | PathLike[str]) -> tuple[Floats, Ints]:
         raise BadInputError(
             f"{file.name}: cannot be read as {kind} ({_first_line(error)}); export the mesh again, or convert it to STL"
         ) from error
-    if len(faces) == 0:
+    if len(held.faces) == 0:
         raise BadInputError(f"{file.name}: holds no triangles; export the part's surface as a triangle mesh")
-    return vertices, faces
+    return held
 
 
 def _type(value: object) -> str:

@@ -8,6 +8,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.mesh.io.file_mesh import FileMesh
 
 _Parts = list[tuple[Floats, Ints]]
 _MAX_DEPTH = 16
@@ -18,8 +19,8 @@ _MAX_BYTES = 1 << 30
 """Largest unpacked size of the XML."""
 
 
-def read_3mf(path: Path) -> tuple[Floats, Ints]:
-    """Vertices (n, 3) and triangles (m, 3) of all objects in the build, in the file's unit."""
+def read_3mf(path: Path) -> FileMesh:
+    """Vertices and triangles of all objects in the build, in the file's unit."""
     parts: _Parts = []
     with zipfile.ZipFile(path) as archive:
         for member in archive.infolist():
@@ -28,10 +29,10 @@ def read_3mf(path: Path) -> tuple[Floats, Ints]:
                     raise ValueError(f"it unpacks to more than {_MAX_BYTES >> 30} GB")
                 parts += _Model(ElementTree.fromstring(archive.read(member))).built()
     if not parts:
-        return np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
+        return FileMesh(np.empty((0, 3)), np.empty((0, 3), dtype=np.int64))
     starts = np.cumsum([0] + [len(points) for points, _ in parts[:-1]])
     faces = [triangles + start for (_, triangles), start in zip(parts, starts, strict=True)]
-    return np.concatenate([points for points, _ in parts]), np.concatenate(faces)
+    return FileMesh(np.concatenate([points for points, _ in parts]), np.concatenate(faces))
 
 
 class _Model:

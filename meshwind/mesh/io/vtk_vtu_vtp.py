@@ -8,7 +8,7 @@ import numpy as np
 
 from meshwind.core.cast import Ints
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.io.cells_to_triangles import CellBlock, triangles
+from meshwind.mesh.io.cells_to_triangles import CellBlock, surface_mesh
 from meshwind.mesh.io.in_subprocess import DAMAGED, Arrays
 
 _VTK_KINDS = {
@@ -35,7 +35,7 @@ def read_vtk(path: Path) -> Arrays:
     else:
         raise BadInputError(f"{path.name}: holds no polygons or cells; save the part's surface as VTP, PLY or STL")
     if data.GetPoints() is None or cells is None or cells.GetNumberOfCells() == 0:
-        return {"vertices": np.empty((0, 3)), "faces": np.empty((0, 3), dtype=np.int64)}
+        return surface_mesh(np.empty((0, 3)), []).packed()
     points = vtk_array(data.GetPoints().GetData(), np.float64)
     offsets = vtk_array(cells.GetOffsetsArray(), np.int64)
     nodes = vtk_array(cells.GetConnectivityArray(), np.int64)
@@ -51,7 +51,7 @@ def read_vtk(path: Path) -> Arrays:
         for code, name in _VTK_KINDS.items()
         if (kind == code).any()
     ]
-    return {"vertices": points, "faces": triangles(blocks, len(points))}
+    return surface_mesh(points, blocks).packed()
 
 
 def _kinds(grid: Any) -> Ints:

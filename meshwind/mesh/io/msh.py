@@ -1,4 +1,4 @@
-"""Reading of MSH and INP files by meshio."""
+"""Reading of MSH files by meshio."""
 
 import re
 from pathlib import Path
@@ -7,28 +7,30 @@ from typing import Any
 import numpy as np
 
 from meshwind.core.cast import Ints
-from meshwind.core.errors import BadInputError
-from meshwind.mesh.io.cells_to_triangles import triangles
+from meshwind.mesh.io.cells_to_triangles import surface_mesh
+from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.in_subprocess import DAMAGED, Arrays
 
 
-def read_msh_inp(path: Path) -> Arrays:
-    """Vertices and triangles of a file, for `in_subprocess`."""
+def read_msh(path: Path) -> Arrays:
+    """Surface of a file, for `in_subprocess`."""
     import meshio
 
-    if path.suffix.lower() == ".msh":
-        _check_sections(path.read_bytes())
-    elif re.search(rb"^\s*\*\s*include\b", path.read_bytes(), re.MULTILINE | re.IGNORECASE):
-        raise BadInputError(f"{path.name}: includes another file, which is not read; join them into one")
+    _check_sections(path.read_bytes())
     try:
         mesh = meshio.read(path)
     except meshio.ReadError as error:
         raise ValueError(str(error)) from error
+    return surface_of(mesh).packed()
+
+
+def surface_of(mesh: Any) -> FileMesh:
+    """Surface of a mesh of meshio's."""
     points = np.asarray(mesh.points, dtype=np.float64)
     if points.shape[1] == 2:
         points = np.column_stack([points, np.zeros(len(points))])
     blocks = [(block.type, _sizes_and_nodes(block.data)) for block in mesh.cells]
-    return {"vertices": points, "faces": triangles(blocks, len(points))}
+    return surface_mesh(points, blocks)
 
 
 def _sizes_and_nodes(data: Any) -> tuple[Ints, Ints]:
