@@ -18,9 +18,9 @@ def leave(folder: Path, paths: Paths, units: str = "mm") -> Results:
     """Write what a run writes, and read it."""
     layup = assess(paths)
     on = grid(paths.surface)
-    part = Mesh(on.points, np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]]), "part.stl")
+    part = Mesh(on.points, np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]]), "part.stl", units=units)
     write_files(folder, layup, units=units)
-    write_report(folder / "report.json", report(layup, part, None, RunFacts(0.25, units=units)))
+    write_report(folder / "report.json", report(layup, part, None, RunFacts(0.25)))
     return read_results(folder)
 
 

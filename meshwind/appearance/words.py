@@ -1,12 +1,28 @@
 """Numbers as text for people."""
 
 import math
+from collections.abc import Sequence
+
+from meshwind.core.units import BY_DEFAULT, BY_FILE, GIVEN, millimetres
+
+_NAMED = {GIVEN: "as given", BY_FILE: "as the file says", BY_DEFAULT: "assumed, as the file names no unit"}
+"""Who named the unit."""
 
 
 def quantity(length: float, units: str = "", digits: int = 4) -> str:
     """A length with its unit, if it has one, to the given number of significant digits."""
     number = f"{float(f'{length:.{digits}g}'):,.10g}"
     return f"{number} {units}" if units else number
+
+
+def size(extents: Sequence[float], units: str, units_from: str) -> str:
+    """The size of a part, as in "120 mm long, 66.61 x 66.61 mm across; mm as given"; units_from as in `Mesh`."""
+    length, *across = sorted(extents, reverse=True)
+    long = f"{quantity(length, units)} long"
+    if units and millimetres(units) != 1.0:
+        long += f" ({quantity(length * millimetres(units), 'mm')})"
+    words = f"{long}, {' x '.join(quantity(each) for each in across)}{f' {units}' if units else ''} across"
+    return f"{words}; {units} {_NAMED[units_from]}" if units_from in _NAMED else f"{words}; unit unknown"
 
 
 def power(value: float) -> str:

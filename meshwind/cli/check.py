@@ -3,6 +3,7 @@
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Annotated
 
+from meshwind.appearance.words import size
 from meshwind.cli.arguments import MeshFile, Printed
 from meshwind.cli.output import print_report
 from meshwind.cli.signature import Pick, with_records
@@ -32,7 +33,7 @@ _MOST = 12
 @with_records
 def check(
     mesh: MeshFile,
-    options: Annotated[Options, Pick(("component", "ends", "opening", "side", "opening_by"))],
+    options: Annotated[Options, Pick(("component", "ends", "opening", "side", "opening_by", "units"))],
     printed: Printed,
 ) -> int:
     """Describe MESH, its pieces, rims and faults, and what `wind` would do with it.  Writes nothing.
@@ -41,7 +42,9 @@ def check(
     """
     from meshwind.mesh import inspect
 
-    findings = inspect(mesh, options.ends, options.opening, options.component, options.side, options.opening_by)
+    findings = inspect(
+        mesh, options.ends, options.opening, options.component, options.side, options.opening_by, options.units
+    )
     print_report(_lines(findings), asdict(findings), printed)
     if findings.problem:
         raise BadInputError(findings.problem)
@@ -55,7 +58,6 @@ def _lines(found: "Findings") -> list[str]:
 
 def described(found: "Findings") -> list[str]:
     """The mesh as it is in its file."""
-    size = " x ".join(f"{length:.4g}" for length in found.size)
     rims = _count(len(found.rims), "open rim") if found.rims and not found.side else "open"
     shape = ["closed" if found.closed else rims]
     shape += [] if found.genus is None else [f"genus {found.genus}"]
@@ -69,12 +71,14 @@ def described(found: "Findings") -> list[str]:
         if count
     ]
     return [
-        f"mesh      {found.name}: {found.format}, {found.vertices} vertices, {found.faces} faces",
-        f"size      {size}, diagonal {found.diagonal:.4g}",
+        f"mesh      {found.name}: {size(found.size, found.units, found.units_from)}",
+        f"file      {found.format}, {found.vertices} vertices, {found.faces} faces",
+        f"size      {' x '.join(f'{length:.4g}' for length in found.size)}, diagonal {found.diagonal:.4g}",
         *_listed("piece", [_piece(piece, found.component) for piece in found.pieces], found.piece_count),
         f"shape     {', '.join(shape)}",
         *_listed("rim", [_rim(rim, found) for rim in found.rims], len(found.rims)),
         *(f"fault     {fault}" for fault in faults),
+        *(f"warning   {text}" for text in found.warnings),
     ]
 
 

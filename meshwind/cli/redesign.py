@@ -15,7 +15,7 @@ from meshwind.cli.summary import redesign_lines
 from meshwind.cli.wind import NOT_CONVERGED, command_line
 from meshwind.core.option import Option
 from meshwind.editing.options import REVOLUTIONS, EditOptions
-from meshwind.workflow.options import FIBRES, FILE_DEFAULTS, Options
+from meshwind.workflow.options import FIBRES, Options
 
 EXAMPLES = """
     # the nearest part that can be wound, into part-redesigned/
@@ -35,7 +35,7 @@ WindingOptions = Annotated[
     Options,
     Pick(
         (*WINDING, "units"),
-        FILE_DEFAULTS | {"revolutions": REVOLUTIONS},
+        {"revolutions": REVOLUTIONS},
         {"particles": Option("Number of particles per path", FIBRES)},
     ),
 ]

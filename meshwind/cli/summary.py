@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from meshwind.appearance.words import quantity, ratio
+from meshwind.appearance.words import quantity, ratio, size
 from meshwind.core.units import reported_unit
 from meshwind.results.redesign_report_types import RedesignFigures, RedesignReport, RoundFigures
 from meshwind.results.report_types import Failure, PathsFigures, Report, SurfaceFigures
@@ -13,7 +13,8 @@ def run_lines(report: Report) -> list[str]:
     part = report["mesh"]
     units = reported_unit(part["units"])
     return [
-        f"part      {part['name']}: {part['vertices']} vertices, {part['faces']} faces; {part['ends']}",
+        f"part      {part['name']}: {size(part['size'], units, part['units_from'])}",
+        f"          {part['vertices']} vertices, {part['faces']} faces; {part['ends']}",
         *_surface(report["surface"], part["diagonal"], units),
         *_paths(report["paths"], units),
         *_layup(report, units),
@@ -30,7 +31,7 @@ def note_line(note: str) -> str:
     return f"{'note' if text == note else 'warning':<10}{text}"
 
 
-def _surface(surface: SurfaceFigures, size: float, units: str) -> list[str]:
+def _surface(surface: SurfaceFigures, diagonal: float, units: str) -> list[str]:
     """The errors of the fit in both directions, also over the part's diagonal."""
     around, along = surface["control_points"]
     vertices, facets = surface["fit_error"]["to_surface"]["max"], surface["fit_error"]["to_mesh"]["max"]
@@ -39,8 +40,8 @@ def _surface(surface: SurfaceFigures, size: float, units: str) -> list[str]:
     fitted_to = "" if tolerance is None or led != "vertices" else f", tolerance {ratio(tolerance)}"
     lines = [
         f"surface   {around} x {along} control points; largest distance to the vertices {quantity(vertices, units, 2)} "
-        f"({ratio(vertices / size)} of the part{fitted_to}), "
-        f"to the facets {quantity(facets, units, 2)} ({ratio(facets / size)})"
+        f"({ratio(vertices / diagonal)} of the part{fitted_to}), "
+        f"to the facets {quantity(facets, units, 2)} ({ratio(facets / diagonal)})"
     ]
     if "evidence" in surface:
         found, doubt = surface["evidence"], surface["evidence"]["uncertainty"]
@@ -108,7 +109,8 @@ def redesign_lines(report: RedesignReport) -> list[str]:
 def _edited_part(report: RedesignReport) -> list[str]:
     part, winding = report["mesh"], report["winding"]
     return [
-        f"part      {part['name']}: {part['vertices']} vertices, {part['faces']} faces",
+        f"part      {part['name']}: {size(part['size'], reported_unit(part['units']), part['units_from'])}",
+        f"          {part['vertices']} vertices, {part['faces']} faces",
         f"winding   {winding['revolutions']:.4g} revolutions, {winding['why']}; "
         f"{winding['paths_per_family']} paths per family",
     ]

@@ -10,9 +10,9 @@ import typer
 from meshwind.cli.arguments import Files, MeshFile, Printed
 from meshwind.cli.help import FILES
 from meshwind.cli.output import print_report, stages
-from meshwind.cli.signature import Pick, with_records
+from meshwind.cli.signature import with_records
 from meshwind.cli.summary import run_lines
-from meshwind.workflow.options import FILE_DEFAULTS, Options
+from meshwind.workflow.options import Options
 
 NOT_CONVERGED = 3
 EXAMPLES = """
@@ -37,7 +37,7 @@ EXAMPLES = """
 def wind(
     *,
     mesh: MeshFile,
-    options: Annotated[Options, Pick(defaults=FILE_DEFAULTS)],
+    options: Options,
     out: Annotated[
         str | None,
         typer.Option(help="Folder for the results.  [default: MESH's name + -wound]", rich_help_panel=FILES),

@@ -17,7 +17,6 @@ def redesign_report(
     edited: Redesign,
     *,
     command: str = "",
-    units: str = "",
     seconds: Mapping[str, float] | None = None,
     notes: Sequence[str] = (),
 ) -> RedesignReport:
@@ -29,7 +28,7 @@ def redesign_report(
     figures: RedesignReport = {
         "meshwind": version(),
         "command": command,
-        "mesh": mesh_figures(edited.part, units, edited.before.chart),
+        "mesh": mesh_figures(edited.part, edited.before.chart),
         "winding": {
             "revolutions": edited.revolutions,
             "paths_per_family": len(edited.paths) // 2,

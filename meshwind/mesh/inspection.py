@@ -8,9 +8,11 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
+from meshwind.core.units import ASSUMED, Unit
 from meshwind.mesh.geometry.areas_and_volumes import loop_centroid, perimeter
 from meshwind.mesh.geometry.mesh import Annulus, Mesh
 from meshwind.mesh.geometry.topology import boundary, edges, euler, loops
+from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.read import load
 from meshwind.mesh.opening.choose_ends import rims_by_number
 from meshwind.mesh.opening.trim import annulus
@@ -66,7 +68,7 @@ class Findings:
     and what was noticed, ends how the ends are chosen, what is filled and how wide the openings are.
     annulus_vertices, annulus_faces and rim_lengths are those of the mesh that is wound; wall is the median thickness
     of a part's wall, 0 if it has none, side the skin that is wound, empty if it has none; notes says what was decided
-    in opening it; problem is why it cannot be wound, empty if it can.
+    in opening it; problem is why it cannot be wound, empty if it can; units, units_from and warnings are as in `Mesh`.
     """
 
     name: str
@@ -93,6 +95,9 @@ class Findings:
     side: str = ""
     notes: tuple[str, ...] = ()
     problem: str = ""
+    units: str = ""
+    units_from: str = ""
+    warnings: tuple[str, ...] = ()
 
 
 def inspect(
@@ -102,17 +107,21 @@ def inspect(
     component: int = 0,
     side: str = "outer",
     opening_by: str = "auto",
+    units: str | None = None,
 ) -> Findings:
     """Inspect a mesh in a file or in memory: what it is, and how it would be wound.
 
-    ends, opening, component, side and opening_by are as in `annulus` and `read`.  Raises BadInputError only if there is
-    no surface; any other reason why the mesh cannot be wound is in `Findings.problem`.
+    ends, opening, component, side, opening_by and units are as in `annulus` and `wind`.  Raises BadInputError only if
+    there is no surface; any other reason why the mesh cannot be wound is in `Findings.problem`.
     """
     if isinstance(mesh, Mesh):
-        name, kind, vertices, faces = mesh.name, "", mesh.vertices, mesh.faces
+        name, kind = mesh.name, ""
+        held = FileMesh(mesh.vertices, mesh.faces, mesh.units, mesh.warnings)
+        unit = Unit(mesh.units, mesh.units_from) if units is None else Unit.of(units, "")
     else:
-        held = load(mesh)
-        name, kind, vertices, faces = Path(mesh).name, Path(mesh).suffix[1:].upper(), held.vertices, held.faces
+        name, kind, held = Path(mesh).name, Path(mesh).suffix[1:].upper(), load(mesh)
+        unit = Unit.of(units, held.units, ASSUMED)
+    vertices, faces = held.vertices, held.faces
     pieces, notes = made_manifold(vertices, faces, name)
     used = vertices[np.unique(faces)]
     extent = np.ptp(used, axis=0)
@@ -120,7 +129,8 @@ def inspect(
     findings = Findings(
         name, kind, len(vertices), len(faces), _point(extent), float(np.linalg.norm(extent)), crowded, turned,
         len(pieces.areas), _listed(pieces),
-        component, repairs=tuple(notes),
+        component, repairs=tuple(notes), units=unit.name, units_from=unit.named_by,
+        warnings=(*held.warnings, *([unit.warning] if unit.warning else [])),
     )  # fmt: skip
     try:
         chosen, _ = pieces.chosen(component, name)

@@ -51,7 +51,6 @@ class RunFacts:
 
     revolutions: float
     command: str = ""
-    units: str = ""
     tolerance: float | None = None
     seconds: Mapping[str, float] = field(default_factory=dict)
     notes: Sequence[str] = ()
@@ -69,7 +68,7 @@ def report(layup: Layup, mesh: Mesh, chart: Chart | None, run: RunFacts) -> Repo
     figures: Report = {
         "meshwind": version(),
         "command": run.command,
-        "mesh": mesh_figures(mesh, run.units, chart),
+        "mesh": mesh_figures(mesh, chart),
         "surface": _surface(paths.surface, chart, run.tolerance),
         "winding": _winding(paths, run.revolutions),
         "paths": _paths(paths),
@@ -107,7 +106,7 @@ def plain(value: Any) -> Any:
     return value
 
 
-def mesh_figures(mesh: Mesh, units: str, chart: Chart | None) -> MeshFigures:
+def mesh_figures(mesh: Mesh, chart: Chart | None) -> MeshFigures:
     """Figures of the mesh that was read and, if its chart is given, of the ends where it was opened."""
     figures: MeshFigures = {
         "name": mesh.name,
@@ -115,7 +114,9 @@ def mesh_figures(mesh: Mesh, units: str, chart: Chart | None) -> MeshFigures:
         "faces": len(mesh.faces),
         "read_vertices": mesh.read_vertices or len(mesh.vertices),
         "read_faces": mesh.read_faces or len(mesh.faces),
-        "units": units or UNKNOWN,
+        "units": mesh.units or UNKNOWN,
+        "units_from": mesh.units_from or UNKNOWN,
+        "size": list(mesh.size),
         "diagonal": mesh.diagonal,
         "repairs": list(mesh.repairs),
     }

@@ -22,7 +22,11 @@ class WallFigures(TypedDict):
 
 
 class MeshFigures(TypedDict):
-    """The mesh that was read, after repair; read_vertices and read_faces are those of the file."""
+    """The mesh that was read, after repair.
+
+    read_vertices and read_faces are those of the file; units_from is "given", "file", "default" or "unknown"; size is
+    the extent along x, y and z.
+    """
 
     name: str
     vertices: int
@@ -30,6 +34,8 @@ class MeshFigures(TypedDict):
     read_vertices: int
     read_faces: int
     units: str
+    units_from: str
+    size: list[float]
     diagonal: float
     repairs: list[str]
     ends: NotRequired[str]

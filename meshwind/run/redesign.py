@@ -1,6 +1,7 @@
 """Write a redesign into a folder: the edited mesh, its pictures and its report, whole or not at all."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
@@ -21,14 +22,14 @@ from meshwind.results.report import write_report
 from meshwind.results.schema import AFTER, BEFORE, CONFIG, REDESIGN, REPORT, picture
 from meshwind.results.write import write_edited
 from meshwind.workflow.clock import Clock
-from meshwind.workflow.notes import Note, about_opening
+from meshwind.workflow.notes import Note, about_file, about_opening
 
 
 def write_redesign(
     edited: Redesign,
     out: str | PathLike[str],
     *,
-    units: str = "",
+    units: str | None = None,
     render: bool = True,
     overwrite: bool = False,
     command: str = "",
@@ -47,8 +48,8 @@ def write_redesign(
         Result of `redesign`.
     out : str or PathLike
         Folder for the files.
-    units : str, default ""
-        Unit of the mesh.
+    units : str, optional
+        Unit of the mesh; "" if it is not known.  By default that of the mesh that was edited.
     render : bool, default True
         Whether to draw the pictures.
     overwrite : bool, default False
@@ -79,7 +80,10 @@ def write_redesign(
     True
     """
     clock = Clock()
-    notes = [str(note) for note in (*about_opening(edited.before.chart.annulus), *about_wall(edited, units))]
+    edited = edited if units is None else replace(edited, part=edited.part.in_units(units))
+    units = edited.part.units
+    opened = about_opening(edited.before.chart.annulus)
+    notes = [str(note) for note in (*about_file(edited.part), *opened, *about_wall(edited, units))]
     with folder.writing(Path(out), overwrite) as staging:
         with clock.stage("write"):
             write_edited(staging, edited.mesh, edited.displacement, units)
@@ -88,7 +92,7 @@ def write_redesign(
                 missing = driver.paint(_pictures(staging, edited, units))
             notes += [str(Note(missing, warning=True))] if missing else []
         spent = dict(seconds or {}) | clock.seconds
-        report = redesign_report(edited, command=command, units=units, seconds=spent, notes=notes)
+        report = redesign_report(edited, command=command, seconds=spent, notes=notes)
         if options is not None:
             write_config(staging / CONFIG, Path(out), options, version(), "redesign")
         write_report(staging / REPORT, report)

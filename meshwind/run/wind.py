@@ -115,7 +115,6 @@ class Result(Winding):
         run = RunFacts(
             self.revolutions,
             command=self.command,
-            units=self.options.units,
             tolerance=self.options.tolerance,
             seconds=self.seconds,
             notes=[str(note) for note in self.notes],
@@ -175,7 +174,7 @@ def wind(  # noqa: PLR0913
     tolerance: float = Options.tolerance,
     threshold: float | None = Options.threshold,
     worst_fit: float = Options.worst_fit,
-    units: str = Options.units,
+    units: str | None = Options.units,
     particles: int | None = Options.particles,
     spacing: float | None = Options.spacing,
     band_width: float | None = Options.band_width,
@@ -221,8 +220,9 @@ def wind(  # noqa: PLR0913
         the surface's uncertainty.
     worst_fit : float, default 0.1
         Largest distance between surface and mesh that is accepted at all, over the part's diagonal.
-    units : str, default ""
-        Unit of the mesh: "mm", "cm", "m", "um", "in" or "ft"; "" if it is not known.  Nothing is converted.
+    units : str, optional
+        Unit of the mesh: "mm", "cm", "m", "um", "in" or "ft"; "" if it is not known.  Nothing is converted.  By
+        default that of the mesh: the one that its file names, or "mm" for a file that names none.
     particles : int or None, default 401
         Number of particles per path.  None picks as many as an error of the lengths of 1e-5 needs.
     spacing : float, optional
@@ -301,7 +301,7 @@ def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: Cloc
         with clock.stage("write"):
             wall = result.chart.annulus.wall
             measured = result.mesh if wall is None else wall.skin
-            write_files(staging, result.layup, measured, result.options.units)
+            write_files(staging, result.layup, measured, result.mesh.units)
             if result.chosen is not None and render:
                 draw_revolutions(staging / REVOLUTIONS_PICTURE, result.chosen, result.mesh.name)
         if render:
@@ -323,7 +323,7 @@ def _used(result: Result, out: Path, render: bool) -> dict[str, object]:
 
 def _draw(result: Result, out: Path) -> str:
     """Draw the winding, the picture of a warning and the contact sheet; return "" or what is missing for drawing."""
-    name, units = result.mesh.name, result.options.units
+    name, units = result.mesh.name, result.mesh.units
     of = subject_in(out, result.layup, name, units, result.revolutions)
     with TemporaryDirectory(dir=out) as cells:  # within, so that a killed run leaves nothing elsewhere
         pictures = placed(scenes_of(of), (WINDING, SHEET), Page(), out, Path(cells))

@@ -14,11 +14,11 @@ from meshwind.core.errors import BadInputError
 from meshwind.core.option import options_of
 from meshwind.core.parsing import nearest, read_toml
 from meshwind.core.version import version
-from meshwind.workflow.options import FILE_DEFAULTS, Options
+from meshwind.workflow.options import Options
 
 MAX_CASES = 100_000
 """Most cases of one study; more are a mistake in a list."""
-FIT_OPTIONS = ("component", "ends", "opening", "side", "opening_by", "tolerance")
+FIT_OPTIONS = ("component", "ends", "opening", "side", "opening_by", "tolerance", "units")
 """Options that reading and fitting depend on: cases with the same values share a fitted part."""
 _OPTIONS = options_of(Options)
 _NAMES = {field.name.replace("_", "-"): field.name for field in fields(Options)}
@@ -133,7 +133,7 @@ def _case(path: Path, values: Mapping[str, Any], hashes: dict[Path, str]) -> Cas
     if not isinstance(render, bool):
         raise BadInputError(f"{path}: render is {render!r}; give true or false")
     try:
-        options = Options(**FILE_DEFAULTS | {_NAMES[key]: _read(_NAMES[key], value) for key, value in given.items()})
+        options = Options(**{_NAMES[key]: _read(_NAMES[key], value) for key, value in given.items()})
     except BadInputError as error:
         raise BadInputError(f"{path}: {error}") from error
     files = [mesh] if options.pins is None else [mesh, Path(options.pins)]

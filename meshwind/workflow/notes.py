@@ -8,7 +8,7 @@ from meshwind.appearance.words import power, quantity, ratio
 from meshwind.chart import Chart
 from meshwind.core.errors import BadInputError
 from meshwind.layup.layup import Layup
-from meshwind.mesh import Annulus
+from meshwind.mesh import Annulus, Mesh
 from meshwind.mesh.opening.choose_ends import position_text
 from meshwind.path.lengths import lengths, unresolved_share
 from meshwind.path.paths import EDGE, Paths, Status, converged_or_all
@@ -62,6 +62,11 @@ class Note:
         """The note with a reference to its picture where there is one."""
         reference = f"; see {self.picture}"
         return replace(self, text=self.text.removesuffix(reference) + (reference if there and self.picture else ""))
+
+
+def about_file(mesh: Mesh) -> tuple[Note, ...]:
+    """Warnings of what the file holds beside the mesh, or was read otherwise than it is written."""
+    return tuple(Note(text, warning=True) for text in mesh.warnings)
 
 
 def about_opening(annulus: Annulus) -> tuple[Note, ...]:

@@ -12,7 +12,7 @@ from meshwind.core.defaults import FIT_TOLERANCE, OPENED_BY, PARTICLES, SIDES, S
 from meshwind.core.errors import BadInputError
 from meshwind.core.option import option
 from meshwind.core.parsing import AUTO, count, shortened, turns
-from meshwind.core.units import MILLIMETRES, check_units
+from meshwind.core.units import ASSUMED, MILLIMETRES, check_units
 
 FIELD = "field:"
 """Before the name of a scalar field in a mesh file."""
@@ -27,13 +27,6 @@ PART, FIBRES, SURFACE = "The part", "The fibres", "The surface"
 """Groups of the options."""
 IN_MESH_UNITS = "in the mesh's units"
 OVER_DIAGONAL = "over the part's diagonal"
-
-FILE_DEFAULTS = {"units": "mm"}
-"""Defaults of the command line and of studies that are not the library's.
-
-They wind meshes from files, most of which are in millimetres and say nothing of it.  A mesh that a program makes is
-in the program's own unit, so the library names none unless it is given.
-"""
 
 
 @dataclass(frozen=True)
@@ -123,11 +116,12 @@ class Options:
             "Largest distance between surface and mesh that is accepted at all", SURFACE, unit=OVER_DIAGONAL
         ),
     )
-    units: str = field(
-        default="",
+    units: str | None = field(
+        default=None,
         metadata=option(
             "Unit of the mesh: mm, cm, m, um, in, ft; nothing is converted",
             PART,
+            otherwise=f"that of the file, or {ASSUMED}",
             metavar="UNIT",
             words=tuple(MILLIMETRES),
         ),
@@ -172,7 +166,8 @@ class Options:
         if self.threshold is not None:
             set_(self, "threshold", _number(self.threshold, "threshold", 0.0))
         set_(self, "worst_fit", _number(self.worst_fit, "worst_fit", 0.0, above=True))
-        check_units(self.units)
+        if self.units is not None:
+            check_units(self.units)
         for name in ("opening", "spacing", "band_width", "linear_density"):
             if getattr(self, name) is not None:
                 set_(self, name, _number(getattr(self, name), name, 0.0, above=True))

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from meshwind.chart import Chart, flatten
 from meshwind.core.errors import BadInputError
+from meshwind.core.units import ASSUMED
 from meshwind.mesh import Annulus, Mesh, annulus, read
 from meshwind.mesh.geometry.facet_tree import FacetTree
 from meshwind.mesh.io.scalars import Scalars, read_scalars
@@ -45,6 +46,7 @@ def read_source(mesh: MeshLike, options: Options) -> Source:
         raise BadInputError(f"mesh is of type {type(mesh).__name__}; give the path of a mesh file or a meshwind.Mesh")
     file = None if isinstance(mesh, Mesh) else Path(mesh)
     taken = mesh if isinstance(mesh, Mesh) else read(mesh, options.component)
+    taken = taken.in_units(options.units, "" if file is None else ASSUMED)
     if not isinstance(options.friction, str):
         return Source(taken, None, file)
     name = options.friction.removeprefix(FIELD).strip()

@@ -19,6 +19,7 @@ from meshwind.workflow.notes import (
     Note,
     about_choice,
     about_contact,
+    about_file,
     about_fit,
     about_layup,
     about_opening,
@@ -48,11 +49,12 @@ class Winding:
 def wind_part(part: Part, options: Options, command: str, clock: Clock) -> Winding:
     """Lay the paths on a part that was fitted with the same options, and assess them."""
     part = part.counting(options.threshold)
-    surface = part.surface
+    surface, units = part.surface, part.source.mesh.units
     with clock.stage("fit"):
         notes = (
+            *about_file(part.source.mesh),
             *about_opening(part.chart.annulus),
-            *about_fit(surface, part.chart, options.tolerance, options.worst_fit, options.units),
+            *about_fit(surface, part.chart, options.tolerance, options.worst_fit, units),
         )
         friction = _friction(part, options)
     chosen = chosen_revolutions(surface, options, clock, friction)
@@ -61,8 +63,8 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock) -> Windi
         laid = lay(surface, options, revolutions, friction)
         spaced = None if options.spacing is None else space_out(laid, revolutions, options.spacing, friction)
         laid = laid if spaced is None else spaced.paths
-        notes = (*notes, *about_paths(laid), *about_choice(chosen), *about_spacing(spaced, options.units))
-        notes = (*notes, *about_contact(laid, options.units))
+        notes = (*notes, *about_paths(laid), *about_choice(chosen), *about_spacing(spaced, units))
+        notes = (*notes, *about_contact(laid, units))
     with clock.stage("assess"):
         layup = assess(laid, options.band_width)
         notes = (*notes, *about_layup(layup))

@@ -1,10 +1,11 @@
 """The triangle mesh of a part, and the annulus: the mesh with two open ends that is flattened."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints, PicklableRecord
+from meshwind.core.units import BY_FILE, Unit
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,9 @@ class Mesh(PicklableRecord):
     read_vertices, read_faces : int, default 0
         What the file held before it was repaired.
     units : str, default ""
-        Unit of length that the file names: "mm", "cm", "m", "um", "in" or "ft"; "" if it names none.
+        Unit of length: "mm", "cm", "m", "um", "in" or "ft"; "" if it is not known.
+    units_from : {"", "given", "file", "default"}
+        Who named the unit: the user, the file, or nobody, so that it is assumed; "" if it is not known.
     warnings : tuple of str, optional
         What the file holds beside the mesh, or was read otherwise than it is written, in words.
 
@@ -45,12 +48,31 @@ class Mesh(PicklableRecord):
     read_vertices: int = 0
     read_faces: int = 0
     units: str = ""
+    units_from: str = ""
     warnings: tuple[str, ...] = ()
+
+    @property
+    def size(self) -> tuple[float, float, float]:
+        """Extents along x, y and z, in the mesh's units."""
+        x, y, z = (float(extent) for extent in np.ptp(self.vertices, axis=0))
+        return x, y, z
 
     @property
     def diagonal(self) -> float:
         """Diagonal of the bounding box, in the mesh's units."""
         return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
+
+    def in_units(self, given: str | None, assumed: str = "") -> "Mesh":
+        """The mesh with the unit that a user gives, if one is given; nothing is converted.
+
+        It outranks the unit that the file names, with a warning.  assumed: unit of a mesh that has none.  Raises
+        BadInputError for an unknown unit.
+        """
+        if given is None and self.units:
+            return self
+        unit = Unit.of(given, self.units if self.units_from == BY_FILE else "", assumed)
+        warnings = (*self.warnings, unit.warning) if unit.warning else self.warnings
+        return replace(self, units=unit.name, units_from=unit.named_by, warnings=warnings)
 
 
 @dataclass(frozen=True)

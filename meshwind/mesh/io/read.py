@@ -14,6 +14,7 @@ from pathlib import Path
 from xml.etree.ElementTree import ParseError
 
 from meshwind.core.errors import BadInputError
+from meshwind.core.units import BY_FILE
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.mesh.io.by_trimesh import by_trimesh
 from meshwind.mesh.io.deck import read_deck
@@ -66,7 +67,7 @@ RuntimeWarning comes from a cast, if the caller turns warnings into errors.
 """
 
 
-def read(path: str | PathLike[str], component: int = 0) -> Mesh:
+def read(path: str | PathLike[str], component: int = 0, units: str | None = None) -> Mesh:
     """Read a triangle mesh from a file and repair it.
 
     STL, PLY, OBJ, OFF, GLB, GLTF, 3MF, VTK, VTU, VTP, MSH and INP files are read.  Polygons are cut into triangles,
@@ -78,6 +79,8 @@ def read(path: str | PathLike[str], component: int = 0) -> Mesh:
         File to read.
     component : int, default 0
         Which piece to keep, by its rank of area: 0 is the largest.
+    units : str, optional
+        Unit of the mesh, see `wind`.  By default the one that the file names, if it names one.
 
     Returns
     -------
@@ -98,7 +101,8 @@ def read(path: str | PathLike[str], component: int = 0) -> Mesh:
     """
     held = load(path)
     mesh = mesh_from(held.vertices, held.faces, Path(path).name, component)
-    return replace(mesh, units=held.units, warnings=held.warnings)
+    mesh = replace(mesh, units=held.units, units_from=BY_FILE if held.units else "", warnings=held.warnings)
+    return mesh.in_units(units)
 
 
 def load(path: str | PathLike[str]) -> FileMesh:
