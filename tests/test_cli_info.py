@@ -23,11 +23,14 @@ def test_a_mesh() -> None:
     done = info(DATA / "tank.ply")
     assert done.returncode == 0
     lines = done.stdout.splitlines()
-    assert lines[0] == "mesh      tank.ply: PLY, 5000 vertices, 9996 faces"
-    assert lines[1].startswith("size      120 x 120 x 240, diagonal")
-    assert lines[2].startswith("piece     0: ")
-    assert lines[3] == "shape     closed, genus 0"
-    assert lines[4] == "fields    none"
+    assert lines[:2] == [
+        "mesh      tank.ply: 240 mm long, 120 x 120 mm across; mm assumed, as the file names no unit",
+        "file      PLY, 5000 vertices, 9996 faces",
+    ]
+    assert lines[2].startswith("size      120 x 120 x 240, diagonal")
+    assert lines[3].startswith("piece     0: ")
+    assert lines[4] == "shape     closed, genus 0"
+    assert lines[5] == "fields    none"
     assert "verdict" not in done.stdout
 
 
@@ -43,7 +46,7 @@ def test_a_run(tmp_path: Path) -> None:
     mw.wind(DATA / "tank.ply", paths=2, out=tmp_path, render=False, units="mm", command="meshwind wind tank.ply")
     done = info(tmp_path)
     labels = [line.split()[0] for line in done.stdout.splitlines()]
-    assert labels == ["run", "part", "surface", "fitted", "paths", "coverage", "seconds"]
+    assert labels == ["run", "part", "mesh", "surface", "fitted", "paths", "coverage", "seconds"]
     assert f"meshwind wind tank.ply (meshwind {mw.__version__})" in done.stdout
     assert "4 of 4 at rest" in done.stdout
     assert json.loads(info(tmp_path, "--json").stdout) == json.loads((tmp_path / "report.json").read_text())

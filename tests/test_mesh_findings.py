@@ -105,7 +105,10 @@ def test_the_command_prints_the_findings_and_writes_nothing(tmp_path: Path) -> N
     done = check(tmp_path / "part.obj", "--ends", "loops 0 2")
     assert (done.returncode, done.stderr) == (0, "")
     lines = done.stdout.splitlines()
-    assert lines[0] == "mesh      part.obj: OBJ, 1739 vertices, 3347 faces"
+    assert lines[:2] == [
+        "mesh      part.obj: 3 mm long, 2 x 2 mm across; mm assumed, as the file names no unit",
+        "file      OBJ, 1739 vertices, 3347 faces",
+    ]
     assert lines[-1] == "verdict   can be wound"
     assert "rim       0: at (0, 0, 0), 6.279 long, 48 vertices, start" in lines
     assert [path.name for path in tmp_path.iterdir()] == ["part.obj"]

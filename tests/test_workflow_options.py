@@ -14,7 +14,7 @@ from meshwind.cli.redesign import redesign
 from meshwind.cli.wind import wind
 from meshwind.core.option import options_of
 from meshwind.editing.options import EditOptions
-from meshwind.workflow.options import FILE_DEFAULTS, Options
+from meshwind.workflow.options import Options
 
 BAD: list[tuple[dict[str, Any], str]] = [
     ({"paths": 0}, "paths is 0; give a whole number from 1 up"),
@@ -47,7 +47,6 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"pins": 3}, "pins is 3; give the path of a CSV file"),
     ({"pins": "pins.csv", "spacing": 1.0}, "give one of both"),
     ({"units": "milimeter"}, "units is 'milimeter'; give mm, cm, m, um, in, inch, ft, or"),
-    ({"units": None}, "units is None; give mm, cm"),
     ({"paths": 100000}, "100000 paths per family of 401 particles and 0.5 revolutions would need about 15,028 GB"),
     ({"particles": 10**9}, "would need about"),
 ]
@@ -88,13 +87,12 @@ def test_redesign_takes_its_options_with_their_defaults() -> None:
     assert parameters["revolutions"].default == inspect.signature(redesign).parameters["revolutions"].default == "auto"
 
 
-def test_the_command_line_has_the_same_defaults_but_for_the_unit() -> None:
+def test_the_command_line_has_the_same_defaults() -> None:
     parameters = inspect.signature(wind).parameters
     for option in fields(Options):
         default = parameters[option.name].default
-        wanted = FILE_DEFAULTS.get(option.name, option.default)
+        wanted = option.default
         assert default == (str(wanted) if options_of(Options)[option.name].read else wanted), option.name
-    assert set(FILE_DEFAULTS) == {"units"}
 
 
 def test_numbers_of_any_kind_are_taken() -> None:

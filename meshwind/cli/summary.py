@@ -14,7 +14,7 @@ def run_lines(report: Report) -> list[str]:
     units = reported_unit(part["units"])
     return [
         f"part      {part['name']}: {size(part['size'], units, part['units_from'])}",
-        f"          {part['vertices']} vertices, {part['faces']} faces; {part['ends']}",
+        f"mesh      {part['vertices']} vertices, {part['faces']} faces; {part['ends']}",
         *_surface(report["surface"], part["diagonal"], units),
         *_paths(report["paths"], units),
         *_layup(report, units),
@@ -110,7 +110,7 @@ def _edited_part(report: RedesignReport) -> list[str]:
     part, winding = report["mesh"], report["winding"]
     return [
         f"part      {part['name']}: {size(part['size'], reported_unit(part['units']), part['units_from'])}",
-        f"          {part['vertices']} vertices, {part['faces']} faces",
+        f"mesh      {part['vertices']} vertices, {part['faces']} faces",
         f"winding   {winding['revolutions']:.4g} revolutions, {winding['why']}; "
         f"{winding['paths_per_family']} paths per family",
     ]

@@ -1,7 +1,6 @@
 """From a mesh to the nearest one that can be wound: the automatic surface editing of section 6.4."""
 
 from dataclasses import dataclass, replace
-from os import PathLike
 
 import numpy as np
 
@@ -23,7 +22,7 @@ from meshwind.path import Paths, Status
 from meshwind.planning.revolutions import Revolutions
 from meshwind.workflow.clock import Clock, Progress
 from meshwind.workflow.options import Options
-from meshwind.workflow.part import fit_part, read_source
+from meshwind.workflow.part import MeshLike, fit_part, read_source
 from meshwind.workflow.winding import chosen_revolutions
 
 STAGES = 3
@@ -119,7 +118,7 @@ class Redesign:
 
 
 def redesign(  # noqa: PLR0913
-    mesh: str | PathLike[str] | Mesh,
+    mesh: MeshLike,
     *,
     revolutions: float | str = REVOLUTIONS,
     paths: int = Options.paths,
@@ -146,8 +145,8 @@ def redesign(  # noqa: PLR0913
 
     Parameters
     ----------
-    mesh : str, PathLike or Mesh
-        Mesh, or the path of its file.
+    mesh : str, PathLike, Mesh, trimesh.Trimesh, pyvista.PolyData, meshio.Mesh or tuple of two arrays
+        Mesh, or the path of its file; see `read` for those of other libraries.
     revolutions : float or str, default "auto"
         Revolutions of the winding, or "auto" to have them chosen.
     paths : int, default 12

@@ -7,7 +7,6 @@ from tempfile import TemporaryDirectory
 
 from meshwind.core.errors import BadInputError
 from meshwind.core.version import version
-from meshwind.mesh import Mesh
 from meshwind.path import Paths, Status
 from meshwind.pictures import driver
 from meshwind.pictures.fit_scene import fit_scene
@@ -26,7 +25,7 @@ from meshwind.surface import Surface
 from meshwind.workflow.clock import Clock, Progress
 from meshwind.workflow.notes import Note
 from meshwind.workflow.options import Options
-from meshwind.workflow.part import fit_part, read_source
+from meshwind.workflow.part import MeshLike, fit_part, read_source
 from meshwind.workflow.winding import Winding, wind_part
 
 
@@ -161,7 +160,7 @@ class Result(Winding):
 
 
 def wind(  # noqa: PLR0913
-    mesh: str | PathLike[str] | Mesh,
+    mesh: MeshLike,
     *,
     paths: int = Options.paths,
     revolutions: float | str = Options.revolutions,
@@ -193,8 +192,8 @@ def wind(  # noqa: PLR0913
 
     Parameters
     ----------
-    mesh : str, PathLike or Mesh
-        Mesh, or the path of its file.
+    mesh : str, PathLike, Mesh, trimesh.Trimesh, pyvista.PolyData, meshio.Mesh or tuple of two arrays
+        Mesh, or the path of its file; see `read` for those of other libraries.
     paths : int, default 12
         Number of paths per family; the two families turn in opposite senses.
     revolutions : float or str, default 0.5

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from os import PathLike, fspath
 from pathlib import Path
+from typing import Any, TypeAlias
 
 from meshwind.chart import Chart, flatten
 from meshwind.core.errors import BadInputError
@@ -14,8 +15,8 @@ from meshwind.surface import Surface, fit
 from meshwind.workflow.clock import Clock
 from meshwind.workflow.options import FIELD, Options
 
-MeshLike = str | PathLike[str] | Mesh
-"""A mesh, or the path of its file."""
+MeshLike: TypeAlias = str | PathLike[str] | Mesh | Any
+"""A mesh, the path of its file, or a mesh of another library as `read` takes it."""
 
 
 @dataclass(frozen=True)
@@ -42,9 +43,7 @@ class Part:
 
 def read_source(mesh: MeshLike, options: Options) -> Source:
     """Read a mesh and, where the friction is a field, its scalars; raises BadInputError where one cannot be read."""
-    if not isinstance(mesh, str | PathLike | Mesh):
-        raise BadInputError(f"mesh is of type {type(mesh).__name__}; give the path of a mesh file or a meshwind.Mesh")
-    file = None if isinstance(mesh, Mesh) else Path(mesh)
+    file = Path(mesh) if isinstance(mesh, str | PathLike) else None
     taken = mesh if isinstance(mesh, Mesh) else read(mesh, options.component)
     taken = taken.in_units(options.units, "" if file is None else ASSUMED)
     if not isinstance(options.friction, str):
@@ -55,7 +54,7 @@ def read_source(mesh: MeshLike, options: Options) -> Source:
 
 def read_field(mesh: MeshLike, name: str, instead: str) -> Scalars:
     """Read a scalar of the mesh's file; raises BadInputError where there is none, with what to give instead."""
-    if isinstance(mesh, Mesh):
+    if not isinstance(mesh, str | PathLike):
         raise BadInputError(f"{FIELD}{name} is a scalar of a mesh file, but the mesh is no file; {instead}")
     return read_scalars(fspath(mesh), name)
 

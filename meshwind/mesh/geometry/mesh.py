@@ -28,8 +28,9 @@ class Mesh(PicklableRecord):
         What the file held before it was repaired.
     units : str, default ""
         Unit of length: "mm", "cm", "m", "um", "in" or "ft"; "" if it is not known.
-    units_from : {"", "given", "file", "default"}
-        Who named the unit: the user, the file, or nobody, so that it is assumed; "" if it is not known.
+    units_from : str, default ""
+        Who named the unit: "given" by the user, "file", or "default" where nobody did, so that it is assumed; "" if it
+        is not known.
     warnings : tuple of str, optional
         What the file holds beside the mesh, or was read otherwise than it is written, in words.
 
@@ -63,10 +64,30 @@ class Mesh(PicklableRecord):
         return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
 
     def in_units(self, given: str | None, assumed: str = "") -> "Mesh":
-        """The mesh with the unit that a user gives, if one is given; nothing is converted.
+        """Name the unit of the mesh; nothing is converted.
 
-        It outranks the unit that the file names, with a warning.  assumed: unit of a mesh that has none.  Raises
-        BadInputError for an unknown unit.
+        Parameters
+        ----------
+        given : str or None
+            Unit that the user gives; it outranks the one that the file names, with a warning.  None keeps the mesh's.
+        assumed : str, default ""
+            Unit of a mesh that has none.
+
+        Returns
+        -------
+        Mesh
+            The same mesh with its unit.
+
+        Raises
+        ------
+        BadInputError
+            If a unit is not known.
+
+        Examples
+        --------
+        >>> import meshwind as mw
+        >>> mw.read("data/elbow.obj").in_units("in").units
+        'in'
         """
         if given is None and self.units:
             return self

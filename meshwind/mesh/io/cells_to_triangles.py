@@ -84,6 +84,8 @@ def _surface(kind: str, cells: tuple[Ints, Ints]) -> Ints:
         return _table(kind, cells)
     if base == "quad":
         return _cut_quads(_table(kind, cells))
+    if base == "triangle strip":
+        return _strips(*cells)
     return _fans(*cells) if base == "polygon" else np.empty((0, 3), dtype=np.int64)
 
 
@@ -93,3 +95,12 @@ def _fans(sizes: Ints, nodes: Ints) -> Ints:
     start = np.repeat(np.cumsum(sizes) - sizes, count)
     step = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
     return np.column_stack([nodes[start], nodes[start + step + 1], nodes[start + step + 2]])
+
+
+def _strips(sizes: Ints, nodes: Ints) -> Ints:
+    """Triangles of strips: each node after the second makes one with the two before it, of alternating sense."""
+    count = np.maximum(sizes - 2, 0)
+    step = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    at = np.repeat(np.cumsum(sizes) - sizes, count) + step
+    odd = step % 2
+    return np.column_stack([nodes[at + odd], nodes[at + 1 - odd], nodes[at + 2]])

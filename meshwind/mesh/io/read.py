@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
+from typing import Any
 from xml.etree.ElementTree import ParseError
 
 from meshwind.core.errors import BadInputError
@@ -19,6 +20,7 @@ from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.mesh.io.by_trimesh import by_trimesh
 from meshwind.mesh.io.deck import read_deck
 from meshwind.mesh.io.file_mesh import FileMesh
+from meshwind.mesh.io.in_memory import surface_in_memory
 from meshwind.mesh.io.in_subprocess import DAMAGED, Arrays, in_subprocess
 from meshwind.mesh.io.msh import read_msh
 from meshwind.mesh.io.obj import read_obj
@@ -67,16 +69,16 @@ RuntimeWarning comes from a cast, if the caller turns warnings into errors.
 """
 
 
-def read(path: str | PathLike[str], component: int = 0, units: str | None = None) -> Mesh:
-    """Read a triangle mesh from a file and repair it.
+def read(mesh: str | PathLike[str] | Any, component: int = 0, units: str | None = None) -> Mesh:
+    """Read a triangle mesh from a file, or take it from another library, and repair it.
 
     STL, PLY, OBJ, OFF, GLB, GLTF, 3MF, VTK, VTU, VTP, MSH and INP files are read.  Polygons are cut into triangles,
     and of a volume mesh the skin is taken.
 
     Parameters
     ----------
-    path : str or PathLike
-        File to read.
+    mesh : str, PathLike, trimesh.Trimesh, pyvista.PolyData, meshio.Mesh or tuple of two arrays
+        File to read, or a mesh in memory: one of trimesh, PyVista or meshio, or its vertices (n, 3) and faces (m, 3).
     component : int, default 0
         Which piece to keep, by its rank of area: 0 is the largest.
     units : str, optional
@@ -99,17 +101,18 @@ def read(path: str | PathLike[str], component: int = 0, units: str | None = None
     >>> mesh.repairs
     ()
     """
-    held = load(path)
-    mesh = mesh_from(held.vertices, held.faces, Path(path).name, component)
-    mesh = replace(mesh, units=held.units, units_from=BY_FILE if held.units else "", warnings=held.warnings)
-    return mesh.in_units(units)
+    held = load(mesh)
+    name = Path(mesh).name if isinstance(mesh, str | PathLike) else "mesh"
+    repaired = mesh_from(held.vertices, held.faces, name, component)
+    named_by = BY_FILE if held.units else ""
+    return replace(repaired, units=held.units, units_from=named_by, warnings=held.warnings).in_units(units)
 
 
-def load(path: str | PathLike[str]) -> FileMesh:
-    """The surface in a file without repair; it has at least a triangle.  Raises BadInputError."""
-    if not isinstance(path, str | PathLike):
-        raise BadInputError(f"mesh is {_type(path)}: give the path of a triangle mesh (STL, OBJ, PLY, ...)")
-    file = Path(path)
+def load(mesh: str | PathLike[str] | Any) -> FileMesh:
+    """The surface in a file or in memory without repair; it has at least a triangle.  Raises BadInputError."""
+    if not isinstance(mesh, str | PathLike):
+        return surface_in_memory(mesh)
+    file = Path(mesh)
     reader = _reader(file)
     try:
         # what the libraries print is replaced by the one line below
@@ -125,11 +128,6 @@ def load(path: str | PathLike[str]) -> FileMesh:
     if len(held.faces) == 0:
         raise BadInputError(f"{file.name}: holds no triangles; export the part's surface as a triangle mesh")
     return held
-
-
-def _type(value: object) -> str:
-    """Type of a value, in words."""
-    return f"of type {type(value).__name__}"
 
 
 def _reader(file: Path) -> _Reader:

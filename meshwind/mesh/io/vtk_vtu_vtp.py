@@ -8,7 +8,9 @@ import numpy as np
 
 from meshwind.core.cast import Ints
 from meshwind.core.errors import BadInputError
+from meshwind.core.units import MILLIMETRES
 from meshwind.mesh.io.cells_to_triangles import CellBlock, surface_mesh
+from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.in_subprocess import DAMAGED, Arrays
 
 _VTK_KINDS = {
@@ -21,37 +23,67 @@ _LISTS = rb"^(?:VERTICES|LINES|POLYGONS|TRIANGLE_STRIPS|CELLS)\s+(\d{1,10})\s+(\
 
 
 def read_vtk(path: Path) -> Arrays:
-    """Vertices and triangles of a file of polygons or of an unstructured grid, for `in_subprocess`.
+    """Surface of a file of polygons or of an unstructured grid, for `in_subprocess`."""
+    found = surface_of_vtk(vtk_output(path))
+    if found is None:
+        raise BadInputError(f"{path.name}: holds no polygons or cells; save the part's surface as VTP, PLY or STL")
+    return found.packed()
+
+
+def surface_of_vtk(data: Any) -> FileMesh | None:
+    """Surface of polygons and strips or of an unstructured grid, None for another kind of data.
 
     Only VTK's raw arrays are used, because its filters end the process on damaged connectivity.
     """
     from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
 
-    data = vtk_output(path)
     if isinstance(data, vtkPolyData):
-        cells, kinds = data.GetPolys(), None
+        lists = [(data.GetPolys(), "polygon"), (data.GetStrips(), "triangle strip")]
+        tables = [(cells, name) for cells, name in lists if cells is not None and cells.GetNumberOfCells()]
+        blocks = [(name, _sizes_and_nodes(cells)) for cells, name in tables]
     elif isinstance(data, vtkUnstructuredGrid):
-        cells, kinds = data.GetCells(), _kinds(data)
+        blocks = _of_grid(data)
     else:
-        raise BadInputError(f"{path.name}: holds no polygons or cells; save the part's surface as VTP, PLY or STL")
-    if data.GetPoints() is None or cells is None or cells.GetNumberOfCells() == 0:
-        return surface_mesh(np.empty((0, 3)), []).packed()
+        return None
+    if data.GetPoints() is None or not blocks:
+        return surface_mesh(np.empty((0, 3)), [])
+    units = data.GetPoints().GetData().GetInformation().Get(vtk_units_label()) or ""
     points = vtk_array(data.GetPoints().GetData(), np.float64)
+    return surface_mesh(points, blocks, units if units in MILLIMETRES else "")
+
+
+def vtk_units_label() -> Any:
+    """VTK's key for the name of an array's unit."""
+    from vtkmodules.vtkCommonCore import vtkDataArray
+
+    return vtkDataArray.UNITS_LABEL()
+
+
+def _of_grid(grid: Any) -> list[CellBlock]:
+    """Cells of an unstructured grid by their kind."""
+    cells = grid.GetCells()
+    if cells is None or cells.GetNumberOfCells() == 0:
+        return []
+    sizes, nodes = _sizes_and_nodes(cells)
+    kind = _kinds(grid)
+    if len(kind) != len(sizes):
+        raise ValueError("its cell types are damaged")
+    of_node = np.repeat(kind, sizes)
+    return [
+        (name, (sizes[kind == code], nodes[of_node == code]))
+        for code, name in _VTK_KINDS.items()
+        if (kind == code).any()
+    ]
+
+
+def _sizes_and_nodes(cells: Any) -> tuple[Ints, Ints]:
+    """Number of nodes of each cell, and the nodes of one cell after the other."""
     offsets = vtk_array(cells.GetOffsetsArray(), np.int64)
     nodes = vtk_array(cells.GetConnectivityArray(), np.int64)
     sizes = np.diff(offsets)
     if offsets[0] != 0 or (sizes < 0).any() or offsets[-1] != len(nodes):
         raise ValueError("its cells are damaged")
-    kind = np.full(len(sizes), 7) if kinds is None else kinds
-    if len(kind) != len(sizes):
-        raise ValueError("its cell types are damaged")
-    of_node = np.repeat(kind, sizes)
-    blocks: list[CellBlock] = [
-        (name, (sizes[kind == code], nodes[of_node == code]))
-        for code, name in _VTK_KINDS.items()
-        if (kind == code).any()
-    ]
-    return surface_mesh(points, blocks).packed()
+    return sizes, nodes
 
 
 def _kinds(grid: Any) -> Ints:

@@ -1,0 +1,80 @@
+"""Surfaces of other libraries' meshes in memory, and of arrays."""
+
+import sys
+from typing import Any
+
+import numpy as np
+
+from meshwind.core.errors import BadInputError
+from meshwind.mesh.io.cells_to_triangles import surface_mesh
+from meshwind.mesh.io.file_mesh import FileMesh
+
+_UNITS = {
+    "mm": "mm", "millimeter": "mm", "millimeters": "mm", "millimetre": "mm", "millimetres": "mm",
+    "cm": "cm", "centimeter": "cm", "centimeters": "cm", "centimetre": "cm", "centimetres": "cm",
+    "m": "m", "meter": "m", "meters": "m", "metre": "m", "metres": "m",
+    "um": "um", "micron": "um", "microns": "um", "micrometer": "um", "micrometers": "um",
+    "in": "in", "inch": "in", "inches": "in", "ft": "ft", "foot": "ft", "feet": "ft",
+}  # fmt: skip
+"""Units as `core.units` names them, by the words that other libraries use."""
+_ADVICE = "give a path, a trimesh.Trimesh, a pyvista.PolyData, a meshio.Mesh, a meshwind.Mesh or (vertices, faces)"
+
+
+def surface_in_memory(mesh: object) -> FileMesh:
+    """Surface of a mesh of trimesh, PyVista (VTK) or meshio, or of a pair of arrays (vertices, faces).
+
+    Faces (m, 3) are triangles and (m, 4) quadrangles.  Raises BadInputError for anything else.
+    """
+    if isinstance(mesh, tuple | list) and len(mesh) == 2:
+        return _of_arrays(*mesh)
+    for library, of in (("trimesh", _of_trimesh), ("meshio", _of_meshio), ("vtkmodules", _of_vtk)):
+        found = of(mesh) if library in sys.modules else None  # what is not imported cannot have made it
+        if found is not None:
+            return found
+    raise BadInputError(f"mesh is of type {type(mesh).__name__}; {_ADVICE}")
+
+
+def _of_arrays(vertices: Any, faces: Any) -> FileMesh:
+    try:
+        points, cells = np.asarray(vertices, dtype=np.float64), np.asarray(faces)
+    except (TypeError, ValueError) as error:
+        raise BadInputError("vertices and faces are not arrays of numbers; give (n, 3) and (m, 3)") from error
+    if points.ndim != 2 or points.shape[1] != 3 or cells.ndim != 2 or cells.shape[1] not in (3, 4):
+        raise BadInputError(f"vertices are {points.shape} and faces {cells.shape}; give (n, 3) and (m, 3) or (m, 4)")
+    if cells.shape[1] == 3:
+        return FileMesh(points, cells)  # the repair checks the indices
+    return _checked(points, [("quad", (np.full(len(cells), 4), cells.astype(np.int64).ravel()))])
+
+
+def _checked(points: Any, blocks: Any) -> FileMesh:
+    try:
+        return surface_mesh(points, blocks)
+    except ValueError as error:
+        raise BadInputError(f"mesh: {error}; give indices from 0 to {len(points) - 1}") from error
+
+
+def _of_trimesh(mesh: Any) -> FileMesh | None:
+    import trimesh
+
+    if isinstance(mesh, trimesh.Scene):
+        mesh, units = mesh.to_mesh(), mesh.units
+    elif isinstance(mesh, trimesh.Trimesh):
+        units = mesh.units
+    else:
+        return None
+    vertices, faces = np.asarray(mesh.vertices, dtype=np.float64), np.asarray(mesh.faces, dtype=np.int64)
+    return FileMesh(vertices, faces, _UNITS.get(str(units).lower(), ""))
+
+
+def _of_meshio(mesh: object) -> FileMesh | None:
+    import meshio
+
+    from meshwind.mesh.io.msh import surface_of
+
+    return surface_of(mesh) if isinstance(mesh, meshio.Mesh) else None
+
+
+def _of_vtk(mesh: object) -> FileMesh | None:
+    from meshwind.mesh.io.vtk_vtu_vtp import surface_of_vtk
+
+    return surface_of_vtk(mesh)
