@@ -144,7 +144,7 @@ def test_the_summary_names_the_tolerance_only_where_the_vertices_are_fitted() ->
         "data": "vertices", "noise": 0.1, "sagitta": 0.2, "uncertainty": {"rms": 0.3, "max": 0.4}
     }  # fmt: skip
     assert ", tolerance 1e-5)" in run_lines(report)[2]
-    assert run_lines(report)[2].endswith(
+    assert run_lines(report)[3].endswith(
         "fitted to the vertices; noise of the vertices 0.1, sagitta of the facets 0.2; "
         "uncertain by 0.3 (root mean squares), at most 0.4"
     )

@@ -4,8 +4,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from meshwind.core.cast import Floats, Ints
+from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.mesh.io.file_mesh import FileMesh
+from meshwind.mesh.io.polygons import cut_polygons
 
 CellBlock: TypeAlias = tuple[str, tuple[Ints, Ints]]
 """Kind of the cells, their sizes (c,), and the nodes of one cell after the other."""
@@ -31,16 +32,20 @@ def surface_mesh(points: Floats, blocks: list[CellBlock], units: str = "", warni
     for _, (_, nodes) in blocks:
         if len(nodes) and (nodes.min() < 0 or nodes.max() >= len(points)):
             raise ValueError("a cell refers to a vertex that is not in the file")
-    return FileMesh(points, _triangles(blocks), units, warnings)
+    faces, crossed = _triangles(points, blocks)
+    if crossed:
+        warnings = (*warnings, f"polygons that cross themselves are cut by a fan: {crossed}")
+    return FileMesh(points, faces, units, warnings)
 
 
-def _triangles(blocks: list[CellBlock]) -> Ints:
-    """Triangles (m, 3) of the blocks."""
+def _triangles(points: Floats, blocks: list[CellBlock]) -> tuple[Ints, int]:
+    """Triangles (m, 3) of the blocks, and how many polygons cross themselves."""
     sides = [_sides(kind, cells) for kind, cells in blocks if _base(kind) in _SIDES]
     if sides:
-        return _cut_quads(_skin(np.concatenate(sides)))
-    surfaces = [_surface(kind, cells) for kind, cells in blocks]
-    return np.concatenate([*surfaces, np.empty((0, 3), dtype=np.int64)])
+        return _cut_quads(points, _skin(np.concatenate(sides))), 0
+    surfaces = [_surface(points, kind, cells) for kind, cells in blocks]
+    faces = np.concatenate([*(faces for faces, _ in surfaces), np.empty((0, 3), dtype=np.int64)])
+    return faces, sum(crossed for _, crossed in surfaces)
 
 
 def _base(kind: str) -> str:
@@ -71,30 +76,33 @@ def _skin(sides: Ints) -> Ints:
     return np.asarray(sides[np.sort(first[count == 1])])
 
 
-def _cut_quads(quads: Ints) -> Ints:
-    """Two triangles for each quadrangle, one where its last corner is -1."""
+def _cut_quads(points: Floats, quads: Ints) -> Ints:
+    """Two triangles for each quadrangle, one where its last corner is -1.
+
+    The cut is from the first corner to the third, but where that leaves a concave quadrangle.
+    """
+    turned = _outside(points, quads) & ~_outside(points, np.roll(quads, -1, axis=1)) & (quads[:, 3] >= 0)
+    quads = np.where(turned[:, None], np.roll(quads, -1, axis=1), quads)
     second = quads[quads[:, 3] >= 0][:, [0, 2, 3]]
     return np.concatenate([quads[:, :3], second])
 
 
-def _surface(kind: str, cells: tuple[Ints, Ints]) -> Ints:
-    """Triangles of surface cells, none for lines and points."""
+def _outside(points: Floats, quads: Ints) -> Bools:
+    """Whether the diagonal from the first corner to the third lies outside: its two triangles face opposite ways."""
+    a, b, c, d = (points[quads[:, corner]] for corner in range(4))
+    return np.asarray((np.cross(b - a, c - a) * np.cross(c - a, d - a)).sum(axis=1) < 0.0)
+
+
+def _surface(points: Floats, kind: str, cells: tuple[Ints, Ints]) -> tuple[Ints, int]:
+    """Triangles of surface cells, none for lines and points, and how many polygons cross themselves."""
     base = _base(kind)
     if base == "triangle":
-        return _table(kind, cells)
+        return _table(kind, cells), 0
     if base == "quad":
-        return _cut_quads(_table(kind, cells))
+        return _cut_quads(points, _table(kind, cells)), 0
     if base == "triangle strip":
-        return _strips(*cells)
-    return _fans(*cells) if base == "polygon" else np.empty((0, 3), dtype=np.int64)
-
-
-def _fans(sizes: Ints, nodes: Ints) -> Ints:
-    """Cut each polygon into the fan about its first corner."""
-    count = np.maximum(sizes - 2, 0)
-    start = np.repeat(np.cumsum(sizes) - sizes, count)
-    step = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
-    return np.column_stack([nodes[start], nodes[start + step + 1], nodes[start + step + 2]])
+        return _strips(*cells), 0
+    return cut_polygons(points, *cells) if base == "polygon" else (np.empty((0, 3), dtype=np.int64), 0)
 
 
 def _strips(sizes: Ints, nodes: Ints) -> Ints:

@@ -20,6 +20,7 @@ from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.mesh.io.by_trimesh import by_trimesh
 from meshwind.mesh.io.deck import read_deck
 from meshwind.mesh.io.file_mesh import FileMesh
+from meshwind.mesh.io.gltf import read_gltf
 from meshwind.mesh.io.in_memory import surface_in_memory
 from meshwind.mesh.io.in_subprocess import DAMAGED, Arrays, in_subprocess
 from meshwind.mesh.io.msh import read_msh
@@ -46,14 +47,14 @@ _READERS: dict[str, _Reader] = {
     ".ply": by_trimesh,
     ".obj": read_obj,
     ".off": by_trimesh,
-    ".glb": by_trimesh,
-    ".gltf": by_trimesh,
+    ".glb": read_gltf,
+    ".gltf": read_gltf,
     ".3mf": read_3mf,
     ".vtk": _separate(read_vtk),
     ".vtu": _separate(read_vtk),
     ".vtp": _separate(read_vtk),
     ".msh": _separate(read_msh),
-    ".inp": _separate(read_deck),
+    ".inp": read_deck,
 }
 SUFFIXES = tuple(_READERS)
 """File name endings that `read` understands."""

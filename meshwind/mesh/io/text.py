@@ -1,0 +1,25 @@
+"""Text of mesh files: byte order marks, line ends, and the unit in a header that meshwind writes."""
+
+import codecs
+import re
+from pathlib import Path
+
+_OWN = re.compile(rb"lengths in (mm|cm|m|um|inch|in|ft)\b")
+_HEADER = 400
+"""Length of the part of a file in which meshwind names the unit."""
+
+
+def text_of(path: Path) -> bytes:
+    """Content of a text file in UTF-8, its lines ended by line feeds only."""
+    content = path.read_bytes()
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        content = content.decode("utf-16").encode()
+    content = content.removeprefix(codecs.BOM_UTF8)
+    return content.replace(b"\r\n", b"\n").replace(b"\r", b"\n") if b"\r" in content else content
+
+
+def own_unit(content: bytes) -> str:
+    """Unit of length that the header of a file of meshwind's own names, "" if there is none."""
+    head = content[:_HEADER]
+    found = _OWN.search(head) if b"meshwind" in head or b"quad mesh on the crossings" in head else None
+    return found[1].decode() if found else ""
