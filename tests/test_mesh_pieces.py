@@ -116,7 +116,7 @@ def test_annulus_of_something_else_is_refused(value: object) -> None:
 
 @pytest.mark.parametrize("value", [3, None, b"part.stl", ["part.stl"]])
 def test_reading_something_else_is_refused(value: object) -> None:
-    with pytest.raises(BadInputError, match=r"^mesh is of type \w+: give the path"):
+    with pytest.raises(BadInputError, match=r"^mesh is of type \w+; give a path"):
         read(value)  # type: ignore[arg-type]
 
 

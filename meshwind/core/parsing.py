@@ -35,11 +35,11 @@ def count(text: str) -> int | None:
 def read_toml(file: Path, kind: str) -> dict[str, Any]:
     """Read a TOML file; `kind` is what its messages call it.  Raises BadInputError if it cannot be read."""
     try:
-        return tomllib.loads(file.read_text(encoding="utf-8"))
+        return tomllib.loads(file.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise BadInputError(f"cannot read the {kind} {file}: {error.strerror or error}; give a TOML file") from error
     except UnicodeDecodeError as error:
-        raise BadInputError(f"the {kind} {file} is not text in UTF-8; give a TOML file") from error
+        raise BadInputError(f"the {kind} {file} is not text in UTF-8; save it as UTF-8") from error
     except tomllib.TOMLDecodeError as error:
         raise BadInputError(f"the {kind} {file} is not valid TOML: {error}; write option = value") from error
 

@@ -1,5 +1,6 @@
 """End points that a user gives: fixation pins, from a CSV file."""
 
+import codecs
 import csv
 from pathlib import Path
 
@@ -80,26 +81,38 @@ def read_pins(path: str | Path, surface: Surface, revolutions: float) -> Familie
 
 def _table(path: Path) -> tuple[list[str], Floats]:
     """Column names and numbers (rows, columns)."""
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
-    except FileNotFoundError as error:
-        raise BadInputError(f"{path}: there is no such file; give a CSV file of pins") from error
-    except (OSError, ValueError, csv.Error) as error:
-        raise BadInputError(f"{path}: cannot be read as CSV; give a text file of comma-separated numbers") from error
+    rows, decimal = _rows(path)
     if len(rows) < 2:
         raise BadInputError(f"{path.name}: holds no pins; give a row of column names, then a row per path")
     names = [cell.strip().lower() for cell in rows[0]]
     values = np.empty((len(rows) - 1, len(names)))
     for number, row in enumerate(rows[1:]):
         try:
-            values[number] = [float(cell) for cell in row]
+            values[number] = [float(cell.replace(decimal, ".")) for cell in row]
         except ValueError as error:
             raise BadInputError(f"{path.name}: row {number + 2} is not {len(names)} numbers; mend it") from error
     wrong = np.flatnonzero(~np.isfinite(values).all(axis=1))
     if len(wrong):
         raise BadInputError(f"{path.name}: row {wrong[0] + 2} holds NaN or infinite values; mend it")
     return names, values
+
+
+def _rows(path: Path) -> tuple[list[list[str]], str]:
+    """Rows of cells, without empty ones, and the decimal sign: a comma is one where it does not separate the cells."""
+    try:
+        content = path.read_bytes()
+        encoding = "utf-16" if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) else "utf-8-sig"
+        lines = content.decode(encoding).splitlines()
+        told = lines[0].strip().lower() if lines else ""
+        if told.startswith("sep=") and len(told) == 5:
+            lines = lines[1:]
+        separator = next((sign for sign in (";", "\t") if lines and sign in lines[0]), ",")
+        rows = [row for row in csv.reader(lines, delimiter=separator) if any(cell.strip() for cell in row)]
+    except FileNotFoundError as error:
+        raise BadInputError(f"{path}: there is no such file; give a CSV file of pins") from error
+    except (OSError, ValueError, csv.Error) as error:
+        raise BadInputError(f"{path}: cannot be read as CSV; give a text file of comma-separated numbers") from error
+    return rows, "." if separator == "," else ","
 
 
 def _on_surface(surface: Surface, points: Floats, path: Path) -> Floats:

@@ -17,7 +17,6 @@ from xml.etree.ElementTree import ParseError
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import BY_FILE
 from meshwind.mesh.geometry.mesh import Mesh
-from meshwind.mesh.io.by_trimesh import by_trimesh
 from meshwind.mesh.io.deck import read_deck
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.gltf import read_gltf
@@ -25,6 +24,9 @@ from meshwind.mesh.io.in_memory import surface_in_memory
 from meshwind.mesh.io.in_subprocess import DAMAGED, Arrays, in_subprocess
 from meshwind.mesh.io.msh import read_msh
 from meshwind.mesh.io.obj import read_obj
+from meshwind.mesh.io.off import read_off
+from meshwind.mesh.io.ply import read_ply
+from meshwind.mesh.io.precision import resolved
 from meshwind.mesh.io.stl import read_stl
 from meshwind.mesh.io.threemf import read_3mf
 from meshwind.mesh.io.vtk_vtu_vtp import read_vtk
@@ -44,9 +46,9 @@ def _separate(work: Callable[[Path], Arrays]) -> _Reader:
 
 _READERS: dict[str, _Reader] = {
     ".stl": read_stl,
-    ".ply": by_trimesh,
+    ".ply": read_ply,
     ".obj": read_obj,
-    ".off": by_trimesh,
+    ".off": read_off,
     ".glb": read_gltf,
     ".gltf": read_gltf,
     ".3mf": read_3mf,
@@ -128,7 +130,7 @@ def load(mesh: str | PathLike[str] | Any) -> FileMesh:
         ) from error
     if len(held.faces) == 0:
         raise BadInputError(f"{file.name}: holds no triangles; export the part's surface as a triangle mesh")
-    return held
+    return resolved(file.name, held)
 
 
 def _reader(file: Path) -> _Reader:

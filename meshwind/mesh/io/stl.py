@@ -1,37 +1,65 @@
-"""Reading of STL files by trimesh, which gives no reason why it cannot read a damaged file: they are checked first."""
+"""Reading of STL files: binary ones by their length, text by trimesh after a check."""
 
 import re
 from pathlib import Path
+
+import numpy as np
 
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.io.by_trimesh import by_trimesh
 from meshwind.mesh.io.file_mesh import FileMesh
 
 _HEADER, _FACET = 84, 50  # bytes of a binary STL file
+_FACETS = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("colour", "<u2")])
 
 
 def read_stl(path: Path) -> FileMesh:
     """Vertices and triangles of an STL file."""
-    _check_stl(path)
-    return by_trimesh(path)
+    if _is_text(path):
+        return by_trimesh(path)
+    return _binary(path)
 
 
-def _check_stl(path: Path) -> None:
-    """Refuse a file that ends before its last triangle.  Raises ValueError if it is not an STL file."""
+def _is_text(path: Path) -> bool:
+    """Whether the file is text; refuses text that ends before its last triangle."""
     size = path.stat().st_size
     with path.open("rb") as file:
         start = file.read(512)
         file.seek(max(0, size - 1024))
         end = file.read()
-    if b"\0" not in start:
-        if re.match(rb"\s*solid\b[\s\S]*?\bfacet\s", start, re.IGNORECASE) and not re.search(rb"(?i)end\s*solid", end):
-            raise BadInputError(f"{path.name}: is cut short, its last line is not endsolid; copy or export it again")
-        return
-    if size < _HEADER:
+    if b"\0" in start:
+        return False
+    if re.match(rb"\s*solid\b[\s\S]*?\bfacet\s", start, re.IGNORECASE) and not re.search(rb"(?i)end\s*solid", end):
+        raise BadInputError(f"{path.name}: is cut short, its last line is not endsolid; copy or export it again")
+    return True
+
+
+def _binary(path: Path) -> FileMesh:
+    """Triangles of a binary file: as many as it announces, or as its length holds where that is a whole number."""
+    content = path.read_bytes()
+    if len(content) < _HEADER:
         raise ValueError("shorter than the header of a binary STL file")
-    announced, present = int.from_bytes(start[80:84], "little"), (size - _HEADER) / _FACET
-    if announced > present:
-        raise BadInputError(
-            f"{path.name}: is cut short: it announces {announced} triangles and holds {int(present)};"
-            " copy or export it again"
-        )
+    facets, at, announced, warnings = [], 0, 0, []
+    while at + _HEADER <= len(content):
+        announced = int.from_bytes(content[at + 80 : at + _HEADER], "little")
+        present, odd = divmod(len(content) - at - _HEADER, _FACET)
+        count, more = announced, len(content) - at - _HEADER - announced * _FACET
+        if more < 0 and odd:
+            raise BadInputError(
+                f"{path.name}: is cut short: it announces {announced} triangles and holds {present};"
+                " copy or export it again"
+            )
+        if more and not odd:
+            count, more = present, 0
+            warnings.append(
+                f"the file announces {announced} triangles and is as long as {present}, which are read; if it was cut "
+                "short, copy or export it again"
+            )
+        facets.append(np.frombuffer(content, _FACETS, count, at + _HEADER))
+        at += _HEADER + count * _FACET
+        if more < _HEADER:
+            break
+    if at < len(content):
+        warnings.append(f"{len(content) - at} bytes after the last triangle are left out")
+    corners = np.concatenate([each["corners"] for each in facets]).reshape(-1, 3).astype(np.float64)
+    return FileMesh(corners, np.arange(len(corners)).reshape(-1, 3), warnings=tuple(warnings))

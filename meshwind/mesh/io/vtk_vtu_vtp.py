@@ -9,16 +9,19 @@ import numpy as np
 from meshwind.core.cast import Ints
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import MILLIMETRES
-from meshwind.mesh.io.cells_to_triangles import CellBlock, surface_mesh
+from meshwind.mesh.io.cells_to_triangles import SIDES_OF_POLYHEDRA, CellBlock, surface_mesh
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.in_subprocess import DAMAGED, Arrays
 
 _VTK_KINDS = {
-    5: "triangle", 7: "polygon", 9: "quad", 10: "tetra", 12: "hexahedron", 13: "vtk-wedge", 14: "pyramid",
+    0: "empty", 1: "vertex", 2: "vertex", 3: "line", 4: "polyline", 21: "line3", 35: "line4", 68: "line",
+    5: "triangle", 6: "triangle strip", 7: "polygon", 8: "pixel", 9: "quad", 10: "tetra", 11: "voxel",
+    12: "hexahedron", 13: "vtk-wedge", 14: "pyramid", 15: "pentagonal prism", 16: "hexagonal prism",
     22: "triangle6", 23: "quad8", 24: "tetra10", 25: "hexahedron20", 26: "vtk-wedge15", 27: "pyramid13",
     28: "quad9", 29: "hexahedron27", 69: "triangle", 70: "quad", 71: "tetra", 72: "hexahedron",
 }  # fmt: skip
 """Kinds of cells by VTK's number."""
+_POLYHEDRON = 42
 _LISTS = rb"^(?:VERTICES|LINES|POLYGONS|TRIANGLE_STRIPS|CELLS)\s+(\d{1,10})\s+(\d{1,10})[ \t\r]*\n"
 
 
@@ -69,11 +72,20 @@ def _of_grid(grid: Any) -> list[CellBlock]:
     if len(kind) != len(sizes):
         raise ValueError("its cell types are damaged")
     of_node = np.repeat(kind, sizes)
-    return [
-        (name, (sizes[kind == code], nodes[of_node == code]))
-        for code, name in _VTK_KINDS.items()
-        if (kind == code).any()
+    codes = sorted(set(kind.tolist()) - {_POLYHEDRON})
+    known = [code for code in _VTK_KINDS if code in codes]  # in the order of the table
+    blocks = [
+        (_VTK_KINDS.get(code, f"VTK {code}"), (sizes[kind == code], nodes[of_node == code]))
+        for code in [*known, *(code for code in codes if code not in _VTK_KINDS)]
     ]
+    return blocks if not (kind == _POLYHEDRON).any() else [*blocks, (SIDES_OF_POLYHEDRA, _polyhedra(grid))]
+
+
+def _polyhedra(grid: Any) -> tuple[Ints, Ints]:
+    """The sides of all polyhedra.  Raises ValueError where VTK is too old to tell."""
+    if not hasattr(grid, "GetPolyhedronFaces"):
+        raise ValueError("it holds polyhedra, which VTK reads from version 9.4 on")
+    return _sizes_and_nodes(grid.GetPolyhedronFaces())
 
 
 def _sizes_and_nodes(cells: Any) -> tuple[Ints, Ints]:
@@ -124,14 +136,14 @@ def vtk_array(values: Any, dtype: type) -> Any:
 
 def _check_legacy(content: bytes) -> None:
     """Raise ValueError if version and cells disagree, or if a list of cells has the wrong size."""
-    version = re.match(rb"# vtk DataFile Version (\d)\.\d\s*\n[^\n]*\n\s*(ASCII|BINARY)", content)
+    version = re.match(rb"# vtk DataFile Version (\d)\.\d\s*\n[^\n]*\n\s*(ASCII|BINARY)", content, re.IGNORECASE)
     if version is None:
         raise ValueError(DAMAGED)
-    lists = list(re.finditer(_LISTS, content, re.MULTILINE))
-    split = re.search(rb"^OFFSETS ", content, re.MULTILINE) is not None  # since version 5
+    lists = list(re.finditer(_LISTS, content, re.MULTILINE | re.IGNORECASE))
+    split = re.search(rb"^OFFSETS ", content, re.MULTILINE | re.IGNORECASE) is not None  # since version 5
     if lists and split != (int(version[1]) >= 5):
         raise ValueError(DAMAGED)
-    if split or version[2] == b"ASCII":
+    if split or version[2].upper() == b"ASCII":
         return
     for found in lists:
         count, size = int(found[1]), int(found[2])
