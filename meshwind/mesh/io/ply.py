@@ -23,8 +23,6 @@ _TYPES = {
 }  # fmt: skip
 _ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 _CORNERS = ("vertex_indices", "vertex_index")
-_NO_SURFACE = ("vertex", "face", "tristrips", "edge", "camera", "material", "user")
-_MAX_ROWS = 1 << 40
 
 
 @dataclass(frozen=True)
@@ -80,8 +78,8 @@ def read_ply(path: Path) -> FileMesh:
     blocks += [("triangle strip", _unbroken(lists)) for lists in strips if isinstance(lists, Lists)]
     warnings = [f"{ply.extra} bytes after the last element are left out"] if ply.extra else []
     for name, table in ply.tables.items():
-        held = next((len(column.sizes) for column in table.values() if isinstance(column, Lists)), 0)
-        if held and name not in _NO_SURFACE:
+        held = next((len(table[key].sizes) for key in _CORNERS if isinstance(table.get(key), Lists)), 0)
+        if held and name not in ("face", "tristrips", "edge"):
             warnings.append(f"{held} rows of the element {name[:40]!r}, which is not known, are left out")
     if ply.grid and not blocks:
         raise BadInputError(f"{path.name}: is a range grid, which is no mesh; triangulate the scan first")

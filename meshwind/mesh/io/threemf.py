@@ -60,11 +60,9 @@ class _Package:
         """What is left out."""
         words = []
         if self.supports:
-            words.append(
-                f"left out {self.supports} support {'objects' if self.supports > 1 else 'object'} of the build"
-            )
+            words.append(f"objects of the build that are supports are left out: {self.supports}")
         if self.empty:
-            words.append(f"{self.empty} objects have no triangles, and are left out")
+            words.append(f"objects without triangles are left out: {self.empty}")
         return tuple(words)
 
     def _root(self) -> str:
