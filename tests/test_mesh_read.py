@@ -151,7 +151,9 @@ def test_missing_folder_and_unknown(tmp_path: Path) -> None:
     (tmp_path / "folder.stl").mkdir()
     assert refusal(tmp_path / "folder.stl") == f"is a folder; {advice}"
     (tmp_path / "part.step").write_text("ISO-10303-21;")
-    assert refusal(tmp_path / "part.step").startswith("unknown format '.step'; convert the mesh to one of STL, PLY")
+    assert refusal(tmp_path / "part.step").startswith("is a CAD file, not a mesh; save it as STL")
+    (tmp_path / "part.dae").write_text("x")
+    assert refusal(tmp_path / "part.dae").startswith("unknown format '.dae'; convert the mesh to one of STL, PLY")
     (tmp_path / "part").write_text("solid")
     assert refusal(tmp_path / "part").startswith("unknown format ''")
 

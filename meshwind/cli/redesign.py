@@ -64,10 +64,12 @@ def redesign(
     """
     # the numerical libraries are imported late: --help and usage errors must not wait for them
     from meshwind.editing.redesign import redesign as edit_mesh
+    from meshwind.mesh import check_file
     from meshwind.results import folder
     from meshwind.run.redesign import write_redesign
 
     target = Path(out if out is not None else f"{mesh.stem}-redesigned")
+    check_file(mesh)
     folder.prepare(target, files.overwrite)
     begin = perf_counter()
     wound = {name: getattr(winding, name) for name in WINDING}

@@ -7,6 +7,7 @@ from tempfile import TemporaryDirectory
 
 from meshwind.core.errors import BadInputError
 from meshwind.core.version import version
+from meshwind.mesh import check_file
 from meshwind.path import Paths, Status
 from meshwind.pictures import driver
 from meshwind.pictures.fit_scene import fit_scene
@@ -272,6 +273,7 @@ def wind(  # noqa: PLR0913
     )  # fmt: skip
     clock = Clock(progress)
     target = None if out is None else _folder(out)
+    check_file(mesh)
     if target is not None:
         folder.prepare(target, overwrite)
         if render:

@@ -58,6 +58,9 @@ _READERS: dict[str, _Reader] = {
     ".msh": _separate(read_msh),
     ".inp": read_deck,
 }
+_CAD = (
+    ".step", ".stp", ".iges", ".igs", ".brep", ".sldprt", ".catpart", ".ipt", ".x_t", ".x_b", ".prt", ".3dm", ".fcstd",
+)  # fmt: skip
 SUFFIXES = tuple(_READERS)
 """File name endings that `read` understands."""
 
@@ -133,6 +136,12 @@ def load(mesh: str | PathLike[str] | Any) -> FileMesh:
     return resolved(file.name, held)
 
 
+def check_file(mesh: object) -> None:
+    """Raise BadInputError if a mesh is the path of a file that is missing, empty or of an unknown format."""
+    if isinstance(mesh, str | PathLike):
+        _reader(Path(mesh))
+
+
 def _reader(file: Path) -> _Reader:
     """Reader for the file's suffix.  Raises BadInputError if the file is missing, empty or of an unknown format."""
     advice = "give the path of a triangle mesh (STL, OBJ, PLY, ...)"
@@ -147,6 +156,8 @@ def _reader(file: Path) -> _Reader:
         if isinstance(error, BadInputError):
             raise
         raise BadInputError(f"{file.name}: cannot be opened ({_first_line(error)}); {advice}") from error
+    if file.suffix.lower() in _CAD:
+        raise BadInputError(f"{file.name}: is a CAD file, not a mesh; save it as STL or 3MF from CAD")
     if file.suffix.lower() not in _READERS:
         known = ", ".join(suffix[1:].upper() for suffix in SUFFIXES)
         raise BadInputError(f"{file.name}: unknown format {file.suffix!r}; convert the mesh to one of {known}")
