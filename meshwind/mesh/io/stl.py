@@ -1,4 +1,4 @@
-"""Reading of STL files: binary ones by their length, text by trimesh after a check."""
+"""Reading of STL files: binary ones by their length, and text with loops of any number of corners."""
 
 import re
 from pathlib import Path
@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.io.by_trimesh import by_trimesh
+from meshwind.mesh.io.cells_to_triangles import surface_mesh
 from meshwind.mesh.io.file_mesh import FileMesh
+from meshwind.mesh.io.text import text_of
 
 _HEADER, _FACET = 84, 50  # bytes of a binary STL file
 _FACETS = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("colour", "<u2")])
@@ -16,7 +17,7 @@ _FACETS = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("colour",
 def read_stl(path: Path) -> FileMesh:
     """Vertices and triangles of an STL file."""
     if _is_text(path):
-        return by_trimesh(path)
+        return _text(path)
     return _binary(path)
 
 
@@ -32,6 +33,29 @@ def _is_text(path: Path) -> bool:
     if re.match(rb"\s*solid\b[\s\S]*?\bfacet\s", start, re.IGNORECASE) and not re.search(rb"(?i)end\s*solid", end):
         raise BadInputError(f"{path.name}: is cut short, its last line is not endsolid; copy or export it again")
     return True
+
+
+def _text(path: Path) -> FileMesh:
+    """Facets of all solids of a text file; a loop of more than three corners is a polygon."""
+    corners: list[bytes] = []
+    sizes: list[int] = []
+    facets = before = 0
+    for line in text_of(path).split(b"\n"):
+        words = line.split()
+        key = words[0].lower() if words else b""
+        if key == b"vertex":
+            corners += words[1:4]
+        elif key == b"endloop":
+            sizes.append(len(corners) // 3 - before)
+            before = len(corners) // 3
+        elif key == b"facet":
+            facets += 1
+    if len(sizes) != facets or before != len(corners) // 3:
+        raise ValueError(f"{facets} facets begin in it, and {len(sizes)} loops end")
+    if any(b"," in word for word in corners):
+        raise BadInputError(f"{path.name}: writes numbers with commas; export it with decimal points")
+    points = np.fromiter(map(float, corners), dtype=np.float64, count=len(corners)).reshape(-1, 3)
+    return surface_mesh(points, [("polygon", (np.array(sizes, dtype=np.int64), np.arange(len(points))))])
 
 
 def _binary(path: Path) -> FileMesh:
