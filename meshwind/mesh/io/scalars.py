@@ -12,10 +12,11 @@ import numpy as np
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.io.in_subprocess import Arrays, in_subprocess
+from meshwind.mesh.io.ply import Lists, read_tables
 from meshwind.mesh.io.vtk_vtu_vtp import vtk_array, vtk_output
 
 _BY_VTK = (".vtk", ".vtp", ".vtu")
-_BY_MESHIO = (".ply", ".msh")
+_OTHERS = (".ply", ".msh")
 
 
 @dataclass(frozen=True)
@@ -33,8 +34,8 @@ def read_scalars(path: str | Path, name: str) -> Scalars:
     """
     path = Path(path)
     kind = path.suffix.lower()
-    if kind not in _BY_VTK + _BY_MESHIO:
-        known = ", ".join(end[1:].upper() for end in _BY_VTK + _BY_MESHIO)
+    if kind not in _BY_VTK + _OTHERS:
+        known = ", ".join(end[1:].upper() for end in _BY_VTK + _OTHERS)
         raise BadInputError(f"{path.name}: this format holds no scalars; save the part with {name!r} as {known}")
     arrays = _read(path)
     names = arrays["names"].tolist()
@@ -56,7 +57,7 @@ def scalar_names(path: str | Path) -> tuple[str, ...]:
     Raises BadInputError if the file cannot be read.
     """
     path = Path(path)
-    if path.suffix.lower() not in _BY_VTK + _BY_MESHIO:
+    if path.suffix.lower() not in _BY_VTK + _OTHERS:
         return ()
     return tuple(sorted(_read(path)["names"].tolist()))
 
@@ -64,8 +65,10 @@ def scalar_names(path: str | Path) -> tuple[str, ...]:
 def _read(path: Path) -> Arrays:
     kind = path.suffix.lower()
     try:
-        return in_subprocess(by_vtk if kind in _BY_VTK else by_meshio, path)
-    except (OSError, ValueError) as error:
+        return _ply(path) if kind == ".ply" else in_subprocess(by_vtk if kind in _BY_VTK else by_meshio, path)
+    except BadInputError:
+        raise
+    except (OSError, ValueError, LookupError, ArithmeticError) as error:
         raise BadInputError(
             f"{path.name}: its scalars cannot be read; is it a whole {kind[1:].upper()} file?"
         ) from error
@@ -104,6 +107,25 @@ def _add_arrays(fields: _Fields, data: Any, points: Floats | None) -> None:
             _add(fields, array.GetName(), numpy_support.vtk_to_numpy(array), points)  # type: ignore[no-untyped-call]
 
 
+def _ply(path: Path) -> Arrays:
+    """Points and scalars of a PLY file."""
+    ply = read_tables(path)
+    points, corners = ply.points(), ply.corners()
+    fields: _Fields = {}
+    if corners is not None and len(corners.sizes) and (corners.sizes > 0).all():
+        nodes = corners.values.astype(np.int64)
+        if nodes.min() < 0 or nodes.max() >= len(points):
+            raise ValueError("a face refers to a vertex that does not exist")
+        starts = np.cumsum(corners.sizes) - corners.sizes
+        centroids = np.add.reduceat(points[nodes], starts, axis=0) / corners.sizes[:, None]
+        for name, values in ply.tables["face"].items():
+            _add(fields, name, values, centroids)
+    for name, values in ply.tables["vertex"].items():
+        if name not in ("x", "y", "z"):
+            _add(fields, name, values, None)
+    return _packed(points, fields)
+
+
 def by_meshio(path: Path) -> Arrays:
     """Points and scalars of a file, for `in_subprocess`."""
     import meshio
@@ -135,6 +157,6 @@ def _packed(points: Floats, fields: _Fields) -> Arrays:
 
 def _add(fields: _Fields, name: str, values: object, points: Floats | None) -> None:
     """Add a field if it is a scalar."""
-    array = np.asarray(values)
+    array = np.asarray(values if not isinstance(values, Lists) else None)
     if array.ndim == 1 and array.dtype.kind in "fiub":
         fields[str(name)] = points, array.astype(np.float64)
