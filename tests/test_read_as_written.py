@@ -248,3 +248,56 @@ def test_pins_of_other_programs(text: str, encoding: str, tmp_path: Path) -> Non
     (tmp_path / "pins.csv").write_text(text.removeprefix("\ufeff") if encoding == "utf-16" else text, encoding=encoding)
     ends = read_pins(tmp_path / "pins.csv", mw.shapes.cylinder(1.0, 3.0), 0.5)
     assert ends.start[0] == pytest.approx([0.0, 0.0]) and ends.end[0] == pytest.approx([0.25, 1.0])
+
+
+RING = 12
+
+
+def second_order_ring() -> Any:
+    """A ring of radii 1 and 2 and height 1 of hexahedra whose mid-side nodes lie on the circles."""
+    numbers: dict[tuple[int, ...], int] = {}
+
+    def number(place: Any) -> int:
+        return numbers.setdefault((int(place[0]), int(place[1]) % (2 * RING), int(place[2])), len(numbers))
+
+    edges = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+    cells = []
+    for k in range(RING):
+        ring = (0, 2 * k), (2, 2 * k), (2, 2 * k + 2), (0, 2 * k + 2)
+        corners = np.array([(r, t, z) for z in (0, 2) for r, t in ring])
+        middle = [(corners[a] + corners[b]) // 2 for a, b in edges]
+        cells.append([number(place) for place in (*corners, *middle)])
+    r, t, z = np.array(list(numbers)).T / 2.0
+    turn = 2.0 * np.pi * t / RING
+    points = np.column_stack([(1.0 + r) * np.cos(turn), (1.0 + r) * np.sin(turn), z])
+    return meshio.Mesh(points, [("hexahedron20", np.array(cells))])
+
+
+@pytest.mark.parametrize("suffix", ["vtu", "vtk", "msh", "inp"])
+def test_nodes_on_the_sides_of_cells_are_used(suffix: str, tmp_path: Path) -> None:
+    given: dict[str, Any] = {"file_format": "gmsh", "binary": False} if suffix == "msh" else {}
+    second_order_ring().write(tmp_path / f"ring.{suffix}", **given)
+    mesh = mw.read(tmp_path / f"ring.{suffix}")
+    exact = 3.0 * RING * np.sin(np.pi / RING)  # of the polygon through all nodes on the circles
+    assert volume(mesh.vertices, mesh.faces) == pytest.approx(exact, rel=1e-9) and mesh.warnings == ()
+
+
+SECOND_ORDER = {
+    "triangle6": ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [(0, 1), (1, 2), (2, 0)], 0.5),
+    "quad8": ([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [(0, 1), (1, 2), (2, 3), (3, 0)], 1.0),
+    "tetra10": ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)],
+                1.5 + np.sqrt(0.75)),
+    "wedge15": ([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1]],
+                [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)], 3.0 + np.sqrt(2.0)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", SECOND_ORDER)
+def test_flat_cells_of_second_order_have_the_same_area(kind: str, tmp_path: Path) -> None:
+    corners, edges, area = SECOND_ORDER[kind]
+    points = np.array([*corners, *((np.array(corners[a]) + corners[b]) / 2.0 for a, b in edges)], dtype=float)
+    number = {"triangle6": 22, "quad8": 23, "tetra10": 24, "wedge15": 26}[kind]
+    pv.UnstructuredGrid([len(points), *range(len(points))], [number], points).save(tmp_path / "part.vtu")
+    mesh = mw.read(tmp_path / "part.vtu")
+    assert areas(mesh.vertices, mesh.faces).sum() == pytest.approx(area, rel=1e-12)
+    assert len(mesh.vertices) == len(points)

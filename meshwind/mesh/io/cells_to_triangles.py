@@ -6,6 +6,7 @@ import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.mesh.io.file_mesh import FileMesh
+from meshwind.mesh.io.mid_sides import KINDS, MidSides, complete, cut_finer
 from meshwind.mesh.io.polygons import cut_polygons
 
 CellBlock: TypeAlias = tuple[str, tuple[Ints, Ints]]
@@ -50,16 +51,18 @@ def surface_mesh(
         if len(nodes) and (nodes.min() < 0 or nodes.max() >= len(points)):
             raise ValueError("a cell refers to a vertex that is not in the file")
     told = [*warnings, *_not_read(blocks)]
+    second = [(kind, cells[1].reshape(len(cells[0]), -1)) for kind, cells in blocks if kind in KINDS and len(cells[0])]
+    middle = MidSides.of(second, len(points))
     sides = [table for kind, cells in blocks for table in _sides(kind, cells)]
     surfaces = [(kind, cells) for kind, cells in blocks if _base(kind) in _SURFACES]
     if not sides:
-        cut = [_surface(points, kind, cells) for kind, cells in surfaces]
+        cut = [_surface(points, kind, cells, middle) for kind, cells in surfaces]
         faces = np.concatenate([*(faces for faces, _ in cut), np.empty((0, 3), dtype=np.int64)])
         crossed = sum(count for _, count in cut)
     else:
         shells = [table for kind, cells in surfaces for table in _shells(kind, cells)]
         kept, inside = _outer(_padded(sides), _padded(shells))
-        faces, crossed = _cut(points, kept)
+        faces, crossed = _cut(points, kept, middle)
         told += [f"surface cells inside the solid are left out: {inside}"] if inside else []
     told += [f"polygons that cross themselves are cut by a fan: {crossed}"] if crossed else []
     return FileMesh(points, faces, units, tuple(told))
@@ -79,7 +82,7 @@ def _not_read(blocks: list[CellBlock]) -> list[str]:
         base = _base(kind)
         if base not in known and len(sizes):
             words.append(f"{len(sizes)} of {total} cells are of the kind {kind!r}, which is not read; left out")
-        elif base != kind and base not in _NO_SURFACE and len(sizes):
+        elif base != kind and base not in _NO_SURFACE and kind not in KINDS and len(sizes):
             words.append(f"{len(sizes)} cells of the kind {kind!r} are taken flat between their corners")
     return words
 
@@ -141,13 +144,23 @@ def _outer(sides: Ints, shells: Ints) -> tuple[Ints, int]:
     return rows[kept], int((uses[len(sides) :] > 1).sum())
 
 
-def _cut(points: Floats, rows: Ints) -> tuple[Ints, int]:
+def _cut(points: Floats, rows: Ints, middle: MidSides) -> tuple[Ints, int]:
     """Triangles of polygons in rows that are filled with -1, and how many cross themselves."""
     sizes = (rows >= 0).sum(axis=1)
+    finer = []
+    if middle:
+        for count in (3, 4):
+            of = np.flatnonzero(sizes == count)
+            on = middle.on(rows[of, :count])
+            of, on = of[complete(on)], on[complete(on)]
+            finer.append(cut_finer(rows[of, :count], on))
+            sizes[of] = 0
+        rows = rows[sizes > 0]
+        sizes = sizes[sizes > 0]
     few, many = rows[sizes <= 4], rows[sizes > 4]
     few = np.pad(few, ((0, 0), (0, max(0, 4 - few.shape[1]))), constant_values=-1)[:, :4]
     faces, crossed = cut_polygons(points, sizes[sizes > 4], many[many >= 0])
-    return np.concatenate([_cut_quads(points, few), faces]), crossed
+    return np.concatenate([*finer, _cut_quads(points, few), faces]), crossed
 
 
 def _cut_quads(points: Floats, quads: Ints) -> Ints:
@@ -167,9 +180,11 @@ def _outside(points: Floats, quads: Ints) -> Bools:
     return np.asarray((np.cross(b - a, c - a) * np.cross(c - a, d - a)).sum(axis=1) < 0.0)
 
 
-def _surface(points: Floats, kind: str, cells: tuple[Ints, Ints]) -> tuple[Ints, int]:
+def _surface(points: Floats, kind: str, cells: tuple[Ints, Ints], middle: MidSides) -> tuple[Ints, int]:
     """Triangles of surface cells, and how many polygons cross themselves."""
     base = _base(kind)
+    if middle and base in _CORNERS:
+        return _cut(points, _shells(kind, cells)[0], middle)
     if base == "triangle":
         return _table(kind, cells), 0
     if base in ("quad", "pixel"):
