@@ -1,6 +1,8 @@
 """Text that a user wrote: numbers, fractions, `auto`, TOML files, and names that were misspelt."""
 
+import codecs
 import difflib
+import re
 import tomllib
 from collections.abc import Collection
 from fractions import Fraction
@@ -10,6 +12,7 @@ from typing import Any
 from meshwind.core.errors import BadInputError
 
 AUTO = "auto"
+_UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
 def turns(text: str) -> float | str:
@@ -35,7 +38,10 @@ def count(text: str) -> int | None:
 def read_toml(file: Path, kind: str) -> dict[str, Any]:
     """Read a TOML file; `kind` is what its messages call it.  Raises BadInputError if it cannot be read."""
     try:
-        return tomllib.loads(file.read_text(encoding="utf-8-sig"))
+        data = file.read_bytes()
+        if data.startswith(_UTF_16) or re.search(rb"[ -~]\0|\0[ -~]", data):
+            raise BadInputError(f"the {kind} {file} is text in UTF-16 or UTF-32; save it as UTF-8")
+        return tomllib.loads(re.sub("\r\n?", "\n", data.decode("utf-8-sig")))
     except OSError as error:
         raise BadInputError(f"cannot read the {kind} {file}: {error.strerror or error}; give a TOML file") from error
     except UnicodeDecodeError as error:

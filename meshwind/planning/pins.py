@@ -1,7 +1,5 @@
 """End points that a user gives: fixation pins, from a CSV file."""
 
-import codecs
-import csv
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +7,7 @@ import numpy as np
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.planning.families import Families, families_between
+from meshwind.planning.pin_table import PinTable, read_table
 from meshwind.surface.foot import feet
 from meshwind.surface.grid import parameter_grid
 from meshwind.surface.surface import Surface
@@ -16,7 +15,6 @@ from meshwind.surface.surface import Surface
 PARAMETRIC = ("u0", "v0", "u1", "v1")
 SPATIAL = ("x0", "y0", "z0", "x1", "y1", "z1")
 TURNS = "revolutions"
-_COLUMNS = f"{','.join(PARAMETRIC)} or {','.join(SPATIAL)}, and {TURNS} beside the latter if need be"
 _FARTHEST = 0.05
 """A pin further off the surface than this, over the part's size, is not meant for this part."""
 _SEEDS = (64, 65)
@@ -26,7 +24,8 @@ _SEEDS = (64, 65)
 def read_pins(path: str | Path, surface: Surface, revolutions: float) -> Families:
     r"""Read the end points of paths from a CSV file.
 
-    The first row names the columns, and every other row holds the two pins of a path.  Columns u0, v0, u1, v1 are
+    The first row names the columns, and every other row holds the two pins of a path.  Columns are parted by commas,
+    semicolons, tabs or blanks; a comma that does not part them is a decimal one.  Columns u0, v0, u1, v1 are
     parametric, u in turns and unwrapped, so that its change is the number of revolutions.  Columns x0, y0, z0, x1, y1,
     z1 are points in the mesh's units, which are moved to the nearest points of the surface; their paths turn by about
     what a column revolutions says, negative for the other sense, or else by `revolutions`, once in each sense.
@@ -58,64 +57,39 @@ def read_pins(path: str | Path, surface: Surface, revolutions: float) -> Familie
     >>> mw.read_pins("pins.csv", mw.shapes.cylinder(1.0, 3.0), revolutions=0.5).family
     array([ 1, -1])
     """
-    path = Path(path)
-    names, rows = _table(path)
-    if set(PARAMETRIC) <= set(names):
-        uv = rows[:, [names.index(name) for name in PARAMETRIC]]
+    table = pin_table(path)
+    lines = table.lines
+    if table.has(PARAMETRIC):
+        uv = table.numbers(PARAMETRIC)
         start, end = uv[:, :2], uv[:, 2:]
-    elif set(SPATIAL) <= set(names):
-        xyz = rows[:, [names.index(name) for name in SPATIAL]]
-        turns = rows[:, names.index(TURNS)] if TURNS in names else None
-        start, end = (_on_surface(surface, points, path) for points in (xyz[:, :3], xyz[:, 3:]))
-        start, end = _turned(start, end, turns, revolutions)
     else:
-        raise BadInputError(f"{path.name}: its first row is {','.join(names)!r}; name the columns {_COLUMNS}")
+        xyz = table.numbers(SPATIAL)
+        turns = table.numbers((TURNS,))[:, 0] if TURNS in table.names else None
+        start, end = (_on_surface(surface, points, table) for points in (xyz[:, :3], xyz[:, 3:]))
+        start, end = _turned(start, end, turns, revolutions)
+        lines = np.resize(lines, len(start))  # twice where both senses are wound
     wrong = np.flatnonzero((start[:, 1] < 0) | (start[:, 1] > 1) | (end[:, 1] < 0) | (end[:, 1] > 1))
     if len(wrong):
-        raise BadInputError(f"{path.name}: row {wrong[0] + 2} has v outside [0, 1]; v runs from rim to rim")
+        raise BadInputError(f"{table.file}: row {lines[wrong[0]]} has v outside [0, 1]; v runs from rim to rim")
     same = np.flatnonzero((start == end).all(axis=1))
     if len(same):
-        raise BadInputError(f"{path.name}: row {same[0] + 2} starts and ends in one point; give two different pins")
+        raise BadInputError(f"{table.file}: row {lines[same[0]]} starts and ends in one point; give two different pins")
     return families_between(start, end)
 
 
-def _table(path: Path) -> tuple[list[str], Floats]:
-    """Column names and numbers (rows, columns)."""
-    rows, decimal = _rows(path)
-    if len(rows) < 2:
-        raise BadInputError(f"{path.name}: holds no pins; give a row of column names, then a row per path")
-    names = [cell.strip().lower() for cell in rows[0]]
-    values = np.empty((len(rows) - 1, len(names)))
-    for number, row in enumerate(rows[1:]):
-        try:
-            values[number] = [float(cell.replace(decimal, ".")) for cell in row]
-        except ValueError as error:
-            raise BadInputError(f"{path.name}: row {number + 2} is not {len(names)} numbers; mend it") from error
-    wrong = np.flatnonzero(~np.isfinite(values).all(axis=1))
-    if len(wrong):
-        raise BadInputError(f"{path.name}: row {wrong[0] + 2} holds NaN or infinite values; mend it")
-    return names, values
+def pin_table(path: str | Path) -> PinTable:
+    """The table in a file of pins.  Raises BadInputError if it cannot be read or lacks columns."""
+    return read_table(Path(path), (PARAMETRIC, SPATIAL))
 
 
-def _rows(path: Path) -> tuple[list[list[str]], str]:
-    """Rows of cells, without empty ones, and the decimal sign: a comma is one where it does not separate the cells."""
-    try:
-        content = path.read_bytes()
-        encoding = "utf-16" if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) else "utf-8-sig"
-        lines = content.decode(encoding).splitlines()
-        told = lines[0].strip().lower() if lines else ""
-        if told.startswith("sep=") and len(told) == 5:
-            lines = lines[1:]
-        separator = next((sign for sign in (";", "\t") if lines and sign in lines[0]), ",")
-        rows = [row for row in csv.reader(lines, delimiter=separator) if any(cell.strip() for cell in row)]
-    except FileNotFoundError as error:
-        raise BadInputError(f"{path}: there is no such file; give a CSV file of pins") from error
-    except (OSError, ValueError, csv.Error) as error:
-        raise BadInputError(f"{path}: cannot be read as CSV; give a text file of comma-separated numbers") from error
-    return rows, "." if separator == "," else ","
+def check_pins(path: str | Path) -> None:
+    """Raise BadInputError if a file of pins cannot be used on any surface."""
+    table = pin_table(path)
+    spatial = SPATIAL + (TURNS,) * (TURNS in table.names)
+    table.numbers(PARAMETRIC if table.has(PARAMETRIC) else spatial)
 
 
-def _on_surface(surface: Surface, points: Floats, path: Path) -> Floats:
+def _on_surface(surface: Surface, points: Floats, table: PinTable) -> Floats:
     """The parametric points (p, 2) of the surface that are nearest to points (p, 3)."""
     seeds = parameter_grid(np.arange(_SEEDS[0]) / _SEEDS[0], np.linspace(0.0, 1.0, _SEEDS[1]))
     apart = np.linalg.norm(surface.points(seeds)[None] - points[:, None], axis=2)
@@ -126,7 +100,7 @@ def _on_surface(surface: Surface, points: Floats, path: Path) -> Floats:
     far = np.flatnonzero(off > _FARTHEST * surface.size)
     if len(far):
         raise BadInputError(
-            f"{path.name}: row {far[0] + 2} has a pin {off[far[0]]:.3g} off the part; "
+            f"{table.file}: row {table.lines[far[0]]} has a pin {off[far[0]]:.3g} off the part; "
             "give points on it, in the mesh's coordinates"
         )
     return at

@@ -16,6 +16,7 @@ from meshwind.pictures.page import Page
 from meshwind.pictures.revolutions_picture import draw_revolutions
 from meshwind.pictures.scenes import Drawing
 from meshwind.pictures.subject import subject_in
+from meshwind.planning.pins import check_pins
 from meshwind.results import folder
 from meshwind.results.config_file import write_config
 from meshwind.results.report import RunFacts, report, write_report
@@ -274,6 +275,8 @@ def wind(  # noqa: PLR0913
     clock = Clock(progress)
     target = None if out is None else _folder(out)
     check_file(mesh)
+    if pinned is not None:
+        check_pins(pinned)  # before all the work
     if target is not None:
         folder.prepare(target, overwrite)
         if render:
