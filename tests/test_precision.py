@@ -49,8 +49,8 @@ def test_a_part_that_single_precision_does_not_resolve_is_refused(suffix: str, t
     with pytest.raises(BadInputError) as caught:
         read(path)
     assert str(caught.value) == (
-        f"part{suffix}: lies 5.4e+06 from the origin, where single precision resolves 0.5 of a part 2.4 long; move the "
-        "part to the origin and export it again, or in double precision (OBJ, PLY, VTU)"
+        f"part{suffix}: lies 5.4e+06 from the origin, where single precision resolves steps of 0.5 of a part 2.4 long; "
+        "move the part to the origin and export it again, or in double precision (OBJ, PLY, VTU)"
     )
 
 
@@ -60,7 +60,7 @@ def test_a_part_that_it_resolves_coarsely_is_read_with_a_warning(suffix: str, tm
     path = written(tmp_path / f"part{suffix}", points + FAR, faces)
     (warning,) = read(path).warnings
     assert warning.startswith(
-        "lies 5.4e+06 from the origin, where single precision resolves 0.5 of a part 1.2e+02 long"
+        "lies 5.4e+06 from the origin, where single precision resolves steps of 0.5 of a part 1.2e+02 long"
     )
     assert inspect(path).warnings[0] == warning
 
@@ -86,12 +86,12 @@ def test_texts_of_few_digits_are_told_like_single_precision(number: str, step: f
     lines = ["v " + " ".join(number % x for x in point) for point in points * 20.0 + FAR]
     path.write_text("\n".join(lines + [f"f {a} {b} {c}" for a, b, c in faces + 1]))
     (warning,) = load(path).warnings
-    assert f"its digits resolve {step:.2g} of a part 2.4e+03 long" in warning
+    assert f"its digits resolve steps of {step:.2g} of a part 2.4e+03 long" in warning
     assert warning.endswith("export it again, or with more digits")
     small = ["v " + " ".join(number % x for x in point) for point in points + FAR]
     path.write_text("\n".join(small + [f"f {a} {b} {c}" for a, b, c in faces + 1]))
     if step / LENGTH > 0.01:
-        with pytest.raises(BadInputError, match="its digits resolve 10 of a part"):
+        with pytest.raises(BadInputError, match="its digits resolve steps of 10 of a part"):
             load(path)
 
 

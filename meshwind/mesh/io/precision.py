@@ -13,7 +13,7 @@ _COARSE = 2e-5
 fitted surface by more than the default tolerance: by about 0.6 of a step, as measured on a barrel."""
 _USELESS = 1e-2
 """Steps from which on the surface is off by half a per cent of the part and more."""
-_FAR = 100.0
+_FAR = 10.0
 """Least distance from the origin, over the extent, at which a lack of digits is looked for."""
 _DIGITS = 7
 """Significant decimal digits up to which a text is taken for rounded, as by "%g" or of single precision; one that has
@@ -27,12 +27,12 @@ class _Steps:
     """The step between possible coordinates, 0 if none was found, and the words for what limits them."""
 
     size: float
-    limit: str = "single precision resolves"
+    limit: str = "single precision resolves steps of"
     instead: str = "in double precision (OBJ, PLY, VTU)"
 
 
-def checked_precision(held: FileMesh, name: str) -> FileMesh:
-    """The mesh, with a warning if its coordinates are coarse; raises BadInputError if they hold no shape."""
+def resolved(name: str, held: FileMesh) -> FileMesh:
+    """The surface, with a warning if its coordinates are coarse; raises BadInputError if they hold no shape."""
     points = _used(held)
     if len(points) == 0 or not np.isfinite(points).all():
         return held  # refused by the repair
@@ -93,7 +93,7 @@ def _decimal(points: Floats, extent: float) -> _Steps:
             return _Steps(0.0)  # this axis has more digits, and so the file has
         if step > _COARSE * extent and _limits(axis, step):
             found.append(step)
-    return _Steps(max(found), "its digits resolve", "with more digits")
+    return _Steps(max(found), "its digits resolve steps of", "with more digits")
 
 
 def _multiples(values: Floats, step: float, size: float) -> bool:

@@ -117,7 +117,7 @@ def read(mesh: str | PathLike[str] | Any, component: int = 0, units: str | None 
 def load(mesh: str | PathLike[str] | Any) -> FileMesh:
     """The surface in a file or in memory without repair; it has at least a triangle.  Raises BadInputError."""
     if not isinstance(mesh, str | PathLike):
-        return surface_in_memory(mesh)
+        return resolved("mesh", surface_in_memory(mesh))
     file = Path(mesh)
     reader = _reader(file)
     try:
