@@ -3,67 +3,112 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from meshwind.core.cast import Floats
+from meshwind.core.cast import Floats, Ints
+from meshwind.mesh.io.gltf_document import MESHOPT, Document, table, whole
 
-_TYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
-_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
-_MAX_NUMBERS = 300_000_000
+_TYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4", 5130: "<f8"}
+"""Component types; the last one is that of KHR_accessor_float64."""
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
+_MAX_ZEROS = 30_000_000
+"""Numbers of an accessor without a buffer, which its file may announce at will."""
+_MAX_NUMBERS = 1_000_000_000
+"""Numbers of all accessors together: those of one buffer may be read again and again."""
 
 
 class Accessors:
-    """The accessors of a file with the contents of its buffers."""
+    """The accessors of a file."""
 
-    def __init__(self, scene: dict[str, Any], buffers: list[bytes]) -> None:
-        self.scene, self.buffers = scene, buffers
+    def __init__(self, document: Document) -> None:
+        self.document, self._read = document, 0
+        self._values: dict[int, Floats] = {}
 
-    def values(self, number: int) -> Floats:
-        """Numbers (count, width) of an accessor: normalised where it says so, zeros without data, sparse ones set.
+    def values(self, number: object, kind: str) -> Floats:
+        """Numbers (count, width) of an accessor of a kind such as "VEC3", normalised where it says so (section 3.11).
 
-        Raises ValueError if its buffer does not hold them.
+        Raises ValueError if it is of another kind, or its buffer does not hold them.
         """
-        accessor = self.scene["accessors"][number]
-        kind, count = np.dtype(_TYPES[accessor["componentType"]]), int(accessor["count"])
-        width = _WIDTHS[accessor["type"]]
-        if count < 0 or count * width > _MAX_NUMBERS:
-            raise ValueError("an accessor has too many numbers")
-        if "bufferView" in accessor:
-            raw = self._table(accessor["bufferView"], accessor.get("byteOffset", 0), kind, (count, width))
-        else:
-            raw = np.zeros((count, width), dtype=kind)
-        sparse = accessor.get("sparse")
-        if sparse is not None:
-            raw = self._with_sparse(raw, sparse)
-        values = raw.astype(np.float64)
-        if accessor.get("normalized") and kind.kind in "iu":
-            values = np.maximum(values / np.iinfo(kind).max, -1.0)  # section 3.11
-        return values
+        at = whole(number, "an accessor's number")
+        accessor = self.document.entry("accessors", at)
+        if accessor.get("type") != kind:
+            raise ValueError(f"accessor {at} is {str(accessor.get('type'))[:20]}, where {kind} is needed")
+        if at not in self._values:
+            raw = self._raw(at)
+            values = raw.astype(np.float64)
+            if accessor.get("normalized") is True and raw.dtype.kind in "iu":
+                values = np.maximum(values / np.iinfo(raw.dtype).max, -1.0)
+            self._values[at] = values
+        return self._values[at]
 
-    def _with_sparse(self, raw: Any, sparse: dict[str, Any]) -> Any:
-        """The numbers with some of them replaced."""
-        count, at, new = int(sparse["count"]), sparse["indices"], sparse["values"]
-        if not 0 <= count <= len(raw):
-            raise ValueError("a sparse accessor replaces more than there is")
-        kind = np.dtype(_TYPES[at["componentType"]])
-        rows = self._table(at["bufferView"], at.get("byteOffset", 0), kind, (count, 1))[:, 0].astype(np.int64)
-        if count and rows.max() >= len(raw):
-            raise ValueError("a sparse accessor replaces what is not there")
+    def indices(self, number: object) -> Ints:
+        """Whole numbers of an accessor of indices or joints, one row after the other."""
+        at = whole(number, "an accessor's number")
+        raw = self._raw(at)
+        if raw.dtype.kind not in "iu":
+            raise ValueError(f"accessor {at} holds decimal numbers, where indices are needed")
+        return raw.astype(np.int64).ravel()
+
+    def has_data(self, number: object) -> bool:
+        """Whether an accessor's numbers are in the file, rather than left to an extension."""
+        accessor = self.document.entry("accessors", number)
+        return "bufferView" in accessor or "sparse" in accessor
+
+    def _raw(self, number: int) -> NDArray[Any]:
+        """Numbers as they are stored: zeros without a buffer, and sparse ones replaced (section 3.6.2.3)."""
+        accessor = self.document.entry("accessors", number)
+        kind, width = _kind(accessor), _WIDTHS.get(str(accessor.get("type")), 0)
+        count = whole(accessor.get("count"), f"the count of accessor {number}")
+        if width == 0:
+            raise ValueError(f"the type of accessor {number} is {str(accessor.get('type'))[:20]}")
+        if "bufferView" in accessor:
+            raw = self._rows(accessor, kind, (count, width))
+        elif count * width <= _MAX_ZEROS:
+            raw = np.zeros((count, width), dtype=kind)
+        else:
+            raise ValueError(f"accessor {number} announces {count * width} numbers that are not in the file")
+        self._read += raw.size
+        if self._read > _MAX_NUMBERS:
+            raise ValueError(f"its accessors have more than {_MAX_NUMBERS} numbers together")
+        if "sparse" not in accessor:
+            return raw
+        sparse = table(accessor["sparse"], "a sparse accessor")
+        places, new = table(sparse.get("indices"), "its indices"), table(sparse.get("values"), "its values")
+        replaced = whole(sparse.get("count"), "the count of a sparse accessor")
+        rows = self._rows(places, _kind(places), (replaced, 1))[:, 0].astype(np.int64)
+        if replaced and (rows.min() < 0 or rows.max() >= count):
+            raise ValueError(f"accessor {number} replaces number {rows.max()} of {count}")
         raw = raw.copy()
-        raw[rows] = self._table(new["bufferView"], new.get("byteOffset", 0), raw.dtype, (count, raw.shape[1]))
+        raw[rows] = self._rows(new, kind, (replaced, width))
         return raw
 
-    def _table(self, view: int, offset: int, kind: Any, shape: tuple[int, int]) -> Any:
-        """Numbers of a view of a buffer, whose rows may lie apart (byteStride)."""
-        held = self.scene["bufferViews"][view]
-        buffer = self.buffers[held["buffer"]]
-        start, size = int(held.get("byteOffset", 0)), int(held["byteLength"])
+    def _rows(self, held: dict[str, Any], kind: np.dtype[Any], shape: tuple[int, int]) -> NDArray[Any]:
+        """Numbers in a view of a buffer, whose rows may lie apart (byteStride)."""
+        view = self.document.entry("bufferViews", held.get("bufferView"))
+        for extension in MESHOPT:
+            if extension in self.document.extensions(view) and not self.document.has_content(view.get("buffer")):
+                self.document.compressed(extension)
+        buffer = self.document.buffer(view.get("buffer"))
+        offset = whole(held.get("byteOffset", 0), "an offset")
+        start, size = whole(view.get("byteOffset", 0), "an offset"), whole(view.get("byteLength"), "a view's length")
         row = kind.itemsize * shape[1]
-        stride = int(held.get("byteStride", 0)) or row
-        end = int(offset) + (shape[0] - 1) * stride + row if shape[0] else 0
-        if min(start, size, offset) < 0 or stride < row or start + size > len(buffer) or end > size:
-            raise ValueError("an accessor reaches beyond its buffer")
+        stride = whole(view.get("byteStride", row), "a stride") or row
+        if stride < row:
+            raise ValueError(f"a view's rows are {stride} bytes apart, and {row} bytes long")
+        end = offset + (shape[0] - 1) * stride + row if shape[0] else 0
+        if end > size:
+            raise ValueError(f"an accessor needs {end} bytes of a view of {size}")
+        if start + size > len(buffer):
+            raise ValueError(f"a view reaches to byte {start + size} of a buffer of {len(buffer)}")
         if shape[0] == 0:
             return np.empty(shape, dtype=kind)
         part = np.frombuffer(buffer, dtype=np.uint8, count=end - offset, offset=start + offset)
         rows = np.lib.stride_tricks.as_strided(part, (shape[0], row), (stride, 1))
         return np.ascontiguousarray(rows).view(kind).reshape(shape)
+
+
+def _kind(held: dict[str, Any]) -> np.dtype[Any]:
+    code = held.get("componentType")
+    if code not in _TYPES:
+        raise ValueError(f"a component type is {str(code)[:20]}, which glTF does not know")
+    return np.dtype(_TYPES[code])
