@@ -1,308 +1,175 @@
 """Reading of Abaqus and CalculiX decks (INP): nodes, elements, parts and their instances.
 
-No reader at hand takes parts with numbers of their own, moved instances and nodes in cylindrical coordinates.
+No reader at hand takes parts with numbers of their own, moved instances and nodes in cylindrical coordinates.  The
+rules are those of the Abaqus documentation ("Input Syntax Rules", "Node Definition", "Element Definition", "Assembly
+Definition"), and of CalculiX where it allows more.
 """
 
-import re
-from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass, field
-from itertools import chain
+import difflib
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.io.cells_to_triangles import CellBlock, surface_mesh
-from meshwind.mesh.io.deck_elements import cell_kind, node_count
+from meshwind.mesh.io.deck_blocks import NOT_READ, READ, Block, blocks
+from meshwind.mesh.io.deck_elements import SECTION, cell_kind, cells_of
+from meshwind.mesh.io.deck_generation import Generation
+from meshwind.mesh.io.deck_numbers import first_ints_of, floats_of
+from meshwind.mesh.io.deck_part import Numbered, Part
+from meshwind.mesh.io.deck_places import STILL, Place, cartesian, instance_place, local_system
+from meshwind.mesh.io.deck_words import words_on_elements, words_on_parts
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.text import own_unit, text_of
 
-_MAKING = ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "IMPORT", "SUBSTRUCTURE GENERATE")
-"""Keywords that make nodes or elements, and are not read."""
-
-
-@dataclass(frozen=True)
-class _Block:
-    """A keyword with its parameters and its lines of data; line: its number."""
-
-    key: str
-    parameters: dict[str, str]
-    line: int
-    data: list[bytes] = field(default_factory=list)
-
-
-@dataclass
-class _Part:
-    """Nodes and cells with numbers of their own."""
-
-    name: str
-    ids: list[Ints] = field(default_factory=list)
-    points: list[Floats] = field(default_factory=list)
-    cells: list[tuple[str, Ints]] = field(default_factory=list)
-
-    def numbered(self, file: str) -> tuple[Floats, list[tuple[str, Ints]]]:
-        """Positions (n, 3), and cells (c, nodes) of their rows; of a node that is defined twice the last one counts."""
-        if not self.cells:
-            return np.empty((0, 3)), []
-        ids = np.concatenate(self.ids) if self.ids else np.empty(0, dtype=np.int64)
-        points = np.concatenate(self.points) if self.points else np.empty((0, 3))
-        known, last = np.unique(ids[::-1], return_index=True)
-        points = points[::-1][last]
-        tables = []
-        for kind, nodes in self.cells:
-            rows = np.searchsorted(known, nodes)
-            found = rows < len(known)
-            found[found] = known[rows[found]] == nodes[found]
-            if not found.all():
-                missing = int(nodes[~found].flat[0])
-                raise BadInputError(f"{file}: an element refers to node {missing}, which is not defined{self._where()}")
-            tables.append((kind, rows))
-        return points, tables
-
-    def _where(self) -> str:
-        return f" in part {self.name}; export the deck again" if self.name else "; export the deck again"
+_ENDS = ("END PART", "END INSTANCE", "END ASSEMBLY", "ASSEMBLY")
+_ANALYTICAL = ("REVOLUTION", "CYLINDER", "SEGMENTS")
+"""Types of *SURFACE that are given by formulas."""
+_SIMILAR = 0.87
+"""Ratio from which a keyword is taken for a misspelt one."""
+_MOST = 100_000_000
+"""Largest number of nodes of all cells that instances may make of a smaller file."""
 
 
 @dataclass(frozen=True)
 class _Instance:
-    """A use of a part: what it adds to it, and the rotation (3, 3) and shift (3,) of its points."""
+    """A use of a part: what it adds to it, and where it is."""
 
+    block: Block
     part: str
-    own: _Part
-    rotation: Floats
-    shift: Floats
+    own: Part
+    place: Place
 
 
 class _Deck:
     """What has been read of a deck."""
 
     def __init__(self, file: str) -> None:
-        self.file, self.loose = file, _Part("")
-        self.parts: dict[str, _Part] = {}
+        self.file, self.loose = file, Part()
+        self.parts: dict[str, Part] = {}
         self.instances: list[_Instance] = []
-        self.unknown: Counter[str] = Counter()
-        self.known = 0
-        self.system: tuple[Floats, Floats] | None = None
+        self.words: list[str] = []
+        self._into, self._system, self._outer = self.loose, STILL, STILL
+        self._generation = Generation()
 
-    def take(self, blocks: Iterator[_Block]) -> None:
-        """Read all keywords."""
-        into, instance = self.loose, None
-        for block in blocks:
-            key, given = block.key, block.parameters
-            if key == "INCLUDE" or (key in ("NODE", "ELEMENT") and "INPUT" in given):
-                raise BadInputError(
-                    f"{self.file}: *{key} in line {block.line} includes another file, which is not read; "
-                    "join them into one"
-                )
-            if key in _MAKING:
-                raise BadInputError(
-                    f"{self.file}: *{key} in line {block.line} is not read; "
-                    "write the deck with all nodes and elements listed"
-                )
-            if key == "PART":
-                into = self.parts.setdefault(_name(given), _Part(given.get("NAME", "")))
-                self.system = None
-            elif key == "INSTANCE":
-                instance = self._instance(block)
-                into = instance.own
-                self.system = None
-            elif key in ("END PART", "END INSTANCE", "END ASSEMBLY"):
-                self.instances += [] if instance is None or key != "END INSTANCE" else [instance]
-                into, instance, self.system = self.loose, None if key == "END INSTANCE" else instance, None
-            elif key == "SYSTEM":
-                self.system = _system(self._numbers(block))
-            elif key == "NODE":
-                self._nodes(block, into)
-            elif key == "ELEMENT":
-                self._elements(block, into)
+    def take(self, block: Block) -> None:
+        """Read a keyword."""
+        key = block.key
+        if key == "INCLUDE" or (key in READ and block.value("INPUT") is not None):
+            raise block.refusal("includes another file, which is not read; join them into one")
+        if key in NOT_READ or key.startswith("IMPORT"):
+            raise block.refusal("is not read; write the deck with all nodes and elements listed")
+        if key in ("PART", "INSTANCE", *_ENDS):
+            self._enter(block)
+        elif key == "SYSTEM":
+            self._system = local_system(block)
+        elif key == "NODE":
+            self._nodes(block)
+        elif key == "ELEMENT":
+            self._elements(block)
+        elif key == "NGEN":
+            self._generation.nodes(block, self._into, self._system)
+        elif key == "ELGEN":
+            self._generation.elements(block, self._into)
+        else:
+            self._other(block)
 
-    def _numbers(self, block: _Block) -> list[list[float]]:
-        """Numbers of each line; a field without one is 0."""
-        rows = []
-        for line in block.data:
-            try:
-                rows.append([float(word) if word.strip() else 0.0 for word in line.rstrip(b", \t").split(b",")])
-            except ValueError:
-                try:
-                    fixed = re.sub(rb"(?i)(\d\.?)d([+-]?\d)", rb"\1e\2", line).rstrip(b", \t").split(b",")
-                    rows.append([float(word) if word.strip() else 0.0 for word in fixed])
-                except ValueError:
-                    text = line.decode("latin-1").strip()[:40]
-                    raise BadInputError(
-                        f"{self.file}: {text!r} below *{block.key} in line {block.line} is not all numbers; mend it"
-                    ) from None
-        return rows
+    def _enter(self, block: Block) -> None:
+        """Begin or end a part or an instance; *SYSTEM counts within it only."""
+        if self._into is self.loose:
+            self._outer = self._system
+        self._into, self._system = Part(block.value("NAME") or ""), STILL
+        if block.key == "PART":
+            name = block.name()
+            if name in self.parts:
+                raise block.refusal(f"is the second of the name {name[:40]!r}; give each part its own")
+            self.parts[name] = self._into
+        elif block.key == "INSTANCE":
+            if block.value("PART") is None:
+                raise block.refusal("is of an earlier analysis, which is not read; export the deck with all its parts")
+            self.instances.append(_Instance(block, block.name("PART"), self._into, instance_place(block)))
+        else:
+            self._into, self._system = self.loose, self._outer
 
-    def _nodes(self, block: _Block, into: _Part) -> None:
-        rows = [(row + [0.0, 0.0, 0.0])[:4] for row in self._numbers(block)]
-        if not rows:
-            return
-        table = np.array(rows, dtype=np.float64)
-        if not (np.isfinite(table[:, 0]).all() and (np.abs(table[:, 0]) < 2**53).all()):
-            raise ValueError("a node's number is no number")
-        system = block.parameters.get("SYSTEM", "R").upper()[:1]
-        if system not in "RCS":
-            raise BadInputError(f"{self.file}: *NODE in line {block.line} has an unknown SYSTEM; give R, C or S")
-        points = _cartesian(table[:, 1:], system)
-        if self.system is not None:
-            points = points @ self.system[0].T + self.system[1]
-        into.ids.append(table[:, 0].astype(np.int64))
-        into.points.append(points)
+    def _nodes(self, block: Block) -> None:
+        table = floats_of(block).table(4)
+        ids = table[:, 0]
+        if not ((ids == np.floor(ids)) & (np.abs(ids) < 2**53)).all():
+            raise block.refusal("has a node whose number is not whole; mend it")
+        self._into.ids.append(ids.astype(np.int64))
+        self._into.points.append(self._system.moved(cartesian(table[:, 1:], block.value("SYSTEM") or "", block)))
 
-    def _elements(self, block: _Block, into: _Part) -> None:
-        name = block.parameters.get("TYPE", "").upper()
+    def _elements(self, block: Block) -> None:
+        name = block.name("TYPE").upper()
         kind = cell_kind(name)
-        if kind == "":
-            return
-        if kind is None:
-            self.unknown[name or "without a type"] += len(block.data)
-            return
-        words = [word for line in block.data for word in line.split(b",") if word.strip()]
-        width = 1 + node_count(kind)
-        if len(words) % width:
-            raise BadInputError(
-                f"{self.file}: *ELEMENT, TYPE={name} in line {block.line} needs {width - 1} nodes an element, and its "
-                f"{len(words)} numbers are no whole number of them; export the deck again"
-            )
-        try:
-            numbers = np.fromiter(map(int, words), dtype=np.int64, count=len(words)).reshape(-1, width)
-        except ValueError:
-            raise BadInputError(
-                f"{self.file}: *ELEMENT in line {block.line} has nodes that are no whole numbers; mend it"
-            ) from None
-        self.known += len(numbers)
-        into.cells.append((kind, numbers[:, 1:]))
+        if kind and kind != SECTION:
+            self._into.cells += cells_of(block, kind)
+        else:
+            self._into.others.append((name, first_ints_of(block)))
 
-    def _instance(self, block: _Block) -> _Instance:
-        rows = self._numbers(block)
-        shift = np.array((rows[0] + [0.0, 0.0, 0.0])[:3]) if rows else np.zeros(3)
-        rotation = np.eye(3)
-        if len(rows) > 1:
-            if len(rows[1]) != 7:
-                raise BadInputError(
-                    f"{self.file}: the rotation of *INSTANCE in line {block.line} is not seven numbers; mend it"
-                )
-            a, b = np.array(rows[1][:3]), np.array(rows[1][3:6])
-            rotation = _about(b - a, rows[1][6])
-            shift = rotation @ (shift - a) + a  # first moved, then turned
-        return _Instance(block.parameters.get("PART", "").upper(), _Part(_name(block.parameters)), rotation, shift)
+    def _other(self, block: Block) -> None:
+        """Words on keywords that are not read but may change the surface."""
+        key, kind = block.key, (block.value("TYPE") or "").strip().upper()
+        if key == "RIGID SURFACE" or (key == "SURFACE" and kind in _ANALYTICAL):
+            self.words.append(f"*{key} in line {block.line} is a surface given by formulas; left out")
+        elif key == "IMPERFECTION":
+            self.words.append(f"*{key} in line {block.line} moves nodes, which is not read; they are as listed")
+        elif difflib.get_close_matches(key, READ, 1, _SIMILAR):
+            self.words.append(f"*{key[:30]} in line {block.line} is not a keyword that is known; left out")
 
     def surface(self, units: str) -> FileMesh:
         """The surface of all instances, and of what belongs to no part; without instances, of all parts."""
-        pieces = [self.loose.numbered(self.file)]
-        for instance in self.instances:
-            if instance.part not in self.parts:
-                raise BadInputError(f"{self.file}: an instance is of part {instance.part!r}, which is not in the deck")
-            for part in (self.parts[instance.part], instance.own):
-                points, tables = part.numbered(self.file)
-                pieces.append((points @ instance.rotation.T + instance.shift, tables))
-        used = {instance.part for instance in self.instances}
-        left = [] if used else list(self.parts.values())
-        pieces += [part.numbered(self.file) for part in left]
-        starts = np.cumsum([0] + [len(points) for points, _ in pieces])
-        blocks: list[CellBlock] = [
+        names = [self._name_of(instance) for instance in self.instances]
+        alone = [self.loose, *([] if names else self.parts.values())]
+        placed = [(part, STILL) for part in alone] + self._placed(names)
+        pieces = self._pieces(placed)
+        told = [*self.words, *words_on_elements([part for part, _ in placed], self.file)]
+        told += words_on_parts(self.parts, set(names))
+        starts = np.cumsum([0] + [len(piece.points) for piece in pieces])
+        cells: list[CellBlock] = [
             (kind, (np.full(len(rows), rows.shape[1], dtype=np.int64), (rows + start).ravel()))
-            for (_, tables), start in zip(pieces, starts[:-1], strict=True)
-            for kind, rows in tables
+            for piece, start in zip(pieces, starts[:-1], strict=True)
+            for kind, rows in piece.cells
         ]
-        return surface_mesh(np.concatenate([points for points, _ in pieces]), blocks, units, self._warnings(used))
+        return surface_mesh(np.concatenate([piece.points for piece in pieces]), cells, units, tuple(told))
 
-    def _warnings(self, used: set[str]) -> tuple[str, ...]:
-        words = []
-        if self.unknown:
-            names = ", ".join(list(self.unknown)[:5])
-            count = self.unknown.total()
-            if not self.known:
-                raise BadInputError(f"{self.file}: its {count} elements are of types that are not read ({names[:80]})"
-                                    "; export shells or solids")  # fmt: skip
-            words.append(f"{count} elements of types that are not known ({names[:80]}) are left out, of "
-                         f"{count + self.known}")  # fmt: skip
-        idle = [part.name for name, part in self.parts.items() if name not in used and part.cells] if used else []
-        if idle:
-            words.append(f"parts that no instance uses are left out: {', '.join(idle)[:80]}")
-        return tuple(words)
+    def _name_of(self, instance: _Instance) -> str:
+        """Name of an instance's part; one in quotation marks may differ in capitals only."""
+        name = instance.part
+        alike = [other for other in self.parts if other.upper() == name.upper()]
+        if name in self.parts or len(alike) == 1:
+            return name if name in self.parts else alike[0]
+        raise instance.block.refusal(f"is of part {name[:40]!r}, which is not in the deck; export the deck again")
+
+    def _placed(self, names: list[str]) -> list[tuple[Part, Place]]:
+        """The part of each instance, with what the instance adds to it, and its place."""
+        placed = []
+        for name, instance in zip(names, self.instances, strict=True):
+            part, own = self.parts[name], instance.own
+            placed.append((part.joined(own) if own.ids or own.cells or own.others else part, instance.place))
+        return placed
+
+    def _pieces(self, placed: list[tuple[Part, Place]]) -> list[Numbered]:
+        """Nodes and cells of each part in its place."""
+        held: dict[int, Numbered] = {}
+        pieces, size = [], 0
+        for part, place in placed:
+            if id(part) not in held:
+                held[id(part)] = part.numbered(self.file)
+            piece = held[id(part)]
+            size += piece.points.size + sum(rows.size for _, rows in piece.cells)
+            if size > _MOST and self.instances:
+                raise BadInputError(f"{self.file}: its {len(self.instances)} instances make too many elements; "
+                                    "export one of them alone")  # fmt: skip
+            pieces.append(Numbered(place.moved(piece.points), piece.cells))
+        return pieces
 
 
 def read_deck(path: Path) -> FileMesh:
     """Surface of a deck."""
     content = text_of(path)
     deck = _Deck(path.name)
-    deck.take(_blocks(content))
+    for block in blocks(content, path.name):
+        deck.take(block)
     return deck.surface(own_unit(content))
-
-
-def _blocks(content: bytes) -> Iterator[_Block]:
-    """The keywords of a deck with their data, without comments and empty lines."""
-    block: _Block | None = None
-    keyword, start = b"", 0
-    for number, raw in enumerate(content.split(b"\n"), 1):
-        line = raw.strip()
-        if not line or line.startswith(b"**"):
-            continue
-        if keyword:
-            keyword += line
-        elif line.startswith(b"*"):
-            keyword, start = line, number
-        else:
-            if block is not None:
-                block.data.append(line)
-            continue
-        if keyword.endswith(b","):
-            continue  # the keyword's line goes on
-        if block is not None:
-            yield block
-        block, keyword = _keyword(keyword.decode("latin-1"), start), b""
-    if block is not None:
-        yield block
-
-
-def _keyword(line: str, number: int) -> _Block:
-    words = [word.strip() for word in line.lstrip("* \t").split(",")]
-    pairs = (word.partition("=") for word in words[1:] if word)
-    parameters = {name.strip().upper(): value.strip().strip("\"'") for name, _, value in pairs}
-    return _Block(" ".join(words[0].upper().split()), parameters, number)
-
-
-def _name(parameters: dict[str, str]) -> str:
-    return parameters.get("NAME", "").upper()
-
-
-def _cartesian(given: Floats, system: str) -> Floats:
-    """Positions from cylindrical (r, theta, z) or spherical (r, theta, phi) coordinates, angles in degrees."""
-    if system == "R":
-        return given
-    r, theta = given[:, 0], np.radians(given[:, 1])
-    if system == "C":
-        return np.column_stack([r * np.cos(theta), r * np.sin(theta), given[:, 2]])
-    phi = np.radians(given[:, 2])  # from the plane of x and y
-    return np.column_stack([r * np.cos(theta) * np.cos(phi), r * np.sin(theta) * np.cos(phi), r * np.sin(phi)])
-
-
-def _system(rows: list[list[float]]) -> tuple[Floats, Floats] | None:
-    """Axes (3, 3), in columns, and origin of *SYSTEM: points a, b on the x axis, and c in the plane of x and y."""
-    given = list(chain.from_iterable(rows))
-    if not given:
-        return None
-    a, b, c = (np.array((given + [0.0] * 9)[k : k + 3]) for k in (0, 3, 6))
-    if len(given) <= 3:
-        return np.eye(3), a
-    x = b - a
-    across = c - a if len(given) > 6 else np.array([-x[1], x[0], 0.0])
-    z = np.cross(x, across)
-    if not (np.linalg.norm(x) > 0.0 and np.linalg.norm(z) > 0.0):
-        raise ValueError("the points of *SYSTEM do not give axes")
-    x, z = x / np.linalg.norm(x), z / np.linalg.norm(z)
-    return np.column_stack([x, np.cross(z, x), z]), a
-
-
-def _about(axis: Floats, degrees: float) -> Floats:
-    """Rotation (3, 3) about an axis through the origin."""
-    size = float(np.linalg.norm(axis))
-    if not size > 0.0:
-        raise ValueError("the axis of an instance's rotation has no length")
-    x, y, z = axis / size
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    angle = np.radians(degrees)
-    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross))
