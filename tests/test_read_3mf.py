@@ -242,8 +242,11 @@ def test_prefixes_and_foreign_elements(tmp_path: Path) -> None:
     text = model(thing(), item()).replace("<", "<c:").replace("<c:/", "</c:").replace('xmlns="', 'xmlns:c="')
     assert is_barrel(load(saved(tmp_path, text)))
     foreign = mesh(3 * POINTS).replace("<", "<b:").replace("<b:/", "</b:")
-    held = load(saved(tmp_path, model(thing(1, foreign + mesh()), item() + '<b:item objectid="1"/>')))
-    assert is_barrel(held) and held.warnings == ("objects of the build that hold a 'mesh', which is not read: 1",)
+    hull = '<b:hull><vertex x="900" y="9" z="9"/><triangle v1="0" v2="1" v3="2"/></b:hull><vertices>'
+    plain = mesh().replace("<vertices>", hull)
+    held = load(saved(tmp_path, model(thing(1, foreign + plain), item() + '<b:item objectid="1"/>')))
+    words = [f"objects of the build that hold a '{name}', which is not read: 1" for name in ("hull", "mesh")]
+    assert is_barrel(held) and held.warnings == tuple(words)
 
 
 @pytest.mark.parametrize(("objects", "build", "words"), [

@@ -384,6 +384,8 @@ def test_skins_pose_the_mesh_and_its_node_does_not(kind: str, bound: bool, tmp_p
     share = np.clip((POINTS[:, 2] - 0.02) / 0.02, 0, 1)
     joints[:, 1] = 1
     shares[:, 0], shares[:, 1] = most - np.round(share * most), np.round(share * most)
+    if kind == "f":
+        shares *= 0.98  # as exporters that cut off small weights leave them
     scene.primitive["attributes"] |= {
         "JOINTS_0": scene.accessor(joints, "B", "VEC4"),
         "WEIGHTS_0": scene.accessor(shares, kind, "VEC4", normalized=most > 1),
@@ -402,7 +404,7 @@ def test_skins_pose_the_mesh_and_its_node_does_not(kind: str, bound: bool, tmp_p
         columns[1, 12:15] = back
         scene.tree["skins"][0]["inverseBindMatrices"] = scene.accessor(columns, "f", "MAT4")
     lower, upper = 2 * POINTS + [0, 0, 1], 2 * (POINTS + back) + [0.5, 0, 1]
-    weight = (shares[:, 1] / most).astype("<f4").astype(float)[:, None]
+    weight = (shares[:, 1] / shares.sum(axis=1))[:, None]
     held = load(scene.save(tmp_path))
     assert np.abs(held.vertices - (1 - weight) * lower - weight * upper).max() < 1e-7 and held.warnings == ()
     scene.tree["skins"][0]["joints"] = [1]

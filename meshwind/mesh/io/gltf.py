@@ -1,7 +1,7 @@
 """Reading of GLB and GLTF files by the glTF 2.0 specification; its section numbers are cited.
 
-trimesh (5.2) reads integers that are normalised as whole numbers and sparse ones as zeros, leaves out instances, and
-does not heed required extensions; VTK (9.7) reads beyond the end of a buffer.
+trimesh (5.2) takes normalised integers as they are stored and sparse values for zeros, leaves out instances, and does not
+heed required extensions; VTK (9.7) reads neither quantised nor sparse positions, and reads beyond the end of a buffer.
 """
 
 from collections import Counter
@@ -98,7 +98,7 @@ class _Scene:
         if hidden:
             words.append(f"nodes with a mesh that are hidden (KHR_node_visibility) are left out: {len(hidden)}")
         meshes = self.document.entries("meshes")
-        placed = {self.document.entries("nodes")[k]["mesh"] for k in with_mesh} | self.used
+        placed = {whole(self.document.entry("nodes", k)["mesh"], "a mesh's number") for k in with_mesh} | self.used
         if len(placed) < len(meshes):
             words.append(f"meshes that no node places are left out: {len(meshes) - len(placed)}")
         if self.without_positions:
@@ -117,6 +117,8 @@ class _Scene:
     def _add(self, node: dict[str, Any], matrix: Floats) -> None:
         """Add a node's mesh, once for each of its instances."""
         shapes = self._mesh(node)
+        if not shapes:
+            return
         if "skin" in node:  # "the transform of the skinned mesh node MUST be ignored", section 3.7.3.2
             joints = self.nodes.joints(self.document.entry("skins", node["skin"]))
             self._keep([shape.posed(joints) for shape in shapes])

@@ -109,6 +109,6 @@ class Accessors:
 
 def _kind(held: dict[str, Any]) -> np.dtype[Any]:
     code = held.get("componentType")
-    if code not in _TYPES:
+    if not isinstance(code, int | float) or code not in _TYPES:
         raise ValueError(f"a component type is {str(code)[:20]}, which glTF does not know")
-    return np.dtype(_TYPES[code])
+    return np.dtype(_TYPES[int(code)])

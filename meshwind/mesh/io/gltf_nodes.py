@@ -64,6 +64,8 @@ class Nodes:
         counts = {len(values) for values in given.values()}
         if len(counts) > 1:
             raise ValueError("attributes of instances are not equally many")
+        if max(counts, default=0) > _MAX_NODES:
+            raise ValueError(f"a node has more than {_MAX_NODES} instances")
         if not given:
             return [np.eye(4)]
         return [node_matrix({name: values[k] for name, values in given.items()}) for k in range(counts.pop())]

@@ -1,7 +1,7 @@
 """Reading of 3MF files, packages of XML for 3D printers: the core specification with the production extension.
 
-The 3MF Consortium's own library, lib3mf, keeps coordinates in single precision, does not open packages without all of
-their relationships, and says nothing of supports and beam lattices, which are not the part.
+The 3MF Consortium's own library, lib3mf (2.5), keeps coordinates in single precision, and does not open packages that
+are in UTF-16 or lack some of their relationships.
 """
 
 from collections import Counter
@@ -32,8 +32,8 @@ _MAX_DEPTH = 64
 """Levels of objects within objects."""
 _MAX_USES = 20_000
 """Uses of objects by others: a few objects that contain each other many times would take forever."""
-_MAX_TRIANGLES = 50_000_000
-"""Triangles of all uses together."""
+_MAX_ROWS = 50_000_000
+"""Triangles or vertices of all uses together."""
 _PAINTED = rb'"(?:NegativeVolume|ParameterModifier|SupportBlocker|SupportEnforcer)"'
 _PAINTED_IN = "metadata/slic3r_pe_model.config"
 """Where PrusaSlicer keeps what each part of a mesh is for, and those that are not printed."""
@@ -62,7 +62,7 @@ class _Build:
     """The objects of the root part's build, and a count of what is left out of it."""
 
     def __init__(self, package: Package) -> None:
-        self.package, self.uses, self.triangles = package, 0, 0
+        self.package, self.uses, self.rows = package, 0, 0
         self.models: dict[str, ModelPart] = {}
         self.used: set[int] = set()
         self.left_out: Counter[str] = Counter()
@@ -166,9 +166,9 @@ class _Build:
             if not solid.unread:
                 self.left_out["without triangles"] += 1
             return []
-        self.triangles += len(solid.faces)
-        if self.triangles > _MAX_TRIANGLES:
-            raise ValueError(f"its build has more than {_MAX_TRIANGLES} triangles")
+        self.rows += max(len(solid.faces), len(solid.vertices))
+        if self.rows > _MAX_ROWS:
+            raise ValueError(f"its build has more than {_MAX_ROWS} triangles or vertices")
         return [(solid.vertices, solid.faces)]
 
 
