@@ -1,7 +1,7 @@
 """Reading of GLB and GLTF files by the glTF 2.0 specification; its section numbers are cited.
 
-trimesh (5.2) takes normalised integers as they are stored and sparse values for zeros, leaves out instances, and does not
-heed required extensions; VTK (9.7) reads neither quantised nor sparse positions, and reads beyond the end of a buffer.
+trimesh (5.2) takes normalised integers as they are stored and sparse values for zeros, leaves out instances, and does
+not heed required extensions; VTK (9.7) reads neither quantised nor sparse positions, and beyond the end of a buffer.
 """
 
 from collections import Counter
