@@ -1,135 +1,153 @@
 """Reading of OBJ files: vertices and faces of all objects and groups, by the format's specification (Wavefront, B1).
 
-No reader at hand counts relative indices from the face's own line and takes tabs, indents and continued lines.
+No reader at hand counts relative indices from the face's own line and takes tabs, indents, comments after statements,
+line ends of all kinds, and continued lines.
 """
 
+import re
 from collections import Counter
-from dataclasses import dataclass, field
-from itertools import chain
 from pathlib import Path
 
 import numpy as np
 
-from meshwind.core.cast import Floats, Ints
+from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.io.cells_to_triangles import surface_mesh
+from meshwind.mesh.io.face_lists import Lists, face_blocks
 from meshwind.mesh.io.file_mesh import FileMesh
+from meshwind.mesh.io.lines import JOINED, Lines, NotANumber, Rows, without_comments
 from meshwind.mesh.io.text import own_unit, text_of
 
-_FREE_FORM = (b"surf", b"curv", b"curv2", b"bzp", b"bsp", b"cdc", b"cdp", b"res")
-_OTHER_FILES = (b"call", b"csh")
-_JOINED = b"\x01"
-"""Stands for the end of a line that is continued."""
-
-
-@dataclass
-class _Statements:
-    """Lines of a file that matter: words of the vertices, and of the faces with the line and the vertices before it."""
-
-    vertices: list[list[bytes]] = field(default_factory=list)
-    faces: list[list[bytes]] = field(default_factory=list)
-    lines: list[int] = field(default_factory=list)
-    before: list[int] = field(default_factory=list)
-    free_form: Counter[bytes] = field(default_factory=Counter)
+_FREE_FORM = ("surf", "curv", "curv2", "bzp", "bsp", "cdp", "cdc")
+"""Statements that make free-form surfaces and curves; the last four are those of older files."""
+_OTHER_FILES = ("call", "csh", "-csh")
+_NO_SURFACE = (
+    "v", "vt", "vn", "vp", "f", "fo", "l", "p", "g", "o", "s", "mg", "usemtl", "mtllib", "usemap", "maplib", "bevel",
+    "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "ctech", "stech", "cstype", "deg", "bmat", "step", "parm",
+    "trim", "hole", "scrv", "sp", "end", "con", "res",
+)  # fmt: skip
+"""Statements on looks, names and curves, those that belong to a free-form surface, and those that are read."""
+_CONTINUED = re.compile(
+    rb"\\[ \t]*\n(?![ \t]*(?:v[tnp]?|fo?|l|p|o|g|s|usemtl|mtllib)[ \t])"
+)  # a name may end in a backslash, as that of a folder does: what then follows is a statement
+_CORNER = re.compile(rb"[+-]?\d{1,18}(?:/[+-]?\d*){0,2}")
+_SLASH = ord("/")
 
 
 def read_obj(path: Path) -> FileMesh:
     """Vertices and triangles of an OBJ file."""
     content = text_of(path)
-    found = _statements(path.name, content)
-    warnings = _left_out(path.name, found)
-    points = _points(path.name, found.vertices)
-    sizes = np.fromiter(map(len, found.faces), dtype=np.int64, count=len(found.faces))
-    nodes = _nodes(path.name, found, sizes)
-    units = own_unit(content)
-    return surface_mesh(points, [("polygon", (sizes, nodes))], units, warnings)
+    plain = without_comments(content.replace(bytes([JOINED]), b"?"))
+    if b"\\" in plain:
+        plain = _CONTINUED.sub(bytes([JOINED]), plain)
+    lines = Lines.of(plain)
+    vertex = lines.begin_with(b"v") | lines.begin_with(b"V")
+    face, old = lines.begin_with(b"f") | lines.begin_with(b"F"), lines.begin_with(b"fo")
+    warnings = _left_out(path.name, lines, vertex, face | old)
+    points = _points(path.name, lines, vertex)
+    faces = [_faces(path.name, lines, vertex, kind, width) for kind, width in ((face, 1), (old, 2)) if kind.any()]
+    joined = Lists(
+        np.concatenate([each.sizes for each in faces] or [np.zeros(0, dtype=np.int64)]),
+        np.concatenate([each.values for each in faces] or [np.zeros(0, dtype=np.int64)]),
+    )
+    blocks, more = face_blocks(joined)
+    return surface_mesh(points, blocks, own_unit(content), warnings + more)
 
 
-def _statements(name: str, content: bytes) -> _Statements:
-    found = _Statements()
-    joined = content.replace(b"\\\n", _JOINED) if b"\\\n" in content else content
-    continued = 0
-    for number, line in enumerate(joined.split(b"\n"), 1):
-        if _JOINED in line:
-            continued += line.count(_JOINED)
-            line = line.replace(_JOINED, b" ")
-        words = (line.partition(b"#")[0] if b"#" in line else line).split()
-        if not words:
-            continue
-        key = words[0]
-        if key == b"v":
-            found.vertices.append(words)
-        elif key in (b"f", b"fo"):
-            found.faces.append(words[1:])
-            found.lines.append(number + continued)
-            found.before.append(len(found.vertices))
-        elif key in _FREE_FORM:
-            found.free_form[key] += 1
-        elif key in _OTHER_FILES:
+def _left_out(name: str, lines: Lines, vertex: Bools, face: Bools) -> tuple[str, ...]:
+    """Words on statements that may be part of the surface and are not read; refuses those that need another file."""
+    rest, faces = lines.filled() & ~(vertex | face), int(np.count_nonzero(face))
+    for often in (b"vn", b"vt", b"vp", b"usemtl", b"s", b"g"):
+        rest &= ~lines.begin_with(often)
+    counts: Counter[str] = Counter()
+    for line in np.flatnonzero(rest).tolist():
+        key = lines.words(line)[0].decode("latin-1").lower()
+        if key in _OTHER_FILES:
             raise BadInputError(
-                f"{name}: takes another file in by {key.decode()} in line {number + continued}, which is not read; "
-                "join them into one"
+                f"{name}: {key} in line {lines.number(line)} takes in another file or command, which is not read; "
+                "export all in one file"
             )
-    return found
+        if key not in _NO_SURFACE:
+            counts[key] += 1
+    parts = ", ".join(f"{counts.pop(key)} {key}" for key in _FREE_FORM if key in counts)
+    if parts and not faces:
+        raise BadInputError(f"{name}: holds free-form geometry ({parts}) and no faces; export it as polygons")
+    words = [f"free-form geometry ({parts}) is not read; left out beside {faces} faces"] if parts else []
+    if counts:
+        known = ", ".join(repr(key[:20]) for key, _ in counts.most_common(3))
+        words.append(f"{counts.total()} lines begin with what is no statement of OBJ ({known}); left out")
+    return tuple(words)
 
 
-def _left_out(name: str, found: _Statements) -> tuple[str, ...]:
-    """Words on curves and surfaces, which are no mesh."""
-    count = found.free_form.total()
-    if not count:
-        return ()
-    if not found.faces:
-        raise BadInputError(f"{name}: holds {count} free-form curves or surfaces and no faces; export it as polygons")
-    return (f"{count} free-form curves or surfaces are left out, beside {len(found.faces)} faces",)
-
-
-def _points(name: str, lines: list[list[bytes]]) -> Floats:
-    """Positions (n, 3); a fourth number and more are a weight or a colour."""
-    short = next((number for number, words in enumerate(lines, 1) if len(words) < 4), 0)
-    if short:
-        raise BadInputError(f"{name}: vertex {short} has fewer than three coordinates; export the mesh again")
-    numbers = chain.from_iterable(words[1:4] for words in lines)
+def _points(name: str, lines: Lines, vertex: Bools) -> Floats:
+    """Positions (n, 3).  A fourth number is a weight, which only free-form geometry has; three more are a colour."""
+    rows = lines.rows(vertex, 1)
+    sizes = rows.sizes()
+    short = np.flatnonzero(sizes < 3)
     try:
-        return np.fromiter(map(float, numbers), dtype=np.float64, count=3 * len(lines)).reshape(-1, 3)
-    except ValueError:
-        wrong = next(number for number, words in enumerate(lines, 1) if not all(map(_is_number, words[1:4])))
-        words = b" ".join(lines[wrong - 1][1:4]).decode("latin-1")[:40]
-        raise BadInputError(f"{name}: vertex {wrong} is {words!r}; its coordinates must be numbers") from None
+        numbers = rows.floats()
+    except NotANumber as error:
+        raise BadInputError(f"{name}: {_place(lines, vertex, 'vertex', error.row)} {error.words}") from None
+    if len(short):
+        place = _place(lines, vertex, "vertex", int(short[0]))
+        raise BadInputError(f"{name}: {place} has fewer than three coordinates; export the mesh again")
+    if not len(sizes) or (sizes == sizes[0]).all():
+        return np.ascontiguousarray(numbers.reshape(len(sizes), -1)[:, :3]) if len(sizes) else np.zeros((0, 3))
+    first = np.cumsum(sizes) - sizes
+    return numbers[first[:, None] + np.arange(3)]
 
 
-def _is_number(word: bytes) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True
+def _place(lines: Lines, which: Bools, what: str, row: int) -> str:
+    """Number of a vertex or face and its line, for messages."""
+    return f"{what} {row + 1} in line {lines.number(int(np.flatnonzero(which)[row]))}"
 
 
-def _nodes(name: str, found: _Statements, sizes: Ints) -> Ints:
-    """Vertices of one face after the other, from 0; those below 0 count back from the face's own line."""
-    words = chain.from_iterable(found.faces)
-    try:
-        index = np.fromiter((int(word.partition(b"/")[0]) for word in words), dtype=np.int64, count=int(sizes.sum()))
-    except (ValueError, OverflowError):
-        wrong = next(k for k, face in enumerate(found.faces) if not all(map(_is_index, face)))
-        raise BadInputError(
-            f"{name}: face {wrong + 1} in line {found.lines[wrong]} has no vertex numbers; export the mesh again"
-        ) from None
-    before = np.repeat(np.array(found.before, dtype=np.int64), sizes)
-    nodes = np.where(index < 0, before + index, index - 1)
-    bad = np.flatnonzero((index == 0) | (nodes < 0) | (nodes >= len(found.vertices)))
+def _faces(name: str, lines: Lines, vertex: Bools, face: Bools, width: int) -> Lists:
+    """Vertices of the faces, from 0; a number below 0 counts back from the face's own line."""
+    rows = lines.rows(face, width)
+    sizes = rows.sizes()
+    index = _indices(rows)
+    if index is None:
+        wrong = next(k for k, line in enumerate(np.flatnonzero(face)) if not _is_face(lines.words(int(line))[1:]))
+        place = _place(lines, face, "face", wrong)
+        raise BadInputError(f"{name}: {place} has no vertex numbers; export the mesh again")
+    total = int(np.count_nonzero(vertex))
+    if index.min(initial=1) < 0:
+        before = np.repeat(np.cumsum(vertex)[face], sizes)
+        nodes = np.where(index < 0, before + index, index - 1)
+    else:
+        nodes = index - 1
+    bad = np.flatnonzero((index == 0) | (nodes < 0) | (nodes >= total))
     if len(bad):
         at = int(bad[0])
-        face = int(np.searchsorted(np.cumsum(sizes), at, side="right"))
-        total = len(found.vertices)
         why = ": OBJ counts from 1" if index[at] <= 0 else f", but there are {total}"
-        where = f"face {face + 1} in line {found.lines[face]}"
-        raise BadInputError(f"{name}: {where} refers to vertex {index[at]}{why}; export the mesh again")
-    return nodes
+        place = _place(lines, face, "face", int(np.searchsorted(np.cumsum(sizes), at, side="right")))
+        raise BadInputError(f"{name}: {place} refers to vertex {index[at]}{why}; export the mesh again")
+    return Lists(sizes, nodes)
 
 
-def _is_index(word: bytes) -> bool:
+def _is_face(words: list[bytes]) -> bool:
+    return all(_CORNER.fullmatch(word) for word in words)
+
+
+def _indices(rows: Rows) -> Ints | None:
+    """The first number of each corner, as in 7/1/2; None if a corner has none."""
+    text = rows.text
+    slash = text == _SLASH
+    if not slash.any():
+        try:
+            return rows.ints()
+        except NotANumber:
+            return None
+    blank = text <= 32
+    apart = blank | slash
+    begins = ~apart
+    begins[1:] &= apart[:-1]
+    begins = np.flatnonzero(begins)
+    of_corner = blank[begins - 1]  # a row begins with its keyword, which is blank by now
+    corners = np.count_nonzero(blank[:-1] & ~blank[1:])
     try:
-        return abs(int(word.partition(b"/")[0])) < 2**63
-    except ValueError:
-        return False
+        numbers = Rows(np.where(slash, np.uint8(32), text), rows.start).ints()
+    except NotANumber:
+        return None
+    return numbers[of_corner] if int(np.count_nonzero(of_corner)) == corners else None

@@ -27,6 +27,7 @@ from meshwind.mesh.io.obj import read_obj
 from meshwind.mesh.io.off import read_off
 from meshwind.mesh.io.ply import read_ply
 from meshwind.mesh.io.precision import resolved
+from meshwind.mesh.io.signature import foreign
 from meshwind.mesh.io.stl import read_stl
 from meshwind.mesh.io.threemf import read_3mf
 from meshwind.mesh.io.vtk_vtu_vtp import read_vtk
@@ -125,13 +126,16 @@ def load(mesh: str | PathLike[str] | Any) -> FileMesh:
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
             held = reader(file)
     except BadInputError:
+        _refuse_foreign(file)
         raise
     except _READER_ERRORS as error:
+        _refuse_foreign(file)
         kind = file.suffix[1:].upper()
         raise BadInputError(
             f"{file.name}: cannot be read as {kind} ({_first_line(error)}); export the mesh again, or convert it to STL"
         ) from error
     if len(held.faces) == 0:
+        _refuse_foreign(file)
         raise BadInputError(f"{file.name}: holds no triangles; export the part's surface as a triangle mesh")
     return resolved(file.name, held)
 
@@ -140,6 +144,16 @@ def check_file(mesh: object) -> None:
     """Raise BadInputError if a mesh is the path of a file that is missing, empty or of an unknown format."""
     if isinstance(mesh, str | PathLike):
         _reader(Path(mesh))
+
+
+def _refuse_foreign(file: Path) -> None:
+    """Say what a file that could not be read is, if its content tells that it is of another kind."""
+    try:
+        words = foreign(file)
+    except OSError:
+        return  # the reader's own words say that it cannot be opened
+    if words:
+        raise BadInputError(f"{file.name}: {words}") from None
 
 
 def _reader(file: Path) -> _Reader:

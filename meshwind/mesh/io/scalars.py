@@ -11,12 +11,14 @@ import numpy as np
 
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
+from meshwind.mesh.io.face_lists import Lists, whole
 from meshwind.mesh.io.in_subprocess import Arrays, in_subprocess
-from meshwind.mesh.io.ply import Lists, read_tables
+from meshwind.mesh.io.ply import read_tables
+from meshwind.mesh.io.ply_rows import Columns
 from meshwind.mesh.io.vtk_vtu_vtp import vtk_array, vtk_output
 
 _BY_VTK = (".vtk", ".vtp", ".vtu")
-_OTHERS = (".ply", ".msh")
+_HOLD_SCALARS = (*_BY_VTK, ".ply", ".msh")
 
 
 @dataclass(frozen=True)
@@ -34,8 +36,8 @@ def read_scalars(path: str | Path, name: str) -> Scalars:
     """
     path = Path(path)
     kind = path.suffix.lower()
-    if kind not in _BY_VTK + _OTHERS:
-        known = ", ".join(end[1:].upper() for end in _BY_VTK + _OTHERS)
+    if kind not in _HOLD_SCALARS:
+        known = ", ".join(end[1:].upper() for end in _HOLD_SCALARS)
         raise BadInputError(f"{path.name}: this format holds no scalars; save the part with {name!r} as {known}")
     arrays = _read(path)
     names = arrays["names"].tolist()
@@ -57,7 +59,7 @@ def scalar_names(path: str | Path) -> tuple[str, ...]:
     Raises BadInputError if the file cannot be read.
     """
     path = Path(path)
-    if path.suffix.lower() not in _BY_VTK + _OTHERS:
+    if path.suffix.lower() not in _HOLD_SCALARS:
         return ()
     return tuple(sorted(_read(path)["names"].tolist()))
 
@@ -65,7 +67,9 @@ def scalar_names(path: str | Path) -> tuple[str, ...]:
 def _read(path: Path) -> Arrays:
     kind = path.suffix.lower()
     try:
-        return _ply(path) if kind == ".ply" else in_subprocess(by_vtk if kind in _BY_VTK else by_meshio, path)
+        if kind == ".ply":
+            return by_ply(path)
+        return in_subprocess(by_vtk if kind in _BY_VTK else by_meshio, path)
     except BadInputError:
         raise
     except (OSError, ValueError, LookupError, ArithmeticError) as error:
@@ -107,23 +111,26 @@ def _add_arrays(fields: _Fields, data: Any, points: Floats | None) -> None:
             _add(fields, array.GetName(), numpy_support.vtk_to_numpy(array), points)  # type: ignore[no-untyped-call]
 
 
-def _ply(path: Path) -> Arrays:
-    """Points and scalars of a PLY file."""
+def by_ply(path: Path) -> Arrays:
+    """Points and scalars of a PLY file: the properties of its vertices, and those of its faces."""
     ply = read_tables(path)
-    points, corners = ply.points(), ply.corners()
+    points, corners = ply.points(), ply.corners("face")
     fields: _Fields = {}
-    if corners is not None and len(corners.sizes) and (corners.sizes > 0).all():
-        nodes = corners.values.astype(np.int64)
+    if corners is not None and len(corners.sizes) and corners.sizes.min() > 0:
+        nodes = whole(corners.values)
         if nodes.min() < 0 or nodes.max() >= len(points):
             raise ValueError("a face refers to a vertex that does not exist")
-        starts = np.cumsum(corners.sizes) - corners.sizes
-        centroids = np.add.reduceat(points[nodes], starts, axis=0) / corners.sizes[:, None]
-        for name, values in ply.tables["face"].items():
-            _add(fields, name, values, centroids)
-    for name, values in ply.tables["vertex"].items():
-        if name not in ("x", "y", "z"):
-            _add(fields, name, values, None)
+        centroids = np.add.reduceat(points[nodes], np.cumsum(corners.sizes) - corners.sizes, axis=0)
+        _add_columns(fields, ply.tables["face"], centroids / corners.sizes[:, None])
+    _add_columns(fields, ply.tables["vertex"], None)
     return _packed(points, fields)
+
+
+def _add_columns(fields: _Fields, columns: Columns, points: Floats | None) -> None:
+    """Add the scalars among the columns of an element, but not its coordinates."""
+    for name, values in columns.items():
+        if not isinstance(values, Lists) and name not in ("x", "y", "z"):
+            _add(fields, name, values, points)
 
 
 def by_meshio(path: Path) -> Arrays:
@@ -157,6 +164,6 @@ def _packed(points: Floats, fields: _Fields) -> Arrays:
 
 def _add(fields: _Fields, name: str, values: object, points: Floats | None) -> None:
     """Add a field if it is a scalar."""
-    array = np.asarray(values if not isinstance(values, Lists) else None)
+    array = np.asarray(values)
     if array.ndim == 1 and array.dtype.kind in "fiub":
         fields[str(name)] = points, array.astype(np.float64)

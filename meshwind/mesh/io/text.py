@@ -5,13 +5,19 @@ import re
 from pathlib import Path
 
 _OWN = re.compile(rb"lengths in (mm|cm|m|um|inch|in|ft)\b")
+_OWN_WORDS = (b"meshwind", b"of a winding", b"quad mesh on the crossings")
+"""Words of the headers of meshwind's own files."""
 _HEADER = 400
 """Length of the part of a file in which meshwind names the unit."""
 
 
 def text_of(path: Path) -> bytes:
     """Content of a text file in UTF-8, its lines ended by line feeds only."""
-    content = path.read_bytes()
+    return plain_text(path.read_bytes())
+
+
+def plain_text(content: bytes) -> bytes:
+    """A text in UTF-8, its lines ended by line feeds only."""
     if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         content = content.decode("utf-16").encode()
     content = content.removeprefix(codecs.BOM_UTF8)
@@ -21,5 +27,5 @@ def text_of(path: Path) -> bytes:
 def own_unit(content: bytes) -> str:
     """Unit of length that the header of a file of meshwind's own names, "" if there is none."""
     head = content[:_HEADER]
-    found = _OWN.search(head) if b"meshwind" in head or b"quad mesh on the crossings" in head else None
+    found = _OWN.search(head) if any(words in head for words in _OWN_WORDS) else None
     return found[1].decode() if found else ""

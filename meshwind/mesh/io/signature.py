@@ -1,0 +1,108 @@
+"""What a file is by its content, where that is not what its ending says: for the refusal of files that are not read."""
+
+import re
+import zipfile
+from pathlib import Path
+
+_START = 4096
+"""Length of the part of a file that tells what it is."""
+_NUMBER = rb"[ \t]+[-+]?[\d.][-+.\deE]*"
+_READ: tuple[tuple[str, str, "re.Pattern[bytes]"], ...] = tuple(
+    (name, suffix, re.compile(pattern))
+    for name, suffix, pattern in (
+        ("PLY", ".ply", rb"ply[ \t]*[\r\n]"),
+        ("GLB", ".glb", rb"glTF[\1\2]\0\0\0"),
+        ("glTF", ".gltf", rb"\s*\{[\s\S]*\"asset\"\s*:[\s\S]*\"version\""),
+        ("VTK", ".vtk", rb"# vtk DataFile"),
+        ("VTP", ".vtp", rb"\s*(?:<\?xml[^>]*>\s*)?<VTKFile[^>]*\"PolyData\""),
+        ("VTU", ".vtu", rb"\s*(?:<\?xml[^>]*>\s*)?<VTKFile[^>]*\"UnstructuredGrid\""),
+        ("Gmsh", ".msh", rb"\s*(?:\$Comments[\s\S]*?\$EndComments\s*)?\$MeshFormat"),
+        ("OFF", ".off", rb"\s*(?:ST|C|N|4|n)*OFF[ \t]*(?:BINARY|\d[\d \t]*|#.*)?[\r\n]"),
+        ("STL", ".stl", rb"(?i)\s*solid\b[\s\S]*?\bfacet\s+normal\s"),
+        ("Abaqus", ".inp", rb"(?i)\s*(?:\*\*[^\n]*\n\s*)*\*(?:heading|node|part|include|element|assembly)\b"),
+    )
+)
+"""Formats that are read: name, ending, and how their files begin."""
+_OBJ = re.compile(rb"(?:\A|[\r\n])[ \t]*v" + 3 * _NUMBER)
+_OTHERS: tuple[tuple["re.Pattern[bytes]", str], ...] = tuple(
+    (re.compile(pattern), words)
+    for pattern, words in (
+        (rb"version https://git-lfs\.github\.com/spec/",
+         "is a Git LFS pointer, not the mesh; fetch it with git lfs pull"),
+        (rb"/?(?:\.git)?/annex/objects/", "is a git-annex pointer, not the mesh; fetch it with git annex get"),
+        (rb"\x1f\x8b", "is compressed (gzip) by its content; unpack it first"),
+        (rb"BZh[1-9]1AY", "is compressed (bzip2) by its content; unpack it first"),
+        (rb"\xfd7zXZ\0", "is compressed (xz) by its content; unpack it first"),
+        (rb"\x28\xb5\x2f\xfd", "is compressed (zstd) by its content; unpack it first"),
+        (rb"7z\xbc\xaf\x27\x1c", "is a 7z archive by its content; unpack it first"),
+        (rb"Rar!\x1a\x07", "is a RAR archive by its content; unpack it first"),
+        (rb"(?i)(?:\xef\xbb\xbf)?\s*(?:<!--[\s\S]*?-->\s*)?(?:<\?xml[^>]*>\s*)?<(?:!doctype\s+html|html|head|body)\b",
+         "is a web page, not a mesh; download the file itself"),
+        (rb"%PDF-", "is a PDF document by its content; give the mesh itself"),
+        (rb"\x89PNG\r\n|\xff\xd8\xff|GIF8|BM....\0\0\0\0", "is a picture by its content; give the mesh itself"),
+        (rb"\x00\x05\x16\x07", "is a Mac's companion file; give the file whose name has no ._ before it"),
+        (rb"\s*ISO-10303-21\s*;", "is a STEP file by its content; export it as a triangle mesh, such as STL"),
+        (rb"[^\r\n]{72}S[ 0]*1\s", "is an IGES file by its content; export it as a triangle mesh, such as STL"),
+        (rb"Kaydara FBX Binary|; FBX ", "is an FBX file by its content; export it as STL, OBJ or PLY"),
+        (rb"BLENDER", "is a Blender file by its content; export it as STL, OBJ or PLY"),
+        (rb"3D Geometry File Format", "is a Rhino file by its content; export its mesh as STL, OBJ or PLY"),
+        (rb"#VRML|#X3D|(?:<\?xml[^>]*>\s*)?(?:<!DOCTYPE X3D[^>]*>\s*)?<X3D\b",
+         "is a VRML or X3D file by its content; export it as STL, OBJ or PLY"),
+        (rb"(?:\xef\xbb\xbf)?\s*(?:<\?xml[^>]*>\s*)?<COLLADA\b",
+         "is a COLLADA file by its content; export it as STL, OBJ or PLY"),
+        (rb"(?:<\?xml[^>]*>\s*)?<amf\b", "is an AMF file by its content; export it as STL or 3MF"),
+        (rb"#usda |PXR-USDC", "is a USD file by its content; export it as STL, OBJ or PLY"),
+        (rb"\s*0\s+SECTION\s|AC10\d\d\0", "is a DXF or DWG drawing by its content; export it as STL"),
+        (rb"\x89HDF\r\n", "is an HDF5 file by its content; convert it to VTU or STL"),
+        (rb"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "is a file of a CAD or office program by its content; export it as STL"),
+    )
+)  # fmt: skip
+"""What else a file may be: how it begins, and what to say."""
+
+
+def foreign(path: Path) -> str:
+    """What a file is, and what to do, if its content is of another kind than its ending; "" if that is not known."""
+    with path.open("rb") as file:
+        start = file.read(_START)
+    suffix = path.suffix.lower()
+    for pattern, words in _OTHERS:
+        if pattern.match(start):
+            return words
+    if start.startswith(b"PK\x03\x04"):
+        return _archive(path, suffix)
+    if _is_utf16(start):
+        return "is text in UTF-16; save it as UTF-8"
+    if not start.strip(b"\0"):
+        return "begins with nothing but zeros, as after a copy that failed; copy or export it again"
+    kinds = [(name, ending) for name, ending, pattern in _READ if pattern.match(start.removeprefix(b"\xef\xbb\xbf"))]
+    if not kinds and len(start) >= 84 and path.stat().st_size == 84 + 50 * int.from_bytes(start[80:84], "little") > 84:
+        kinds = [("STL", ".stl")]
+    if not kinds and b"\0" not in start and _OBJ.search(start):
+        kinds = [("OBJ", ".obj")]
+    if not kinds or suffix in {ending for _, ending in kinds}:
+        return ""
+    name, ending = kinds[0]
+    return f"is {'an' if name[0] in 'AOS' else 'a'} {name} file by its content; rename it to {path.stem[:80]}{ending}"
+
+
+def _archive(path: Path, suffix: str) -> str:
+    """Words on a ZIP archive, which a 3MF file is, too."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            is_3mf = any(name.lower().endswith(".model") for name in archive.namelist())
+    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError, RuntimeError):
+        is_3mf = suffix == ".3mf"
+    if not is_3mf:
+        return "is a ZIP archive by its content; unpack it first"
+    return "" if suffix == ".3mf" else f"is a 3MF file by its content; rename it to {path.stem[:80]}.3mf"
+
+
+def _is_utf16(start: bytes) -> bool:
+    """Whether every other byte is zero, or a byte order mark says so."""
+    if start.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return True
+    text = start[: len(start) // 2 * 2][:200]
+    even, odd = text[::2], text[1::2]
+    return len(text) >= 8 and (
+        (not odd.strip(b"\0") and b"\0" not in even) or (not even.strip(b"\0") and b"\0" not in odd)
+    )

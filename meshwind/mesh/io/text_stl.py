@@ -1,0 +1,74 @@
+"""Reading of STL files of text, free in case, indents and line ends, and with loops of more than three vertices."""
+
+import re
+
+import numpy as np
+
+from meshwind.core.cast import Bools, Ints
+from meshwind.core.errors import BadInputError
+from meshwind.mesh.io.cells_to_triangles import surface_mesh
+from meshwind.mesh.io.face_lists import Lists, face_blocks
+from meshwind.mesh.io.file_mesh import FileMesh
+from meshwind.mesh.io.lines import Lines, NotANumber
+from meshwind.mesh.io.text import own_unit
+
+_LAST = 1024
+"""Length of the end of a file in which its last word is sought."""
+_ORDER = (b"facet", b"outer", b"endloop", b"endfacet")
+"""First words of the lines about each facet, in their order; those of its vertices come after the second."""
+_KEYS = re.compile(rb"(?i)[ \n]+(facet +normal|outer +loop|vertex|end ?loop|end ?facet|end ?solid)(?=[ \n])")
+
+
+def read_text_stl(name: str, content: bytes) -> FileMesh:
+    """Vertices and triangles of a text, whose lines are ended by line feeds.
+
+    Raises BadInputError if a line is missing or not as the format says.
+    """
+    low = content.lower()
+    if not re.search(rb"end ?solid", low[-_LAST:]):
+        raise BadInputError(f"{name}: is cut short, its last line is not endsolid; copy or export it again")
+    low = re.sub(rb"\bend +(?=loop|facet|solid)", b"end", low)
+    lines = Lines.of(low)
+    if np.count_nonzero(lines.begin_with(b"vertex")) < low.count(b"vertex"):  # several statements in a line, or a name
+        lines = Lines.of(_KEYS.sub(rb"\n\1", b" ".join(low.split(b"\n"))))
+    vertex = lines.begin_with(b"vertex")
+    sizes = _checked(name, lines, vertex)
+    rows = lines.rows(vertex, len(b"vertex"))
+    at = np.flatnonzero(vertex)
+    try:
+        numbers = rows.floats()
+    except NotANumber as error:
+        raise BadInputError(f"{name}: line {lines.number(int(at[error.row]))} {error.words}") from None
+    wrong = np.flatnonzero(rows.sizes() != 3)
+    if len(wrong):
+        number = lines.number(int(at[wrong[0]]))
+        raise BadInputError(f"{name}: the vertex in line {number} has not three coordinates; export the mesh again")
+    points = numbers.reshape(-1, 3)
+    blocks, warnings = face_blocks(Lists(sizes, np.arange(len(points))))
+    return surface_mesh(points, blocks, own_unit(content), warnings)
+
+
+def _checked(name: str, lines: Lines, vertex: Bools) -> Ints:
+    """Number of vertices of each facet.  Refuses facets that are not whole, and lines that are not known."""
+    kind = np.full(len(lines.first), -1)
+    for place, word in enumerate(_ORDER):
+        kind[lines.begin_with(word)] = place
+    about = kind >= 0
+    before: Ints = np.cumsum(about) - about  # lines about facets that come before each line
+    number = np.flatnonzero(about)
+    wrong = number[kind[number] != before[number] % 4]
+    inside = np.flatnonzero(vertex)
+    outer = inside[before[inside] % 4 != 2]
+    solid = np.flatnonzero(lines.begin_with(b"solid") | lines.begin_with(b"endsolid"))
+    early = solid[before[solid] % 4 != 0]
+    strange = np.flatnonzero(lines.filled() & ~about & ~vertex)
+    strange = np.setdiff1d(strange, solid)
+    for found, words in (
+        (np.concatenate([wrong, outer, early]), "is not in its place, so that a facet is not whole"),
+        (strange, "is no statement of STL"),
+    ):
+        if len(found):
+            line = int(found.min())
+            text = b" ".join(lines.words(line)).decode("latin-1")[:40]
+            raise BadInputError(f"{name}: line {lines.number(line)}, {text!r}, {words}; export the mesh again")
+    return np.bincount(before[inside] // 4, minlength=len(number) // 4).astype(np.int64)
