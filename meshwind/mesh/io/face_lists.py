@@ -33,10 +33,12 @@ def face_blocks(faces: Lists) -> tuple[list[CellBlock], tuple[str, ...]]:
 
 
 def strip_block(strips: Lists) -> CellBlock:
-    """Strips as a block, each cut where -1, or the largest number of an unsigned type, ends it."""
+    """Strips as a block, each cut where -1 ends it, or what an unsigned type makes of -1."""
     kind = np.asarray(strips.values).dtype
     values = whole(strips.values)
-    last = values == (np.iinfo(kind).max if kind.kind == "u" and kind.itemsize < 8 else -1)
+    last = (values == -1) | (values == np.iinfo(np.uint32).max)
+    if kind.kind == "u" and kind.itemsize < 4:
+        last |= values == np.iinfo(kind).max
     begins = np.zeros(len(values) + 1, dtype=bool)
     begins[np.cumsum(strips.sizes) - strips.sizes] = True
     begins[1:] |= last

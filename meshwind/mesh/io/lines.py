@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ _MAX_INDENT = 64
 _NO_NUMBER = re.compile(
     rb"(?<!\S)(?!(?:[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?i:nan|inf|infinity))(?!\S))\S+"
 )
+_NOT_WHOLE = re.compile(rb"(?<!\S)(?![+-]?\d+(?!\S))\S+")
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?")
 
 
@@ -38,14 +40,15 @@ class Rows:
     text: Bytes
     start: Ints
 
+    @cached_property
     def sizes(self) -> Ints:
         """How many words each row has."""
-        return self._per_row(_first_of(self.text > _BLANK))
-
-    def _per_row(self, marks: Bools) -> Ints:
-        if not len(self.start):
-            return np.zeros(0, dtype=np.int64)
-        return np.add.reduceat(marks, self.start, dtype=np.int64)
+        blank = self.text <= _BLANK
+        words = np.flatnonzero(blank[:-1] & ~blank[1:]) + 1
+        before = np.searchsorted(words, self.start)
+        if len(self.text) and not blank[0]:
+            before[1:] += 1
+        return np.diff(before, append=len(words) + bool(len(self.text) and not blank[0]))
 
     def floats(self) -> Floats:
         """All numbers, row by row; exponents may be those of Fortran.  Raises NotANumber."""
@@ -59,31 +62,29 @@ class Rows:
         if not text.strip():
             return np.zeros(0, dtype=kind)
         try:
-            return np.fromstring(text, dtype=kind, sep=" ")
+            numbers = np.fromstring(text, dtype=kind, sep=" ")
         except (ValueError, DeprecationWarning):
-            found = _NO_NUMBER.search(text)
-            if found is None:  # a number that is not whole
-                found = re.search(rb"(?<!\S)(?![+-]?\d+(?!\S))\S+", text)
-            at, word = (0, b"") if found is None else (found.start(), found[0])
-            row = int(np.searchsorted(self.start, at, side="right")) - 1
-            raise NotANumber(row, word.decode("latin-1")) from None
-
-
-def _first_of(marks: Bools) -> Bools:
-    """Marks that follow none."""
-    first = marks.copy()
-    first[1:] &= ~marks[:-1]
-    return first
+            numbers = np.zeros(0, dtype=kind)
+        if len(numbers) == self.sizes.sum():  # NumPy passes over a sign without a number
+            return numbers
+        found = _NO_NUMBER.search(text) or _NOT_WHOLE.search(text)
+        at, word = (0, b"") if found is None else (found.start(), found[0])
+        row = int(np.searchsorted(self.start, at, side="right")) - 1
+        raise NotANumber(row, word.decode("latin-1"))
 
 
 @dataclass(frozen=True)
 class Lines:
-    """The lines of a text: where each begins, where its first word begins, and where its end is."""
+    """The lines of a text: where each begins, where its first word begins with what byte, and where its end is.
+
+    The first byte is that of the line's end if there is no word.
+    """
 
     text: Bytes
     start: Ints
     first: Ints
     end: Ints
+    initial: Bytes
 
     @classmethod
     def of(cls, content: bytes) -> "Lines":
@@ -94,7 +95,8 @@ class Lines:
         text = np.frombuffer(content, dtype=np.uint8)
         end = np.flatnonzero(text == _END)
         start = np.concatenate([[0], end[:-1] + 1])
-        return cls(text, start, _past_blanks(text, start), end)
+        first = _past_blanks(text, start)
+        return cls(text, start, first, end, text[first])
 
     def filled(self) -> Bools:
         """Lines with a word."""
@@ -104,13 +106,9 @@ class Lines:
         """Number from 1 of a line, counted from 0, in the file: lines that were joined count as they are written."""
         return line + 1 + int(np.count_nonzero(self.text[: self.first[line]] == JOINED))
 
-    def initial(self) -> Bytes:
-        """The first byte of each line's first word; that of its end if it has none."""
-        return self.text[self.first]
-
     def begin_with(self, word: bytes, whole: bool = True) -> Bools:
         """Lines whose first word is `word`, or with `whole` false begins with it."""
-        found = np.flatnonzero(self.initial() == word[0])
+        found = np.flatnonzero(self.initial == word[0])
         found = found[self.end[found] - self.first[found] >= len(word)]
         for place, letter in enumerate(word[1:], 1):
             found = found[self.text[self.first[found] + place] == letter]

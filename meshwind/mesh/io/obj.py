@@ -30,7 +30,7 @@ _NO_SURFACE = (
 _CONTINUED = re.compile(
     rb"\\[ \t]*\n(?![ \t]*(?:v[tnp]?|fo?|l|p|o|g|s|usemtl|mtllib)[ \t])"
 )  # a name may end in a backslash, as that of a folder does: what then follows is a statement
-_CORNER = re.compile(rb"[+-]?\d{1,18}(?:/[+-]?\d*){0,2}")
+_CORNER = re.compile(rb"[+-]?\d+(?:/(?:[+-]?\d+)?)*")
 _SLASH = ord("/")
 
 
@@ -82,7 +82,7 @@ def _left_out(name: str, lines: Lines, vertex: Bools, face: Bools) -> tuple[str,
 def _points(name: str, lines: Lines, vertex: Bools) -> Floats:
     """Positions (n, 3).  A fourth number is a weight, which only free-form geometry has; three more are a colour."""
     rows = lines.rows(vertex, 1)
-    sizes = rows.sizes()
+    sizes = rows.sizes
     short = np.flatnonzero(sizes < 3)
     try:
         numbers = rows.floats()
@@ -105,10 +105,11 @@ def _place(lines: Lines, which: Bools, what: str, row: int) -> str:
 def _faces(name: str, lines: Lines, vertex: Bools, face: Bools, width: int) -> Lists:
     """Vertices of the faces, from 0; a number below 0 counts back from the face's own line."""
     rows = lines.rows(face, width)
-    sizes = rows.sizes()
+    sizes = rows.sizes
     index = _indices(rows)
     if index is None:
-        wrong = next(k for k, line in enumerate(np.flatnonzero(face)) if not _is_face(lines.words(int(line))[1:]))
+        words = (lines.words(line)[1:] for line in np.flatnonzero(face).tolist())
+        wrong = next((k for k, corners in enumerate(words) if not all(map(_CORNER.fullmatch, corners))), 0)
         place = _place(lines, face, "face", wrong)
         raise BadInputError(f"{name}: {place} has no vertex numbers; export the mesh again")
     total = int(np.count_nonzero(vertex))
@@ -124,10 +125,6 @@ def _faces(name: str, lines: Lines, vertex: Bools, face: Bools, width: int) -> L
         place = _place(lines, face, "face", int(np.searchsorted(np.cumsum(sizes), at, side="right")))
         raise BadInputError(f"{name}: {place} refers to vertex {index[at]}{why}; export the mesh again")
     return Lists(sizes, nodes)
-
-
-def _is_face(words: list[bytes]) -> bool:
-    return all(_CORNER.fullmatch(word) for word in words)
 
 
 def _indices(rows: Rows) -> Ints | None:

@@ -18,6 +18,7 @@ from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.lines import Lines, NotANumber, without_comments
 from meshwind.mesh.io.ply_header import Element, Property
 from meshwind.mesh.io.ply_rows import Binary, CutShort, Step, spread, walk
+from meshwind.mesh.io.ply_text import list_length
 from meshwind.mesh.io.text import own_unit, plain_text
 
 _KEYWORD = re.compile(rb"((?:ST|C|N|4|n)*)OFF|((?:st|c|4)*)off")
@@ -131,7 +132,7 @@ class _Data:
         marks[which] = True
         rows = self.lines.rows(marks)
         try:
-            return rows.floats(), rows.sizes()
+            return rows.floats(), rows.sizes
         except NotANumber as error:
             number = self.lines.number(int(which[error.row]))
             raise BadInputError(f"{self.name}: line {number} {error.words}") from None
@@ -198,7 +199,7 @@ class _Data:
         """The same where a face is not one line: without colours, numbers are counted."""
         numbers, sizes = self._numbers(filled)
         try:
-            walked = walk(numbers.tolist(), count, [Step(1, lambda data, at: int(data[at]), 1)], 0)
+            walked = walk(numbers.tolist(), count, [Step(1, list_length, 1)], 0)
         except CutShort:
             raise self._cut_short() from None
         used = int(np.searchsorted(np.cumsum(sizes), walked.end)) + 1

@@ -16,7 +16,7 @@ from meshwind.mesh.io.cells_to_triangles import CellBlock, surface_mesh
 from meshwind.mesh.io.face_lists import Lists, face_blocks, strip_block
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.ply_header import Element, Header, read_header
-from meshwind.mesh.io.ply_rows import Binary, Columns, CutShort, Table
+from meshwind.mesh.io.ply_rows import Binary, BrokenRow, Columns, CutShort, Table
 from meshwind.mesh.io.ply_text import Text
 from meshwind.mesh.io.text import plain_text
 
@@ -111,7 +111,11 @@ def read_tables(path: Path) -> Ply:
             continue
         try:
             table = source.table(element, at)
-        except CutShort as error:
+        except BrokenRow as error:
+            if isinstance(source, Text):  # an earlier row that is too short or too long may be the reason
+                source.check_rows([*tables, (element, Table({}, error.starts, at))], at)
+            if not isinstance(error, CutShort):
+                raise
             raise BadInputError(
                 f"{path.name}: is cut short: it announces {element.rows} rows of {element.name[:40]!r} and holds "
                 f"{error.rows}; copy or export it again"

@@ -25,11 +25,22 @@ class Table(NamedTuple):
     end: int
 
 
-class CutShort(ValueError):
-    """The data end within an element, of which so many rows are whole."""
+_NOWHERE = np.zeros(0, dtype=np.int64)
 
-    def __init__(self, rows: int) -> None:
-        super().__init__("the data end within an element")
+
+class BrokenRow(ValueError):
+    """A row that cannot be read; `starts`: where this one and those before it begin, as far as known."""
+
+    def __init__(self, words: str, starts: Ints = _NOWHERE) -> None:
+        super().__init__(words)
+        self.starts = starts
+
+
+class CutShort(BrokenRow):
+    """The data end within an element, of which so many `rows` are whole."""
+
+    def __init__(self, rows: int, starts: Ints = _NOWHERE) -> None:
+        super().__init__("the data end within an element", starts)
         self.rows = rows
 
 
@@ -53,7 +64,7 @@ class Walk(NamedTuple):
 def walk(data: Any, rows: int, steps: Sequence[Step], at: int) -> Walk:
     """Go from row to row, as each says where the next one begins; numbers between lists are passed over.
 
-    One of the steps at least is a list.  Raises CutShort, and ValueError for a length below zero.
+    One of the steps at least is a list.  Raises CutShort, and BrokenRow for a length below zero.
     """
     lists = [k for k, step in enumerate(steps) if step.length is not None]
     before = [sum(step.width for step in steps[last + 1 : k]) for last, k in zip([-1, *lists[:-1]], lists, strict=True)]
@@ -73,13 +84,13 @@ def walk(data: Any, rows: int, steps: Sequence[Step], at: int) -> Walk:
                 ends.append(at)
             at += tail
     except (struct.error, IndexError, OverflowError):
-        raise CutShort(len(starts) - 1 - (starts[-1] > len(data))) from None
+        raise CutShort(len(starts) - 1 - (starts[-1] > len(data)), np.array(starts)) from None
     length_table = np.array(lengths, dtype=np.int64).reshape(len(starts), len(lists))
     if length_table.min(initial=0) < 0:
         row = int(np.flatnonzero((length_table < 0).any(axis=1))[0])
-        raise ValueError(f"row {row + 1} has a list of less than no numbers")
+        raise BrokenRow(f"the length of a list in row {row + 1} is no whole number", np.array(starts[: row + 1]))
     if at > len(data):
-        raise CutShort(rows - 1)
+        raise CutShort(rows - 1, np.array(starts))
     return _placed(steps, np.array(starts), np.array(ends).reshape(length_table.shape), length_table, at)
 
 
@@ -104,9 +115,6 @@ def spread(begins: Ints, sizes: Ints, width: int) -> Ints:
     """Positions of all numbers of lists that begin at some positions."""
     step = np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes, sizes)
     return np.repeat(begins, sizes) + step * width
-
-
-_NOWHERE = np.zeros(0, dtype=np.int64)
 
 
 class Binary:

@@ -25,7 +25,7 @@ class Text:
         filled = lines.filled()
         self.line = np.flatnonzero(filled)
         rows = lines.rows(filled)
-        self.sizes = rows.sizes()
+        self.sizes = rows.sizes
         try:
             self.values = rows.floats()
         except NotANumber as error:
@@ -58,7 +58,7 @@ class Text:
     def _of_any_length(self, element: Element, at: int) -> Table:
         if not self._listed:
             self._listed = self.values.tolist()
-        steps = [Step(1, _length if p.length_kind else None, 1) for p in element.properties]
+        steps = [Step(1, list_length if p.length_kind else None, 1) for p in element.properties]
         walked = walk(self._listed, element.rows, steps, at)
         columns: Columns = {}
         for p, begins, sizes in zip(element.properties, walked.begins, walked.sizes, strict=True):
@@ -77,15 +77,16 @@ class Text:
         wrong = np.flatnonzero(starts[:known] != begins[:known])
         if not len(wrong) or (len(begins) != len(starts) and end == len(self.values)):
             return
-        row = int(wrong[0]) - 1
-        following = starts[row + 1]
+        row = max(int(wrong[0]) - 1, 0)
+        place = row
         for element, table in tables:
-            if row < len(table.starts):
+            if place < len(table.starts):
                 raise BadInputError(
-                    f"{self.name}: line {self._number(row)} has {self.sizes[row]} numbers, where row {row + 1} of "
-                    f"{element.name[:40]!r} has {following - starts[row]} by the file's header; export the mesh again"
+                    f"{self.name}: line {self._number(row)} has {self.sizes[row]} numbers, where row {place + 1} of "
+                    f"{element.name[:40]!r} has {starts[row + 1] - starts[row]} by the file's header; "
+                    "export the mesh again"
                 )
-            row -= len(table.starts)
+            place -= len(table.starts)
 
     def after(self, at: int) -> str:
         """Words on what follows the last element, "" if nothing does."""
@@ -108,10 +109,7 @@ def _of_one_length(element: Element, rows: Any, at: int) -> Table:
     return Table(columns, at + rows.shape[1] * np.arange(len(rows)), at + rows.size)
 
 
-def _length(data: Any, at: int) -> int:
-    """Length of a list, which must be whole."""
-    number = data[at]
-    length = int(number)
-    if length != number:
-        raise ValueError(f"a list has the length {number:g}")
-    return length
+def list_length(data: Any, at: int) -> int:
+    """Length of a list, -1 if it is not whole."""
+    length = float(data[at])
+    return int(length) if length.is_integer() else -1

@@ -12,11 +12,9 @@ from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.lines import Lines, NotANumber
 from meshwind.mesh.io.text import own_unit
 
-_LAST = 1024
-"""Length of the end of a file in which its last word is sought."""
 _ORDER = (b"facet", b"outer", b"endloop", b"endfacet")
 """First words of the lines about each facet, in their order; those of its vertices come after the second."""
-_KEYS = re.compile(rb"(?i)[ \n]+(facet +normal|outer +loop|vertex|end ?loop|end ?facet|end ?solid)(?=[ \n])")
+_KEYS = re.compile(rb"[ \n\t]+(facet[ \t]+normal|outer[ \t]+loop|vertex|endloop|endfacet|endsolid)(?=[ \n\t])")
 
 
 def read_text_stl(name: str, content: bytes) -> FileMesh:
@@ -24,13 +22,7 @@ def read_text_stl(name: str, content: bytes) -> FileMesh:
 
     Raises BadInputError if a line is missing or not as the format says.
     """
-    low = content.lower()
-    if not re.search(rb"end ?solid", low[-_LAST:]):
-        raise BadInputError(f"{name}: is cut short, its last line is not endsolid; copy or export it again")
-    low = re.sub(rb"\bend +(?=loop|facet|solid)", b"end", low)
-    lines = Lines.of(low)
-    if np.count_nonzero(lines.begin_with(b"vertex")) < low.count(b"vertex"):  # several statements in a line, or a name
-        lines = Lines.of(_KEYS.sub(rb"\n\1", b" ".join(low.split(b"\n"))))
+    lines = _statements(content.lower())
     vertex = lines.begin_with(b"vertex")
     sizes = _checked(name, lines, vertex)
     rows = lines.rows(vertex, len(b"vertex"))
@@ -39,13 +31,30 @@ def read_text_stl(name: str, content: bytes) -> FileMesh:
         numbers = rows.floats()
     except NotANumber as error:
         raise BadInputError(f"{name}: line {lines.number(int(at[error.row]))} {error.words}") from None
-    wrong = np.flatnonzero(rows.sizes() != 3)
+    wrong = np.flatnonzero(rows.sizes != 3)
     if len(wrong):
         number = lines.number(int(at[wrong[0]]))
         raise BadInputError(f"{name}: the vertex in line {number} has not three coordinates; export the mesh again")
     points = numbers.reshape(-1, 3)
     blocks, warnings = face_blocks(Lists(sizes, np.arange(len(points))))
     return surface_mesh(points, blocks, own_unit(content), warnings)
+
+
+def _statements(low: bytes) -> Lines:
+    """The lines, each of one statement."""
+    if b"end " in low or b"end\t" in low:
+        low = re.sub(rb"\bend[ \t]+(?=loop|facet|solid)", b"end", low)
+    lines = Lines.of(low)
+    names = [bytes(lines.text[lines.first[k] : lines.end[k]]) for k in np.flatnonzero(_solids(lines)).tolist()]
+    in_names = sum(name.count(b"vertex") for name in names if not re.search(rb"\bfacet +normal\b", name))
+    if np.count_nonzero(lines.begin_with(b"vertex")) < low.count(b"vertex") - in_names:
+        return Lines.of(_KEYS.sub(rb"\n\1", b" ".join(low.split(b"\n"))))
+    return lines
+
+
+def _solids(lines: Lines) -> Bools:
+    """Lines that begin or end a solid."""
+    return lines.begin_with(b"solid") | lines.begin_with(b"endsolid")
 
 
 def _checked(name: str, lines: Lines, vertex: Bools) -> Ints:
@@ -59,7 +68,10 @@ def _checked(name: str, lines: Lines, vertex: Bools) -> Ints:
     wrong = number[kind[number] != before[number] % 4]
     inside = np.flatnonzero(vertex)
     outer = inside[before[inside] % 4 != 2]
-    solid = np.flatnonzero(lines.begin_with(b"solid") | lines.begin_with(b"endsolid"))
+    solid = np.flatnonzero(_solids(lines))
+    last = max(each[-1] if len(each) else -1 for each in (number, inside, solid))
+    if not lines.begin_with(b"endsolid")[last]:
+        raise BadInputError(f"{name}: is cut short, its last line is not endsolid; copy or export it again")
     early = solid[before[solid] % 4 != 0]
     strange = np.flatnonzero(lines.filled() & ~about & ~vertex)
     strange = np.setdiff1d(strange, solid)
