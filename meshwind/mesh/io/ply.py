@@ -4,6 +4,7 @@ No reader at hand takes faces beside strips, or lists of different length in a b
 """
 
 import codecs
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,8 @@ from meshwind.mesh.io.text import plain_text
 _CORNERS = ("vertex_indices", "vertex_index")
 _READ = ("vertex", "face", "tristrips")
 _NO_SURFACE = ("edge", "edges", "line", "lines", "polyline", "material", "camera", "user", "texture", "light")
+_LIKE_SURFACE = re.compile("(?i)face|tri|strip|fan|quad|poly|patch|grid|mesh|surf|cell")
+_LIKE_CORNERS = re.compile("(?i)vert|ind|corner|node|point")
 _GRID = "range_grid"
 
 
@@ -56,9 +59,11 @@ class Ply:
 
 
 def _may_be_surface(element: Element) -> bool:
-    """Whether an element has lists, as of corners, or positions."""
-    names = {p.name for p in element.properties}
-    return any(p.length_kind for p in element.properties) or {"x", "y", "z"} <= names
+    """Whether an element has lists that may be those of vertices, by the names of the lists or its own."""
+    lists = [p for p in element.properties if p.length_kind and p.kind[0] in "iu"]
+    return bool(lists) and (
+        _LIKE_SURFACE.search(element.name) is not None or any(_LIKE_CORNERS.search(p.name) for p in lists)
+    )
 
 
 def read_ply(path: Path) -> FileMesh:

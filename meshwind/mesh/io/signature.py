@@ -23,6 +23,8 @@ _READ: tuple[tuple[str, str, "re.Pattern[bytes]"], ...] = tuple(
     )
 )
 """Formats that are read: name, ending, and how their files begin."""
+_OF_3MF = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
+"""Beginnings of 3MF files, plain and encrypted ones."""
 _OBJ = re.compile(rb"(?:\A|[\r\n])[ \t]*v" + 3 * _NUMBER)
 _OTHERS: tuple[tuple["re.Pattern[bytes]", str], ...] = tuple(
     (re.compile(pattern), words)
@@ -65,11 +67,13 @@ def foreign(path: Path) -> str:
     with path.open("rb") as file:
         start = file.read(_START)
     suffix = path.suffix.lower()
+    if suffix == ".3mf" and start.startswith(_OF_3MF):
+        return ""
     for pattern, words in _OTHERS:
         if pattern.match(start):
             return words
     if start.startswith(b"PK\x03\x04"):
-        return _archive(path, suffix)
+        return _archive(path)
     if _is_utf16(start):
         return "is text in UTF-16; save it as UTF-8"
     if not start.strip(b"\0"):
@@ -85,16 +89,16 @@ def foreign(path: Path) -> str:
     return f"is {'an' if name[0] in 'AOS' else 'a'} {name} file by its content; rename it to {path.stem[:80]}{ending}"
 
 
-def _archive(path: Path, suffix: str) -> str:
-    """Words on a ZIP archive, which a 3MF file is, too."""
+def _archive(path: Path) -> str:
+    """Words on a ZIP archive, which may be a 3MF file."""
     try:
         with zipfile.ZipFile(path) as archive:
             is_3mf = any(name.lower().endswith(".model") for name in archive.namelist())
     except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError, RuntimeError):
-        is_3mf = suffix == ".3mf"
-    if not is_3mf:
-        return "is a ZIP archive by its content; unpack it first"
-    return "" if suffix == ".3mf" else f"is a 3MF file by its content; rename it to {path.stem[:80]}.3mf"
+        is_3mf = False
+    if is_3mf:
+        return f"is a 3MF file by its content; rename it to {path.stem[:80]}.3mf"
+    return "is a ZIP archive by its content; unpack it first"
 
 
 def _is_utf16(start: bytes) -> bool:
