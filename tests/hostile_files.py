@@ -133,6 +133,13 @@ def _vtk_xml(counts: str, kind: str = "PolyData") -> bytes:
 
 _LAUGHS = "".join(f'<!ENTITY a{k + 1} "{10 * f"&a{k};"}">' for k in range(9))
 _CUBE = MODEL.format(vertices='<vertex x="0" y="0" z="0"/>', faces='<triangle v1="0" v2="0" v3="9"/>')
+_CROWD = (
+    "<model><resources><object id='1'><mesh><vertices>"
+    + 10_000 * "<vertex x='0' y='0' z='0'/>"
+    + "</vertices><triangles>"
+    "<triangle v1='0' v2='1' v3='2'/></triangles></mesh></object></resources>"
+    "<build>" + 19_000 * "<item objectid='1'/>" + "</build></model>"
+)
 OUTSIDE = "../secret"
 """A file that some files refer to; a test creates it and checks that it is not opened."""
 MALICIOUS: dict[str, tuple[str, bytes]] = {
@@ -159,10 +166,15 @@ MALICIOUS: dict[str, tuple[str, bytes]] = {
     "GLTF of deep lists": (".gltf", b"[" * 100_000),
     "GLTF whose nodes hold themselves": (".gltf", json.dumps(embedded() | {"nodes": [
         {"children": [0]}], "scenes": [{"nodes": [0]}], "scene": 0}).encode()),
+    "GLTF of 10^12 zeros": (".gltf", json.dumps(embedded() | {"accessors": [
+        {"componentType": 5126, "count": 10**12, "type": "VEC3", "sparse": {"count": 0}}] * 2}).encode()),
+    "GLTF of 10^300 nodes": (".gltf", json.dumps(embedded() | {"nodes": [
+        {"children": [k + 1] * 2} for k in range(999)] + [{}], "scenes": [{"nodes": [0]}], "scene": 0}).encode()),
     "GLB of 4 GB": (".glb", b"glTF" + struct.pack("<IIII", 2, 2**32 - 1, 2**32 - 1, 0x4E4F534A) + b"{}"),
     "3MF whose objects hold themselves": (".3mf", _archive(_nested(1, 0).replace("<components/>",
         '<components><component objectid="0"/></components>'))),
     "3MF of 10^15 objects": (".3mf", _archive(_nested(10, 15))),
+    "3MF of 10^8 vertices": (".3mf", _archive(_CROWD)),
     "3MF that laughs": (".3mf", _archive(f'<!DOCTYPE m [<!ENTITY a0 "ha">{_LAUGHS}]><model>&a9;</model>')),
     "3MF that names a file": (".3mf", _archive(f'<!DOCTYPE m [<!ENTITY a SYSTEM "{OUTSIDE}">]><model>&a;</model>')),
     "3MF that unpacks to much": (".3mf", _archive("<model>" + 50_000_000 * " ")),

@@ -255,6 +255,8 @@ def test_prefixes_and_foreign_elements(tmp_path: Path) -> None:
     (thing(1, '<components><component objectid="1"/></components>'), item(), "contains itself"),
     (thing(1, mesh(faces=FACES + 10)), item(), "refers to vertex 57 of 48"),
     (thing(1, mesh().replace('z="', 'w="', 1)), item(), "a vertex of 3d/3dmodel.model has no 'z'"),
+    (thing(1, mesh().replace('v1="0"', 'v1="0.5"', 1)), item(), "has '0.5', where a number is needed"),
+    (thing(1, mesh().replace('x="20.0"', 'x="20,0"', 1)), item(), "has '20,0', where a number is needed"),
     ("<object>", "", "is damaged: mismatched tag"),
 ])  # fmt: skip
 def test_faults_are_named(objects: str, build: str, words: str, tmp_path: Path) -> None:

@@ -9,8 +9,11 @@ from meshwind.core.cast import Floats
 from meshwind.mesh.io.gltf_accessors import Accessors
 from meshwind.mesh.io.gltf_document import INSTANCING, VISIBILITY, Document, numbers, table, whole
 
-_MAX_DEPTH, _MAX_NODES = 1000, 200_000
-"""Levels of nodes within nodes, and nodes that are visited: more are taken for nodes that contain themselves."""
+_MAX_DEPTH, _MAX_VISITS, _MAX_INSTANCES = 1000, 20_000, 200_000
+"""Levels of nodes within nodes, visits beyond one of each node, and instances at a node.
+
+The specification allows a node one parent; some programs use a node under several, but not without end.
+"""
 _INSTANCE = {"TRANSLATION": ("translation", "VEC3"), "ROTATION": ("rotation", "VEC4"), "SCALE": ("scale", "VEC3")}
 
 
@@ -33,12 +36,12 @@ class Nodes:
     def shown(self) -> Iterator[tuple[dict[str, Any], Floats]]:
         """Every visible node with its matrix (4, 4) to the scene, those above before those below."""
         stack = [(root, np.eye(4), 0, True) for root in reversed(self._roots())]
-        visits = 0
+        visits, most = 0, len(self.document.entries("nodes")) + _MAX_VISITS
         while stack:
             number, above, depth, visible = stack.pop()
             visits += 1
-            if depth > _MAX_DEPTH or visits > _MAX_NODES:
-                raise ValueError(f"its nodes contain themselves, or lie more than {_MAX_DEPTH} levels deep")
+            if depth > _MAX_DEPTH or visits > most:
+                raise ValueError("its nodes contain themselves, or each other too often or too deep")
             node = self.document.entry("nodes", number)
             held = table(self.document.extensions(node).get(VISIBILITY, {}), VISIBILITY)
             visible = visible and held.get("visible", True) is not False
@@ -64,8 +67,8 @@ class Nodes:
         counts = {len(values) for values in given.values()}
         if len(counts) > 1:
             raise ValueError("attributes of instances are not equally many")
-        if max(counts, default=0) > _MAX_NODES:
-            raise ValueError(f"a node has more than {_MAX_NODES} instances")
+        if max(counts, default=0) > _MAX_INSTANCES:
+            raise ValueError(f"a node has more than {_MAX_INSTANCES} instances")
         if not given:
             return [np.eye(4)]
         return [node_matrix({name: values[k] for name, values in given.items()}) for k in range(counts.pop())]

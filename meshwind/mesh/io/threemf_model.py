@@ -167,8 +167,12 @@ def _use(attributes: dict[str, str]) -> Use:
 
 def _arrays(numbers: list[str], corners: list[str], name: str) -> tuple[Floats, Ints]:
     """Vertices and triangles of a mesh.  Raises ValueError if a triangle refers to a vertex that is not there."""
-    vertices = np.array(list(map(float, numbers)), dtype=np.float64).reshape(-1, 3)
-    indices = list(map(int, corners))
+    try:
+        vertices = np.array(list(map(float, numbers)), dtype=np.float64).reshape(-1, 3)
+        indices = list(map(int, corners))
+    except ValueError as error:
+        wrong = str(error).rpartition(":")[2].strip()[:20]
+        raise ValueError(f"a vertex or a triangle of {name[:40]} has {wrong}, where a number is needed") from error
     least, most = min(indices, default=0), max(indices, default=-1)
     if least < 0 or most >= len(vertices):
         wrong = str(least if least < 0 else most)[:20]
