@@ -7,10 +7,12 @@ Definition"), and of CalculiX where it allows more.
 
 import difflib
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
+from meshwind.core.cast import Ints
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.io.cells_to_triangles import CellBlock, surface_mesh
 from meshwind.mesh.io.deck_blocks import NOT_READ, READ, Block, blocks
@@ -110,13 +112,13 @@ class _Deck:
 
     def _other(self, block: Block) -> None:
         """Words on keywords that are not read but may change the surface."""
-        key, kind = block.key, (block.value("TYPE") or "").strip().upper()
-        if key == "RIGID SURFACE" or (key == "SURFACE" and kind in _ANALYTICAL):
+        key = block.key
+        if key == "RIGID SURFACE" or (key == "SURFACE" and block.name("TYPE").upper() in _ANALYTICAL):
             self.words.append(f"*{key} in line {block.line} is a surface given by formulas; left out")
         elif key == "IMPERFECTION":
             self.words.append(f"*{key} in line {block.line} moves nodes, which is not read; they are as listed")
-        elif difflib.get_close_matches(key, READ, 1, _SIMILAR):
-            self.words.append(f"*{key[:30]} in line {block.line} is not a keyword that is known; left out")
+        elif _is_misspelt(key):
+            self.words.append(f"*{key} in line {block.line} is not a keyword that is known; left out")
 
     def surface(self, units: str) -> FileMesh:
         """The surface of all instances, and of what belongs to no part; without instances, of all parts."""
@@ -127,11 +129,11 @@ class _Deck:
         told = [*self.words, *words_on_elements([part for part, _ in placed], self.file)]
         told += words_on_parts(self.parts, set(names))
         starts = np.cumsum([0] + [len(piece.points) for piece in pieces])
-        cells: list[CellBlock] = [
-            (kind, (np.full(len(rows), rows.shape[1], dtype=np.int64), (rows + start).ravel()))
-            for piece, start in zip(pieces, starts[:-1], strict=True)
-            for kind, rows in piece.cells
-        ]
+        tables: dict[str, list[Ints]] = {}
+        for piece, start in zip(pieces, starts[:-1], strict=True):
+            for kind, rows in piece.cells:
+                tables.setdefault(kind, []).append(rows + start)
+        cells = [_cell_block(kind, np.concatenate(rows)) for kind, rows in tables.items()]
         return surface_mesh(np.concatenate([piece.points for piece in pieces]), cells, units, tuple(told))
 
     def _name_of(self, instance: _Instance) -> str:
@@ -166,10 +168,24 @@ class _Deck:
         return pieces
 
 
+def _cell_block(kind: str, rows: Ints) -> CellBlock:
+    return kind, (np.full(len(rows), rows.shape[1], dtype=np.int64), rows.ravel())
+
+
+@cache
+def _is_misspelt(key: str) -> bool:
+    """Whether a keyword that is not read looks like one that is."""
+    return len(key) < 30 and bool(difflib.get_close_matches(key, READ, 1, _SIMILAR))
+
+
 def read_deck(path: Path) -> FileMesh:
     """Surface of a deck."""
     content = text_of(path)
     deck = _Deck(path.name)
+    has_nodes = False
     for block in blocks(content, path.name):
         deck.take(block)
+        has_nodes |= block.key == "NODE"
+    if not has_nodes:
+        raise ValueError("it has no *NODE, and is no deck of Abaqus or CalculiX")
     return deck.surface(own_unit(content))

@@ -7,6 +7,7 @@ and a keyword that ends with a comma goes on in the next line.
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 from meshwind.core.errors import BadInputError
 
@@ -27,14 +28,21 @@ _WORD = re.compile(r"""((?:"[^"]*"|'[^']*'|[^,"']|["'])*)(?:,|$)""")
 
 @dataclass(frozen=True)
 class Block:
-    """A keyword of a file, the number of its line, its parameters, and its data, which begin in line `first`."""
+    """A keyword of a file, the number of its line, its text with the parameters, and its data, from line `first` on."""
 
     file: str
     key: str
     line: int
-    parameters: dict[str, str]
+    text: bytes
     data: bytes
     first: int
+
+    @cached_property
+    def parameters(self) -> dict[str, str]:
+        """Values of the parameters by their names in capitals; "" for one without a value."""
+        words = [word.strip() for word in _WORD.findall(self.text.decode("utf-8", "replace"))]
+        pairs = (word.partition("=") for word in words[1:] if word)
+        return {"".join(name.upper().split()): value.strip() for name, _, value in pairs}
 
     def value(self, name: str) -> str | None:
         """Value of a parameter, which may be shortened to three letters; None if it is not given."""
@@ -54,18 +62,17 @@ class Block:
 
 def blocks(content: bytes, file: str) -> Iterator[Block]:
     """The keywords of a deck, whose lines end with line feeds."""
-    held: tuple[str, dict[str, str], int, int, int] | None = None
+    found = _keywords(content)
+    now = next(found, None)
     line, counted = 1, 0
-    for start, end, text in _keywords(content):
-        if held is not None:
-            key, parameters, at, first, begin = held
-            yield Block(file, key, at, parameters, content[begin:start], first)
-        line, counted = line + content.count(b"\n", counted, start), start
-        after = line + content.count(b"\n", start, end)
-        held = (*_keyword(text), line, after, end)
-    if held is not None:
-        key, parameters, at, first, begin = held
-        yield Block(file, key, at, parameters, content[begin:], first)
+    while now is not None:
+        start, begin, text = now
+        now = next(found, None)
+        line += content.count(b"\n", counted, start)
+        first = line + content.count(b"\n", start, begin)
+        data = content[begin : len(content) if now is None else now[0]]
+        yield Block(file, _full(text.partition(b",")[0]), line, text, data, first)
+        line, counted = first, begin
 
 
 def _keywords(content: bytes) -> Iterator[tuple[int, int, bytes]]:
@@ -92,15 +99,13 @@ def _next_line(content: bytes, at: int) -> int:
     return content.find(b"\n", at) + 1 or len(content)
 
 
-def _keyword(text: bytes) -> tuple[str, dict[str, str]]:
-    """Keyword in full, and its parameters, from the text after the star."""
-    words = [word.strip() for word in _WORD.findall(text.decode("utf-8", "replace"))]
-    pairs = (word.partition("=") for word in words[1:] if word)
-    parameters = {"".join(name.upper().split()): value.strip() for name, _, value in pairs}
-    given = " ".join(words[0].upper().split())
+@lru_cache(1000)
+def _full(word: bytes) -> str:
+    """Keyword in full and in capitals."""
+    given = " ".join(word.decode("utf-8", "replace").upper().split())
     close = given.replace(" ", "")
     full = [name for short, name in _FULL.items() if len(close) >= _SHORTEST and short.startswith(close)]
-    return _FULL.get(close) or _OTHERWISE.get(close) or (full[0] if len(full) == 1 else given), parameters
+    return _FULL.get(close) or _OTHERWISE.get(close) or (full[0] if len(full) == 1 else given)
 
 
 def _is_quoted(text: str) -> bool:

@@ -33,7 +33,7 @@ _NO_FACES = re.compile(
 _SECTION = re.compile(r"[A-Z]*AXA?\d\w*")
 """Elements of an axisymmetric section, such as CAX4 and SAX1."""
 SECTION = "section"
-_HEXAHEDRON27 = [*range(20), 25, 23, 24, 26, 21, 22, 20]
+_HEXAHEDRON27 = [*range(20), 26, 24, 23, 25, 21, 22, 20]
 """Middle nodes: Abaqus has that of the cell first, then those of its sides 1 to 6; VTK the sides by axis, then it."""
 
 
@@ -83,7 +83,7 @@ def cells_of(block: Block, kind: str) -> list[Cells]:
     ends = np.arange(width, len(given.values) + width, width)
     short = np.flatnonzero(~is_start[np.minimum(ends, len(given.values))] | (ends > len(given.values)))
     if len(short) == 0:
-        return [_cells(kind, given.values.reshape(-1, width))]
+        return [_cells(kind, given.values.reshape(-1, width))] if len(given.values) else []
     if kind in _FEWER:
         return _by_commas(block, given, kind)
     raise _wrong_count(block, int(np.searchsorted(given.start, int(short[0]) * width)), kind)

@@ -65,7 +65,7 @@ class Generation:
             count = [given[k] or 1 for k in (0, 3, 6)]
             if min(count) < 1:
                 raise block.refusal("has a count below 1; mend it")
-            self._count(min(count[0] * count[1] * count[2], _MOST + 1) - 1, block)
+            self._count(count[0] * count[1] * count[2] - 1, block)
             steps = np.array([[given[k + 1] or 1, given[k + 2] or 1] for k in (0, 3, 6)], dtype=np.int64)
             places = np.column_stack(np.unravel_index(np.arange(1, count[0] * count[1] * count[2]), count))
             of_node, of_element = (places @ steps).T

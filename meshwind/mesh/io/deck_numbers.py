@@ -14,9 +14,12 @@ from meshwind.mesh.io.deck_blocks import Block
 
 _PIECE = 4_000_000
 """Bytes that are taken apart at a time, which bounds the memory."""
+_LARGEST = 1e100
+"""Largest size of a number: squares and products of larger ones are not finite."""
+_EXPONENT_E = bytes.maketrans(b"dD", b"eE")
 _BLANK = b" \t\v\f"
-_EXPONENT = re.compile(rb"(?i)^([+-]?(?:\d+\.?\d*|\.\d+))(?:d([+-]?\d+)|(?<=[\d.])([+-]\d+))$")
-"""Numbers as Fortran also writes them: 1.0D+3, and 1.0+3."""
+_EXPONENT = re.compile(rb"(?i)^([+-]?(?:\d+\.?\d*|\.\d+))([+-]\d+)$")
+"""Numbers as Fortran also writes them: 1.0+3 for 1.0E+3."""
 
 
 @dataclass(frozen=True)
@@ -90,24 +93,42 @@ def _numbers(block: Block, number: Callable[[bytes], float], kind: np.dtype[Any]
     while at < len(data):
         end = data.find(b"\n", at + _PIECE) + 1 or len(data)
         piece, at = data[at:end], end
-        given = [line for each in piece.split(b"\n") if (line := each.strip(_BLANK)).strip(b", \t")]
+        given = [line for each in piece.split(b"\n") if (line := each.strip(_BLANK))]
         if b"*" in piece:
             given = [line for line in given if not line.startswith(b"**")]
         lines = [line.rstrip(b", \t") for line in given]
-        words = b",".join(lines).split(b",") if lines else []
+        if b"" in lines:
+            given = [line for line in given if line.strip(b", \t")]
+            lines = [line for line in lines if line]
+        text = b"\n".join(lines)
+        plain = text.replace(b"\n", b",")
+        words = (plain.translate(_EXPONENT_E) if number is float else plain).split(b",") if lines else []
         try:
             if b"_" in piece:  # Python would take 1_0 for 10
                 raise ValueError
             values = np.fromiter(map(number, words), kind, len(words))
         except (ValueError, OverflowError):
             values = np.array([_mended(word, number, block, sum(map(len, counts)), lines) for word in words], kind)
-        if not np.isfinite(values).all():
-            raise block.refusal("has a number that is not finite; mend it")
+        if not ((values <= _LARGEST) & (values >= -_LARGEST)).all():
+            raise block.refusal("has a number that is not finite, or too large; mend it")
         parts.append(values)
-        counts.append(np.fromiter((line.count(b",") + 1 for line in lines), np.int64, len(lines)))
-        commas.append(np.fromiter((line.endswith(b",") for line in given), np.bool_, len(given)))
+        counts.append(_words_of_lines(text))
+        commas.append(_last_characters(b"\n".join(given)) == ord(","))
     start = np.cumsum(np.concatenate([np.zeros(1, dtype=np.int64), *counts]))
     return Numbers(np.concatenate([*parts, np.empty(0, kind)]), start, np.concatenate([*commas, np.empty(0, np.bool_)]))
+
+
+def _words_of_lines(text: bytes) -> Ints:
+    """Number of fields of each line."""
+    held = np.frombuffer(text + b"\n", dtype=np.uint8)
+    ends = np.searchsorted(np.flatnonzero(held == ord(",")), np.flatnonzero(held == ord("\n")))
+    return np.diff(ends, prepend=0) + 1 if text else np.empty(0, dtype=np.int64)
+
+
+def _last_characters(text: bytes) -> Any:
+    """Codes of the last character of each line; no line is empty."""
+    held = np.frombuffer(text + b"\n", dtype=np.uint8)
+    return held[np.flatnonzero(held == ord("\n")) - 1] if text else held[:0]
 
 
 def _mended(word: bytes, number: Callable[[bytes], float], block: Block, before: int, lines: list[bytes]) -> float:
@@ -119,7 +140,7 @@ def _mended(word: bytes, number: Callable[[bytes], float], block: Block, before:
         if not text:
             return 0
         found = _EXPONENT.match(text) if number is float else None
-        value = number(found[1] + b"e" + (found[2] or found[3]) if found else text)
+        value = number(found[1] + b"e" + found[2] if found else text)
         if abs(value) < 2**63:
             return value
     except ValueError:
