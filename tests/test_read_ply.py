@@ -24,6 +24,7 @@ from barrels import (
 )  # fmt: skip
 
 from meshwind.core.errors import BadInputError
+from meshwind.mesh.io.read import load
 from meshwind.mesh.io.scalars import read_scalars, scalar_names
 
 ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
@@ -119,21 +120,20 @@ def test_headers_may_have_remarks_and_other_line_ends(order: str, tmp_path: Path
             read_back(written(tmp_path, "part.ply", ply(order, vertices(), faces(MIXED), head=head, end=end)))
 
 
+@pytest.mark.parametrize("order", ORDERS)
+def test_the_last_line_of_a_header_may_end_otherwise(order: str, tmp_path: Path) -> None:
+    unix, windows = (ply(order, vertices(), faces(MIXED), end=end) for end in ("\n", "\r\n"))
+    read_back(written(tmp_path, "part.ply", unix.replace(b"end_header\n", b"end_header\r\n")))
+    read_back(written(tmp_path, "part.ply", windows.replace(b"end_header\r\n", b"end_header\n")))
+
+
 def test_data_that_begin_with_a_line_feed_are_not_taken_for_the_header(tmp_path: Path) -> None:
     first = POINTS.copy()
     first[0, 0] = np.frombuffer(b"\n\n\n\n\n\n\n\n", "<f8")[0]
     table: Table = ("vertex", vertices()[1], first.tolist())
     for end in ("\n", "\r", "\r\n"):
-        path = written(tmp_path, "part.ply", ply("binary_little_endian", ("face", *faces()[1:]), table, end=end))
         path = written(tmp_path, "part.ply", ply("binary_little_endian", table, faces(TRIANGLES[2:-2]), end=end))
-        held = read_back_points(path)
-        assert np.array_equal(held, first)
-
-
-def read_back_points(path: Path) -> Any:
-    from meshwind.mesh.io.read import load
-
-    return load(path).vertices
+        assert np.array_equal(load(path).vertices, first)
 
 
 TEXT = ply("ascii", vertices(), faces(MIXED))

@@ -55,6 +55,8 @@ SAME: dict[str, bytes | str] = {
     "one line": PLAIN.replace("\n", " ") + "\n",
     "text after the end": PLAIN + "\n\n",
     "quadrangles": text(MIXED),
+    "zeros after the end": PLAIN.encode() + bytes(9),
+    "an end of old systems": PLAIN.encode() + b"\x1a",
     "exponents": PLAIN.replace(".0\n", ".0E+00\n"),
 }  # fmt: skip
 
@@ -98,7 +100,8 @@ def test_a_length_that_is_no_whole_number_is_refused(tmp_path: Path) -> None:
     ("  outer loop\n", "", "line 3, 'vertex 20.0 0.0 0.0', is not in its place"),
     ("endfacet\n", "", "line 8, 'facet normal 0 0 1', is not in its place"),
     ("facet normal 0 0 1\n", "", "line 2, 'outer loop', is not in its place"),
-    ("endfacet\n", "endfacet\ncolour 1 0 0\n", "line 9, 'colour 1 0 0', is no statement of STL"),
+    ("endloop\n", "endloop\ncolour 1 0 0\n", "line 8, 'colour 1 0 0', is no statement of STL"),
+    ("vertex 20.0 0.0 0.0", "vertx 20.0 0.0 0.0", "line 4, 'vertx 20.0 0.0 0.0', is no statement of STL"),
     ("vertex 20.0 0.0 0.0", "vertex 20,0 0,0 0,0", "line 4 has '20,0' where a number should be; write"),
     ("vertex 20.0 0.0 0.0", "vertex 20.0 0.0", "the vertex in line 4 has not three coordinates"),
     ("vertex 20.0 0.0 0.0", "vertex 20.0 0.0 0.0 1.0", "the vertex in line 4 has not three coordinates"),
@@ -118,3 +121,14 @@ def test_a_part_cut_within_a_solid_that_another_follows_is_refused(tmp_path: Pat
     first = text(TRIANGLES[:30], "a")
     cut = first[: first.rindex("  endloop")]
     assert "is not in its place" in refusal(written(tmp_path, "part.stl", cut + text(TRIANGLES[30:], "b")))
+
+
+def test_lines_between_facets_are_told(tmp_path: Path) -> None:
+    path = written(tmp_path, "part.stl", PLAIN.replace("endfacet\n", "endfacet\ncolour 1 0 0\n", 3))
+    read_back(path, warns="3 lines are no statements of STL, the first one in line 9; left out")
+
+
+def test_bytes_in_the_other_order_are_told(tmp_path: Path) -> None:
+    rows = b"".join(struct.pack(">12fH", 0, 0, 1, *POINTS[list(face)].ravel(), 0) for face in TRIANGLES)
+    path = written(tmp_path, "part.stl", bytes(80) + struct.pack(">I", 80) + rows)
+    read_back(path, warns="stored highest byte first, against the format; read as stored")

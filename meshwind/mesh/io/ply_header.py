@@ -50,7 +50,8 @@ def read_header(content: bytes) -> Header:
     if first is None:
         raise ValueError("its first line is not ply")
     # lines end as the first one does: a byte of the data after the header may look like an end of line
-    found = re.search(rb"(?<=[\r\n])end_header[ \t]*" + re.escape(first[1]), content[:_MAX_HEADER])
+    end = rb"\r" if first[1] == b"\r" else rb"\r?\n"
+    found = re.search(rb"(?<=[\r\n])end_header[ \t]*" + end, content[:_MAX_HEADER])
     if found is None:
         raise ValueError("its header does not end")
     order: str | None = None

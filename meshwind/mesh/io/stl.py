@@ -15,6 +15,7 @@ from meshwind.mesh.io.text_stl import read_text_stl
 
 _HEADER, _FACET = 84, 50  # bytes of a binary STL file
 _FACETS = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+_TURNED = _FACETS.newbyteorder(">")
 _START = 4096
 """Length of the part of a file that tells text from binary data."""
 _MAX_SOLIDS = 100_000
@@ -24,7 +25,7 @@ def read_stl(path: Path) -> FileMesh:
     """Vertices and triangles of an STL file."""
     content = path.read_bytes()
     if _is_text(content):
-        return read_text_stl(path.name, plain_text(content))
+        return read_text_stl(path.name, plain_text(content).rstrip(b"\0\x1a"))
     if len(content) < _HEADER:
         raise ValueError("shorter than the header of a binary STL file")
     if b"\0" not in content[:_START]:
@@ -39,7 +40,8 @@ def _is_text(content: bytes) -> bool:
     start = content[:_START]
     if start.startswith((b"\xff\xfe", b"\xfe\xff")):
         return True
-    return b"\0" not in start and re.match(rb"(?:\xef\xbb\xbf)?\s*(solid|facet)\b", start, re.IGNORECASE) is not None
+    begins = re.match(rb"(?:\xef\xbb\xbf)?\s*(solid|facet)\b", start, re.IGNORECASE) is not None
+    return begins and (b"\0" not in start or re.search(rb"(?i)\bfacet\s+normal\s", start) is not None)
 
 
 def _count(content: bytes, at: int) -> int:
@@ -53,6 +55,10 @@ def _binary(name: str, content: bytes) -> FileMesh:
     announced, left = _count(content, 0), len(content) - at
     present, odd = divmod(len(content) - _HEADER, _FACET)
     warnings = []
+    facets = _FACETS
+    if left and not odd and int.from_bytes(content[80:_HEADER], "big") == present:
+        solids, left, facets = [(_HEADER, present)], 0, _TURNED
+        warnings.append("count and coordinates are stored highest byte first, against the format; read as stored")
     if left and not odd:
         solids, left = [(_HEADER, present)], 0
         advice = ", but if it was cut short, copy or export it again" if announced > present else ""
@@ -70,7 +76,7 @@ def _binary(name: str, content: bytes) -> FileMesh:
         )
     if left:
         warnings.append(f"{left} bytes after the last triangle are not read")
-    parts = [np.frombuffer(content, _FACETS, count, start)["corners"].reshape(-1, 3) for start, count in solids]
+    parts = [np.frombuffer(content, facets, count, start)["corners"].reshape(-1, 3) for start, count in solids]
     corners = np.concatenate(parts).astype(np.float64)
     return FileMesh(corners, np.arange(len(corners)).reshape(-1, 3), own_unit(content), tuple(warnings))
 

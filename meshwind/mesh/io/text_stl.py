@@ -24,7 +24,7 @@ def read_text_stl(name: str, content: bytes) -> FileMesh:
     """
     lines = _statements(content.lower())
     vertex = lines.begin_with(b"vertex")
-    sizes = _checked(name, lines, vertex)
+    sizes, strange = _checked(name, lines, vertex)
     rows = lines.rows(vertex, len(b"vertex"))
     at = np.flatnonzero(vertex)
     try:
@@ -37,7 +37,7 @@ def read_text_stl(name: str, content: bytes) -> FileMesh:
         raise BadInputError(f"{name}: the vertex in line {number} has not three coordinates; export the mesh again")
     points = numbers.reshape(-1, 3)
     blocks, warnings = face_blocks(Lists(sizes, np.arange(len(points))))
-    return surface_mesh(points, blocks, own_unit(content), warnings)
+    return surface_mesh(points, blocks, own_unit(content), strange + warnings)
 
 
 def _statements(low: bytes) -> Lines:
@@ -57,8 +57,11 @@ def _solids(lines: Lines) -> Bools:
     return lines.begin_with(b"solid") | lines.begin_with(b"endsolid")
 
 
-def _checked(name: str, lines: Lines, vertex: Bools) -> Ints:
-    """Number of vertices of each facet.  Refuses facets that are not whole, and lines that are not known."""
+def _checked(name: str, lines: Lines, vertex: Bools) -> tuple[Ints, tuple[str, ...]]:
+    """Number of vertices of each facet, and words on unknown lines between facets.
+
+    Refuses facets that are not whole, and unknown lines within them.
+    """
     kind = np.full(len(lines.first), -1)
     for place, word in enumerate(_ORDER):
         kind[lines.begin_with(word)] = place
@@ -77,10 +80,12 @@ def _checked(name: str, lines: Lines, vertex: Bools) -> Ints:
     strange = np.setdiff1d(strange, solid)
     for found, words in (
         (np.concatenate([wrong, outer, early]), "is not in its place, so that a facet is not whole"),
-        (strange, "is no statement of STL"),
+        (strange[before[strange] % 4 != 0], "is no statement of STL"),
     ):
         if len(found):
             line = int(found.min())
             text = b" ".join(lines.words(line)).decode("latin-1")[:40]
             raise BadInputError(f"{name}: line {lines.number(line)}, {text!r}, {words}; export the mesh again")
-    return np.bincount(before[inside] // 4, minlength=len(number) // 4).astype(np.int64)
+    words = f"{len(strange)} lines are no statements of STL, the first one in line {{}}; left out"
+    told = (words.format(lines.number(int(strange[0]))),) if len(strange) else ()
+    return np.bincount(before[inside] // 4, minlength=len(number) // 4).astype(np.int64), told
