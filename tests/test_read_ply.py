@@ -182,9 +182,13 @@ def test_cut_files_say_what_is_missing(table: str, order: str, tmp_path: Path) -
     count = len(TABLES[table][1][2])
     name = TABLES[table][1][0]
     last = _row(ORDERS[order], *TABLES[table][1][1:2], TABLES[table][1][2][-1])
+    before = _row(ORDERS[order], *TABLES[table][1][1:2], TABLES[table][1][2][-2 if count > 1 else -1])
     words = "is cut short: it announces {} rows of '{}' and holds {}; copy or export it again"
     cut = len(last) if order == "ascii" else 1
     assert refusal(written(tmp_path, "part.ply", whole[:-cut])) == words.format(count, name, count - 1)
+    if count > 1:
+        two = whole[: -len(last) - (len(before) if order == "ascii" else 1)]
+        assert refusal(written(tmp_path, "part.ply", two)) == words.format(count, name, count - 2)
     points = ply(order, TABLES[table][0], ("face", [], []))
     head = whole.index(b"end_header\n") + len(b"end_header\n")
     rest = len(points) - points.index(b"end_header\n") - len(b"end_header\n")
@@ -197,13 +201,15 @@ def test_cut_files_say_what_is_missing(table: str, order: str, tmp_path: Path) -
 @pytest.mark.parametrize(("was", "becomes", "words"), [
     (b"\n3 0 1 9\n", b"\n3 0 1\n", "line 58 has 3 numbers, where row 1 of 'face' has 4 by the file's header"),
     (b"\n3 0 1 9\n", b"\n3 0 1 9 1\n", "line 58 has 5 numbers, where row 1 of 'face' has 4 by the file's header"),
-    (b"\n3 0 1 9\n", b"\n2.5 0 1 9\n", "cannot be read as PLY (the length of a list in row 1 is no whole number)"),
+    (b"\n3 0 1 9\n", b"\n2.5 0 1 9\n", "cannot be read as PLY (row 1 has a list of 2.5 numbers)"),
     (b"uchar int", b"float int", "cannot be read as PLY (its list 'vertex_indices' has a length that is not whole)"),
     (b"uchar int", b"uchar long", "cannot be read as PLY (its header has the line"),
     (b"vertex_indices", b"corners", "cannot be read as PLY (its element face has no list vertex_indices)"),
     (b"double x", b"double w", "cannot be read as PLY (its vertices have no x, y and z)"),
     (b"element face", b"element vertex", "cannot be read as PLY (its header declares an element twice)"),
     (b"ascii", b"binary", "cannot be read as PLY (its header has the line"),
+    (b"\n3 0 1 9\n", b"\n1e308 0 1 9\n", "cannot be read as PLY (row 1 has a list of 1e+308 numbers)"),
+    (b"\n3 0 1 9\n", b"\n-3 0 1 9\n", "cannot be read as PLY (row 1 has a list of -3 numbers)"),
     (b"format ascii 1.0\n", b"", "cannot be read as PLY (its header names no format)"),
     (b"end_header", b"", "cannot be read as PLY (its header does not end)"),
     (b"\n20.0 0.0 0.0", b"\n20,0 0.0 0.0", "line 10 has '20,0' where a number should be; write"),
@@ -227,13 +233,10 @@ def test_scalars_are_found_beside_lists(order: str, tmp_path: Path) -> None:
     values = [0.5 + 0.25 * (k % 4) for k in range(len(POINTS))]
     table: Table = ("vertex", ["list uchar int near", "float mu", *vertices()[1]],
                     [[[1] * (k % 3), values[k], *point] for k, point in enumerate(POINTS.tolist())])  # fmt: skip
-    patch: Table = (
-        "face",
-        ["double nu", "list uchar int vertex_indices"],
-        [[float(k), f] for k, f in enumerate(MIXED)],
-    )
+    patch: Table = ("face", ["list uchar float texcoord", "list uchar int vertex_indices", "char a", "double nu"],
+                    [[(k % 5) * [0.5], face, 1, float(k)] for k, face in enumerate(MIXED)])  # fmt: skip
     path = written(tmp_path, "part.ply", ply(order, table, patch))
-    assert scalar_names(path) == ("mu", "nu")
+    assert scalar_names(path) == ("a", "mu", "nu")
     on_points, on_faces = read_scalars(path, "mu"), read_scalars(path, "nu")
     assert np.array_equal(on_points.values, values) and np.array_equal(on_points.points, POINTS)
     assert np.array_equal(on_faces.values, np.arange(len(MIXED)))
@@ -244,3 +247,14 @@ def test_scalars_are_found_beside_lists(order: str, tmp_path: Path) -> None:
 
 def test_numbers_are_written_with_all_digits() -> None:
     assert numbers(POINTS[1]).split() == [repr(float(value)) for value in POINTS[1]]
+
+
+@pytest.mark.parametrize("length", [-1, -(2**62), 2**62])
+@pytest.mark.parametrize("row", [0, 5, 59])
+def test_lengths_that_cannot_be_are_refused(length: int, row: int, tmp_path: Path) -> None:
+    for kind, order in list(ORDERS.items())[1:]:
+        rows = [struct.pack(f"{order}q{len(face)}i", len(face), *face) for face in MIXED]
+        rows[row] = struct.pack(f"{order}q", length) + rows[row][8:]
+        head = ply(kind, vertices(), faces([], "int64 int")).replace(b"element face 0", b"element face 60")
+        words = refusal(written(tmp_path, "part.ply", head + b"".join(rows)))
+        assert "is cut short: it announces 60 rows of 'face'" in words or "has a list of -" in words

@@ -17,7 +17,7 @@ from meshwind.mesh.io.face_lists import Lists, face_blocks
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.lines import Lines, NotANumber, without_comments
 from meshwind.mesh.io.ply_header import Element, Property
-from meshwind.mesh.io.ply_rows import Binary, CutShort, Step, spread, walk
+from meshwind.mesh.io.ply_rows import Binary, BrokenRow, CutShort, Step, spread, walk
 from meshwind.mesh.io.ply_text import list_length
 from meshwind.mesh.io.text import own_unit, plain_text
 
@@ -200,7 +200,7 @@ class _Data:
         numbers, sizes = self._numbers(filled)
         try:
             walked = walk(numbers.tolist(), count, [Step(1, list_length, 1)], 0)
-        except CutShort:
+        except BrokenRow:
             raise self._cut_short() from None
         used = int(np.searchsorted(np.cumsum(sizes), walked.end)) + 1
         return Lists(walked.sizes[0], numbers[spread(walked.begins[0], walked.sizes[0], 1)]), used

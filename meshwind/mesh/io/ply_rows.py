@@ -64,7 +64,7 @@ class Walk(NamedTuple):
 def walk(data: Any, rows: int, steps: Sequence[Step], at: int) -> Walk:
     """Go from row to row, as each says where the next one begins; numbers between lists are passed over.
 
-    One of the steps at least is a list.  Raises CutShort, and BrokenRow for a length below zero.
+    One of the steps at least is a list.  Raises CutShort, and BrokenRow for a length that is none.
     """
     lists = [k for k, step in enumerate(steps) if step.length is not None]
     before = [sum(step.width for step in steps[last + 1 : k]) for last, k in zip([-1, *lists[:-1]], lists, strict=True)]
@@ -84,13 +84,15 @@ def walk(data: Any, rows: int, steps: Sequence[Step], at: int) -> Walk:
                 ends.append(at)
             at += tail
     except (struct.error, IndexError, OverflowError):
-        raise CutShort(len(starts) - 1 - (starts[-1] > len(data)), np.array(starts)) from None
+        raise CutShort(len(starts) - 1 - (starts[-1] > len(data)), np.array(starts[:-1])) from None
+    except ValueError as error:
+        raise BrokenRow(f"row {len(starts)} {error}", np.array(starts)) from None
+    if at > len(data):
+        raise CutShort(rows - 1, np.array(starts))
     length_table = np.array(lengths, dtype=np.int64).reshape(len(starts), len(lists))
     if length_table.min(initial=0) < 0:
         row = int(np.flatnonzero((length_table < 0).any(axis=1))[0])
-        raise BrokenRow(f"the length of a list in row {row + 1} is no whole number", np.array(starts[: row + 1]))
-    if at > len(data):
-        raise CutShort(rows - 1, np.array(starts))
+        raise BrokenRow(f"row {row + 1} has a list of {length_table[row].min()} numbers")
     return _placed(steps, np.array(starts), np.array(ends).reshape(length_table.shape), length_table, at)
 
 

@@ -110,6 +110,8 @@ def _of_one_length(element: Element, rows: Any, at: int) -> Table:
 
 
 def list_length(data: Any, at: int) -> int:
-    """Length of a list, -1 if it is not whole."""
+    """Length of a list.  Raises ValueError if it is not whole, or longer than the data."""
     length = float(data[at])
-    return int(length) if length.is_integer() else -1
+    if not (0.0 <= length <= len(data) and length.is_integer()):
+        raise ValueError(f"has a list of {length:g} numbers")
+    return int(length)
