@@ -5,12 +5,14 @@ import numpy as np
 from meshwind.core.cast import Floats, Ints
 from meshwind.mesh.io.deck_blocks import Block
 from meshwind.mesh.io.deck_elements import Cells
-from meshwind.mesh.io.deck_numbers import floats_of, ints_of
+from meshwind.mesh.io.deck_numbers import floats_of
 from meshwind.mesh.io.deck_part import Part, rows_of
 from meshwind.mesh.io.deck_places import Place, cartesian
 
 _MOST = 1_000_000
 """Largest number of nodes or elements that a deck may make."""
+_ROUND = 1e-3
+"""Largest difference of the radii of an arc, as a share: by so much are ends rounded in decks."""
 
 
 class Generation:
@@ -57,9 +59,9 @@ class Generation:
         all_ids = np.concatenate([*(each.ids for each in cells), np.empty(0, dtype=np.int64)])
         order = np.argsort(all_ids, kind="stable")
         starts = np.cumsum([0] + [len(each.ids) for each in cells])
-        for line in ints_of(block).rows():
-            if len(line) > 10:
-                raise block.refusal("has a line of more than 10 numbers; mend it")
+        for line in floats_of(block).rows():
+            if len(line) > 10 or not all(abs(each) < 2**53 and each == int(each) for each in line):
+                raise block.refusal("has a line that is not up to 10 whole numbers; mend it")
             master, *given = [int(each) for each in line]
             given += [0] * (9 - len(given))
             count = [given[k] or 1 for k in (0, 3, 6)]
@@ -118,6 +120,8 @@ def _other(block: Block, part: Part, master: int) -> str:
 def _arc(a: Floats, b: Floats, normal: Floats, share: Floats, block: Block) -> Floats:
     """Points between a and b about the origin: the short way, or with a normal, counterclockwise about it."""
     size = np.linalg.norm([a, b], axis=1)
+    if not abs(size[0] - size[1]) <= _ROUND * size.max():
+        raise block.refusal("has an arc whose ends are not as far from its centre; mend it")
     axis = normal if normal.any() else np.cross(a, b)
     length = float(np.linalg.norm(axis))
     if not (length > 1e-12 * size[0] * size[1] and size.min() > 0.0):
