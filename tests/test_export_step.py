@@ -9,10 +9,10 @@ import pytest
 from export_results import plain_results, waisted_results
 
 from meshwind import read_cad
+from meshwind.core import opencascade
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
-from meshwind.export import opencascade
-from meshwind.export.opencascade import occ
+from meshwind.core.opencascade import occ
 from meshwind.export.splines import clamped_surface
 from meshwind.export.step import write_step
 from meshwind.results.reading import Results

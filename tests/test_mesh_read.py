@@ -15,6 +15,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.mesh import SUFFIXES, Mesh, read
 from meshwind.mesh.geometry.areas_and_volumes import areas, volume
 from meshwind.mesh.geometry.topology import euler
+from meshwind.mesh.io.cad import CAD
 
 MODEL = """<?xml version="1.0"?>
 <model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">
@@ -79,7 +80,8 @@ def test_every_format_gives_the_same_part(kind: str, tmp_path: Path, capfd: pyte
 
 
 def test_all_formats_are_tried() -> None:
-    assert {f".{kind.split('_')[0].rstrip('2')}" for kind in KINDS} | {".gltf"} == set(SUFFIXES)
+    by_others = {".gltf", *CAD}  # in test_hostile_files.py and test_read_cad.py
+    assert {f".{kind.split('_')[0].rstrip('2')}" for kind in KINDS} | by_others == set(SUFFIXES)
 
 
 def test_upper_case_and_text_paths(tmp_path: Path) -> None:
@@ -150,8 +152,10 @@ def test_missing_folder_and_unknown(tmp_path: Path) -> None:
     assert refusal(tmp_path / "part.stl") == f"file not found; {advice}"
     (tmp_path / "folder.stl").mkdir()
     assert refusal(tmp_path / "folder.stl") == f"is a folder; {advice}"
-    (tmp_path / "part.step").write_text("ISO-10303-21;")
-    assert refusal(tmp_path / "part.step").startswith("is a CAD file, not a mesh; save it as STL")
+    (tmp_path / "part.sldprt").write_text("any")
+    assert refusal(tmp_path / "part.sldprt") == "is a file of a CAD program, not a mesh; export it there as STEP or STL"
+    (tmp_path / "part.nas").write_text("BEGIN BULK")
+    assert refusal(tmp_path / "part.nas").startswith("unknown format '.nas'; convert the mesh to one of STL, PLY, OBJ")
     (tmp_path / "part.dae").write_text("x")
     assert refusal(tmp_path / "part.dae").startswith("unknown format '.dae'; convert the mesh to one of STL, PLY")
     (tmp_path / "part").write_text("solid")

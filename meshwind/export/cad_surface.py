@@ -10,11 +10,10 @@ import numpy as np
 
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
-from meshwind.export.opencascade import need, occ, quiet
+from meshwind.core.opencascade import IGES, STEP, need, occ, parts_of, read_shape
 from meshwind.surface.interpolate import sites, through
 from meshwind.surface.surface import FitError, Surface
 
-_STEP, _IGES = (".step", ".stp"), (".iges", ".igs")
 _COARSEST, _FINEST = 16, 512
 _CLOSED = 1e-6
 """Largest distance over the diagonal between ends that form a seam."""
@@ -122,27 +121,14 @@ def read_cad(path: str | PathLike[str], tolerance: float = 1e-7) -> tuple[Surfac
 
 
 def _faces(path: Path) -> list[Any]:
-    if path.suffix.lower() not in _STEP + _IGES:
-        raise BadInputError(f"{path.name} is neither STEP nor IGES; give one of {', '.join(_STEP + _IGES)}")
+    if path.suffix.lower() not in STEP + IGES:
+        raise BadInputError(f"{path.name} is neither STEP nor IGES; give one of {', '.join(STEP + IGES)}")
     if not path.is_file():
         raise BadInputError(f"{path} not found; give the path of a STEP or IGES file")
-    step = path.suffix.lower() in _STEP
-    reader = occ("STEPControl").STEPControl_Reader() if step else occ("IGESControl").IGESControl_Reader()
-    with quiet():
-        status = reader.ReadFile(str(path))
-        if status != occ("IFSelect").IFSelect_ReturnStatus.IFSelect_RetDone:
-            raise BadInputError(f"OpenCASCADE cannot read {path.name}; export it again from CAD")
-        reader.TransferRoots()
-        shape = reader.OneShape()
-    if shape.IsNull():
+    shape, _ = read_shape(path)
+    if shape is None:
         return []
-    shape = occ("BRepBuilderAPI").BRepBuilderAPI_NurbsConvert(shape, True).Shape()
-    explorer = occ("TopExp").TopExp_Explorer(shape, occ("TopAbs").TopAbs_ShapeEnum.TopAbs_FACE)
-    faces = []
-    while explorer.More():
-        faces.append(occ("TopoDS").TopoDS.Face(explorer.Current()))
-        explorer.Next()
-    return faces
+    return parts_of(occ("BRepBuilderAPI").BRepBuilderAPI_NurbsConvert(shape, True).Shape(), "FACE")
 
 
 def _patch(face: Any) -> Patch | None:

@@ -7,8 +7,8 @@ import numpy as np
 
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
+from meshwind.core.opencascade import knots_array, need, occ, points_array, quiet
 from meshwind.core.units import millimetres
-from meshwind.export.opencascade import knots_array, need, occ, points_array, quiet
 from meshwind.export.splines import clamped_surface, curve_through
 from meshwind.results import schema
 from meshwind.results.reading import Results

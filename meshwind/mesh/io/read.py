@@ -15,8 +15,10 @@ from typing import Any
 from xml.etree.ElementTree import ParseError
 
 from meshwind.core.errors import BadInputError
+from meshwind.core.opencascade import need
 from meshwind.core.units import BY_FILE
 from meshwind.mesh.geometry.mesh import Mesh
+from meshwind.mesh.io.cad import CAD, read_cad_mesh
 from meshwind.mesh.io.deck import read_deck
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.gltf import read_gltf
@@ -58,10 +60,13 @@ _READERS: dict[str, _Reader] = {
     ".vtp": _separate(read_vtk),
     ".msh": _separate(read_msh),
     ".inp": read_deck,
+    **dict.fromkeys(CAD, _separate(read_cad_mesh)),
 }
-_CAD = (
-    ".step", ".stp", ".iges", ".igs", ".brep", ".sldprt", ".catpart", ".ipt", ".x_t", ".x_b", ".prt", ".3dm", ".fcstd",
-)  # fmt: skip
+_FROM_CAD = {
+    ".sldprt", ".sldasm", ".catpart", ".catproduct", ".cgr", ".ipt", ".iam", ".prt", ".asm", ".par", ".psm", ".x_t",
+    ".x_b", ".xmt_txt", ".sat", ".sab", ".jt", ".3dm", ".fcstd", ".f3d", ".skp", ".dwg", ".dxf", ".ifc", ".blend",
+}  # fmt: skip
+"""Endings of files of CAD programs that no free library reads well."""
 SUFFIXES = tuple(_READERS)
 """File name endings that `read` understands."""
 
@@ -79,8 +84,8 @@ RuntimeWarning comes from a cast, if the caller turns warnings into errors.
 def read(mesh: str | PathLike[str] | Any, component: int = 0, units: str | None = None) -> Mesh:
     """Read a triangle mesh from a file, or take it from another library, and repair it.
 
-    STL, PLY, OBJ, OFF, GLB, GLTF, 3MF, VTK, VTU, VTP, MSH and INP files are read.  Polygons are cut into triangles,
-    and of a volume mesh the skin is taken.
+    STL, PLY, OBJ, OFF, GLB, GLTF, 3MF, VTK, VTU, VTP, MSH and INP files are read, and STEP, IGES and BREP
+    files with the extra ``meshwind[cad]``.  Polygons are cut into triangles, and of a volume mesh the skin is taken.
 
     Parameters
     ----------
@@ -170,10 +175,12 @@ def _reader(file: Path) -> _Reader:
         if isinstance(error, BadInputError):
             raise
         raise BadInputError(f"{file.name}: cannot be opened ({_first_line(error)}); {advice}") from error
-    if file.suffix.lower() in _CAD:
-        raise BadInputError(f"{file.name}: is a CAD file, not a mesh; save it as STL or 3MF from CAD")
+    if file.suffix.lower() in _FROM_CAD:
+        raise BadInputError(f"{file.name}: is a file of a CAD program, not a mesh; export it there as STEP or STL")
+    if file.suffix.lower() in CAD:
+        need(f"{file.name}: ")
     if file.suffix.lower() not in _READERS:
-        known = ", ".join(suffix[1:].upper() for suffix in SUFFIXES)
+        known = ", ".join(suffix[1:].upper() for suffix in SUFFIXES if suffix not in (".stp", ".igs"))
         raise BadInputError(f"{file.name}: unknown format {file.suffix!r}; convert the mesh to one of {known}")
     return _READERS[file.suffix.lower()]
 

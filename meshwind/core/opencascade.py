@@ -4,17 +4,20 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 from meshwind.core.errors import BadInputError
 
-MISSING = "STEP and IGES need OpenCASCADE; install it with: pip install 'meshwind[cad]'"
+STEP, IGES, BREP = (".step", ".stp"), (".iges", ".igs"), (".brep",)
+"""Endings of the files of CAD that OpenCASCADE reads."""
+MISSING = "files of CAD (STEP, IGES, BREP) need OpenCASCADE; install it with: pip install 'meshwind[cad]'"
 
 
-def need() -> None:
-    """Raise BadInputError if OpenCASCADE is not installed or too old."""
+def need(before: str = "") -> None:
+    """Raise BadInputError, with words before it, if OpenCASCADE is not installed or too old."""
     if find_spec("OCP") is None or find_spec("OCP.collections") is None:
-        raise BadInputError(MISSING)
+        raise BadInputError(before + MISSING)
 
 
 def occ(module: str) -> Any:
@@ -35,6 +38,42 @@ def quiet() -> Iterator[None]:
     finally:
         for printer in printers:
             messenger.AddPrinter(printer)
+
+
+def read_shape(path: Path) -> tuple[Any, int]:
+    """The shape in a STEP, IGES or BREP file, None if there is none, and how many of its roots could not be read.
+
+    Lengths are in mm where the file has a unit.  Raises BadInputError if the file cannot be read.
+    """
+    suffix = path.suffix.lower()
+    with quiet():
+        if suffix in BREP:
+            shape = occ("TopoDS").TopoDS_Shape()
+            if not occ("BRepTools").BRepTools.Read_s(shape, str(path), occ("BRep").BRep_Builder()):
+                raise _unreadable(path)
+            return None if shape.IsNull() else shape, 0
+        reader = occ("STEPControl").STEPControl_Reader() if suffix in STEP else occ("IGESControl").IGESControl_Reader()
+        if reader.ReadFile(str(path)) != occ("IFSelect").IFSelect_ReturnStatus.IFSelect_RetDone:
+            raise _unreadable(path)
+        wanted = reader.NbRootsForTransfer()
+        lost = wanted - reader.TransferRoots()
+        shape = reader.OneShape()
+    return None if shape.IsNull() else shape, max(lost, 0)
+
+
+def _unreadable(path: Path) -> BadInputError:
+    return BadInputError(f"{path.name}: OpenCASCADE cannot read it; export it again from CAD")
+
+
+def parts_of(shape: Any, kind: str) -> list[Any]:
+    """The parts of a shape of a kind, such as FACE or EDGE, each as often as it is used."""
+    topology = occ("TopoDS").TopoDS
+    explorer = occ("TopExp").TopExp_Explorer(shape, getattr(occ("TopAbs").TopAbs_ShapeEnum, f"TopAbs_{kind}"))
+    parts = []
+    while explorer.More():
+        parts.append(getattr(topology, kind.capitalize())(explorer.Current()))
+        explorer.Next()
+    return parts
 
 
 def points_array(values: Any) -> Any:

@@ -1,0 +1,198 @@
+"""Files of CAD given to `check` and `wind`: true to the CAD surface, in its unit, and the word on what to install."""
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import meshwind as mw
+from meshwind.core import opencascade
+from meshwind.core.errors import BadInputError
+from meshwind.core.opencascade import occ, quiet
+from meshwind.mesh.geometry.areas_and_volumes import areas, volume
+from meshwind.mesh.io.read import load, read
+
+TURNED = 0.002
+"""Relative error of areas from facets that turn by up to 8 degrees."""
+
+
+@pytest.fixture
+def cad() -> None:
+    """For tests that make CAD files."""
+    pytest.importorskip("OCP", reason="OpenCASCADE is missing: pip install 'meshwind[cad]'")
+
+
+def axis(z: float = 0.0) -> Any:
+    gp = occ("gp")
+    return gp.gp_Ax2(gp.gp_Pnt(0.0, 0.0, z), gp.gp_Dir(0.0, 0.0, 1.0))
+
+
+def cylinder(radius: float = 20.0, height: float = 120.0, z: float = 0.0) -> Any:
+    return occ("BRepPrimAPI").BRepPrimAPI_MakeCylinder(axis(z), radius, height).Shape()
+
+
+def frustum() -> Any:
+    return occ("BRepPrimAPI").BRepPrimAPI_MakeCone(axis(), 30.0, 15.0, 120.0).Shape()
+
+
+def pipe() -> Any:
+    return occ("BRepAlgoAPI").BRepAlgoAPI_Cut(cylinder(), cylinder(17.0, 122.0, -1.0)).Shape()
+
+
+def moved(shape: Any, x: float, mirror: bool = False) -> Any:
+    gp = occ("gp")
+    move = gp.gp_Trsf()
+    if mirror:
+        move.SetMirror(axis())
+    else:
+        move.SetTranslation(gp.gp_Vec(x, 0.0, 0.0))
+    if mirror:
+        return occ("BRepBuilderAPI").BRepBuilderAPI_Transform(shape, move, True).Shape()
+    return shape.Moved(occ("TopLoc").TopLoc_Location(move))
+
+
+def together(*shapes: Any) -> Any:
+    builder, held = occ("BRep").BRep_Builder(), occ("TopoDS").TopoDS_Compound()
+    builder.MakeCompound(held)
+    for shape in shapes:
+        builder.Add(held, shape)
+    return held
+
+
+def save(path: Path, shape: Any, unit: str = "MM") -> Path:
+    """Write a shape whose lengths are mm; the file may state them in another unit."""
+    with quiet():
+        if path.suffix == ".brep":
+            occ("BRepTools").BRepTools.Write_s(shape, str(path))
+        elif path.suffix in (".igs", ".iges"):
+            writer = occ("IGESControl").IGESControl_Writer(unit, 0)
+            writer.AddShape(shape)
+            writer.Write(str(path))
+        else:
+            occ("Interface").Interface_Static.SetCVal_s("write.step.unit", unit)
+            writer = occ("STEPControl").STEPControl_Writer()
+            writer.Transfer(shape, occ("STEPControl").STEPControl_StepModelType.STEPControl_AsIs)
+            writer.Write(str(path))
+            occ("Interface").Interface_Static.SetCVal_s("write.step.unit", "MM")
+    return path
+
+
+PARTS: dict[str, tuple[Callable[[], Any], float, float]] = {
+    "cylinder": (cylinder, 2 * np.pi * 20 * 120 + 2 * np.pi * 20**2, np.pi * 20**2 * 120),
+    "frustum": (
+        frustum,
+        np.pi * 45 * np.hypot(15, 120) + np.pi * (30**2 + 15**2),
+        np.pi * 120 / 3 * (30**2 + 30 * 15 + 15**2),
+    ),
+    "pipe": (pipe, 2 * np.pi * 37 * 120 + 2 * np.pi * (20**2 - 17**2), np.pi * (20**2 - 17**2) * 120),
+    "mirrored": (
+        lambda: moved(frustum(), 0.0, mirror=True),
+        np.pi * 45 * np.hypot(15, 120) + np.pi * (30**2 + 15**2),
+        np.pi * 120 / 3 * (30**2 + 30 * 15 + 15**2),
+    ),
+}
+"""Shape, exact area and exact volume."""
+
+
+@pytest.mark.parametrize("name", PARTS)
+@pytest.mark.parametrize("suffix", [".step", ".stp", ".iges", ".igs", ".brep"])
+@pytest.mark.usefixtures("cad")
+def test_parts_have_their_area_and_volume(name: str, suffix: str, tmp_path: Path) -> None:
+    make, area, inside = PARTS[name]
+    path = save(tmp_path / f"part{suffix}", make())
+    held = load(path)
+    assert held.units == ("" if suffix == ".brep" else "mm")
+    assert held.warnings == ()
+    assert areas(held.vertices, held.faces).sum() == pytest.approx(area, rel=TURNED)
+    if suffix not in (".igs", ".iges"):  # which hold surfaces without sides
+        a, b, c = (held.vertices[held.faces[:, k]] for k in range(3))
+        assert (a * np.cross(b, c)).sum() / 6.0 == pytest.approx(inside, rel=3 * TURNED)
+    mesh = read(path)
+    assert abs(volume(mesh.vertices, mesh.faces)) == pytest.approx(inside, rel=3 * TURNED)
+    assert mesh.warnings == ()
+
+
+@pytest.mark.usefixtures("cad")
+def test_vertices_are_on_the_surface_and_facets_near(tmp_path: Path) -> None:
+    mesh = read(save(tmp_path / "part.step", cylinder()))
+    radius = np.linalg.norm(mesh.vertices[:, :2], axis=1)
+    assert radius == pytest.approx(20.0, abs=1e-9)
+    corner = mesh.vertices[mesh.faces]
+    flank = np.ptp(corner[:, :, 2], axis=1) > 1.0
+    middles = np.linalg.norm(0.5 * (corner + np.roll(corner, 1, axis=1))[flank][:, :, :2], axis=2)
+    assert middles.min() > 20.0 - 1.1e-4 * mesh.diagonal
+
+
+@pytest.mark.parametrize("unit", ["INCH", "M", "CM"])
+@pytest.mark.usefixtures("cad")
+def test_other_units_come_in_millimetres(unit: str, tmp_path: Path) -> None:
+    path = save(tmp_path / "part.step", cylinder(), unit)
+    assert ("CONVERSION_BASED_UNIT" in path.read_text()) == (unit == "INCH")
+    held = load(path)
+    assert np.ptp(held.vertices, axis=0) == pytest.approx([40.0, 40.0, 120.0], rel=1e-3)
+    assert held.units == "mm"
+
+
+@pytest.mark.usefixtures("cad")
+def test_an_assembly_has_pieces_in_their_places(tmp_path: Path) -> None:
+    one = cylinder(10.0, 60.0)
+    path = save(tmp_path / "part.step", together(frustum(), moved(one, 200.0), moved(one, 300.0)))
+    found = mw.mesh.inspect(path)
+    assert found.piece_count == 3 and found.units == "mm"
+    boss = read(path, component=2)
+    centre = boss.vertices.mean(axis=0)[0]
+    assert min(abs(centre - 200.0), abs(centre - 300.0)) < 0.5
+
+
+@pytest.mark.usefixtures("cad")
+def test_a_smooth_part_is_fitted_as_well_as_its_mesh_allows(tmp_path: Path) -> None:
+    opened = mw.annulus(read(save(tmp_path / "pipe.step", pipe())))
+    assert opened.wall is not None and opened.wall.thickness == pytest.approx(3.0, rel=0.02)
+    error = mw.fit(mw.flatten(opened)).error
+    assert error is not None and error.to_surface_max < 2e-5 * error.diagonal
+
+
+@pytest.mark.parametrize(("name", "text", "says"), [
+    ("bad.step", "no step", "bad.step: OpenCASCADE cannot read it; export it again from CAD"),
+    ("bad.brep", "no brep", "bad.brep: OpenCASCADE cannot read it; export it again from CAD"),
+    ("none.igs", None, "none.igs: file not found; give the path of a triangle mesh"),
+])  # fmt: skip
+@pytest.mark.usefixtures("cad")
+def test_bad_files_are_refused_in_one_line(name: str, text: str | None, says: str, tmp_path: Path) -> None:
+    if text is not None:
+        (tmp_path / name).write_text(text)
+    with pytest.raises(BadInputError) as caught:
+        read(tmp_path / name)
+    assert says in str(caught.value) and "\n" not in str(caught.value)
+
+
+@pytest.mark.usefixtures("cad")
+def test_a_file_without_faces_is_refused(tmp_path: Path) -> None:
+    gp = occ("gp")
+    line = occ("BRepBuilderAPI").BRepBuilderAPI_MakeEdge(gp.gp_Pnt(0.0, 0.0, 0.0), gp.gp_Pnt(0.0, 0.0, 9.0)).Edge()
+    with pytest.raises(BadInputError, match="holds no CAD faces; export the whole part into one file"):
+        read(save(tmp_path / "part.step", line))
+
+
+@pytest.mark.parametrize("suffix", [".step", ".IGS", ".brep"])
+def test_without_opencascade_the_extra_is_named(suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / f"part{suffix}").write_text("ISO-10303-21;")
+    monkeypatch.setattr(opencascade, "find_spec", lambda _: None)
+    with pytest.raises(BadInputError) as caught:
+        read(tmp_path / f"part{suffix}")
+    assert str(caught.value) == (
+        f"part{suffix}: files of CAD (STEP, IGES, BREP) need OpenCASCADE; install it with: pip install 'meshwind[cad]'"
+    )
+
+
+@pytest.mark.usefixtures("cad")
+def test_check_takes_a_step_file(tmp_path: Path) -> None:
+    save(tmp_path / "part.step", pipe(), "INCH")
+    command = [sys.executable, "-m", "meshwind", "check", "part.step"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "can be wound" in done.stdout and "120 mm" in done.stdout
