@@ -185,6 +185,9 @@ MALICIOUS: dict[str, tuple[str, bytes]] = {
     "MSH of 10^12 nodes": (".msh", b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n999999999999\n1 0 0 0\n$EndNodes\n"),
     "INP that includes a file": (".inp", f"*HEADING\n*INCLUDE, INPUT={OUTSIDE}\n".encode()),
     "INP that includes itself": (".inp", b"*HEADING\n *Include, input=part.inp\n"),
+    "INP that makes 10^12 nodes": (".inp", b"*NODE\n1, 0, 0, 0\n1000000000000, 1, 0, 0\n*NGEN\n1, 1000000000000, 1\n"),
+    "INP that makes 10^12 elements": (".inp", b"*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n*ELEMENT, TYPE=S3\n"
+                                             b"1, 1, 2, 3\n*ELGEN\n1, 1000000, 1, 1, 1000000, 1, 1\n"),
     "VTK of 10^12 points": (".vtk", b"# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\n"
                                     b"POINTS 999999999999 float\n0 0 0\n"),
     "VTK of 10^10 bytes": (".vtk", b"# vtk DataFile Version 3.0\nx\nBINARY\nDATASET POLYDATA\n"

@@ -364,6 +364,23 @@ def test_malformed_lines_are_named(old: str, new: str, words: str, tmp_path: Pat
     assert words in refusal(tmp_path, BARREL.replace(old, new, 1))
 
 
+def test_names_are_shown_in_one_line(tmp_path: Path) -> None:
+    name = b'"a\x0bpart \xff of\xe2\x80\xa8' + 500 * b"x" + b'"'
+    text = (
+        b"*Part, name="
+        + name
+        + b"\n"
+        + BARREL.encode()
+        + b"*End Part\n"
+        + LINER.encode()
+        + assembly("part=Liner\n").encode()
+    )
+    (word,) = read_deck(deck(tmp_path, text)).warnings
+    assert len(word.splitlines()) == 1 and word.isprintable() and len(word) < 200
+    other = text.replace(b"S4R", b"\x85C3D8Q\x0c" + 500 * b"y")
+    assert len(refusal(tmp_path, other).splitlines()) == 1
+
+
 def test_files_that_are_no_deck(tmp_path: Path) -> None:
     assert "has no *NODE" in refusal(tmp_path, "4 1 0 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n1 1 tet 1 2 3 4\n")
 

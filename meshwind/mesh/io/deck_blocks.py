@@ -40,7 +40,7 @@ class Block:
     @cached_property
     def parameters(self) -> dict[str, str]:
         """Values of the parameters by their names in capitals; "" for one without a value."""
-        words = [word.strip() for word in _WORD.findall(self.text.decode("utf-8", "replace"))]
+        words = [word.strip() for word in _WORD.findall(_printable(self.text))]
         pairs = (word.partition("=") for word in words[1:] if word)
         return {"".join(name.upper().split()): value.strip() for name, _, value in pairs}
 
@@ -102,10 +102,16 @@ def _next_line(content: bytes, at: int) -> int:
 @lru_cache(1000)
 def _full(word: bytes) -> str:
     """Keyword in full and in capitals."""
-    given = " ".join(word.decode("utf-8", "replace").upper().split())
+    given = " ".join(_printable(word).upper().split())
     close = given.replace(" ", "")
     full = [name for short, name in _FULL.items() if len(close) >= _SHORTEST and short.startswith(close)]
     return _FULL.get(close) or _OTHERWISE.get(close) or (full[0] if len(full) == 1 else given)
+
+
+def _printable(text: bytes) -> str:
+    """Text whose tabs and other characters that cannot be printed are blanks."""
+    given = text.decode("utf-8", "backslashreplace")
+    return given if given.isprintable() else "".join(each if each.isprintable() else " " for each in given)
 
 
 def _is_quoted(text: str) -> bool:

@@ -27,8 +27,8 @@ STILL = Place(np.eye(3), np.zeros(3))
 def cartesian(given: Floats, system: str, block: Block) -> Floats:
     """Positions from rectangular (R), cylindrical (C: r, theta, z) or spherical (S: r, theta, phi) coordinates.
 
-    Angles are in degrees: theta from x towards y, phi from the plane of x and y towards z ("Node definition" of the
-    Abaqus documentation, figure of the coordinate systems).
+    Angles are in degrees: theta from x towards y, phi from the plane of x and y towards z (*NODE in the Abaqus
+    documentation, figure of the coordinate systems, and *NMAP, where phi is 0 in the plane square to the polar axis).
     """
     kind = system.strip().upper()
     if kind in ("", "R", "RC", "RECTANGULAR"):
