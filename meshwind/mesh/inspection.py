@@ -150,6 +150,7 @@ def inspect(
         wall=0.0 if found.wall is None else found.wall.thickness,
         side="" if found.wall is None else found.wall.side,
         notes=found.notes,
+        warnings=(*findings.warnings, *found.warnings),
         rim_lengths=tuple(perimeter(found.vertices, rim) for rim in found.rims),
     )
 

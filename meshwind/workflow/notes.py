@@ -9,6 +9,7 @@ from meshwind.chart import Chart
 from meshwind.core.errors import BadInputError
 from meshwind.layup.layup import Layup
 from meshwind.mesh import Annulus, Mesh
+from meshwind.mesh.opening.branches import BRANCHES
 from meshwind.mesh.opening.choose_ends import position_text
 from meshwind.path.lengths import lengths, unresolved_share
 from meshwind.path.paths import EDGE, Paths, Status, converged_or_all
@@ -34,7 +35,9 @@ SQUEEZED = 8.0
 """A 99th percentile of the area scale above this, over its mean, is typical of fingers, ears and fins."""
 _MAX_LISTED = 3
 """Places where surface and mesh lie far apart that are listed with their coordinates."""
-_PROTRUSIONS = "protrusions such as fingers and ears are squeezed by the chart; wind a part without them"
+_PROTRUSIONS = "protrusions such as fingers, ears and branches are squeezed by the chart; wind a part without them"
+_FINER = "give a finer or smoother mesh"
+_LEGS = f"{BRANCHES}; cut it where it branches and wind each leg as a part of its own"
 _COARSE = "its edges there are too sharp for the mesh; give a finer mesh, or round them"
 _CHORDS = (
     "its facets there are chords of the smooth surface through their corners; where the part itself is flat, give a "
@@ -70,8 +73,8 @@ def about_file(mesh: Mesh) -> tuple[Note, ...]:
 
 
 def about_opening(annulus: Annulus) -> tuple[Note, ...]:
-    """Notes on what was decided in opening a part: the skin of one with a wall, a plane in place of a level line."""
-    return tuple(map(Note, annulus.notes))
+    """Notes on what was decided in opening a part, such as the skin of one with a wall; warnings of its branches."""
+    return (*map(Note, annulus.notes), *(Note(text, warning=True) for text in annulus.warnings))
 
 
 def about_paths(paths: Paths) -> tuple[Note, ...]:
@@ -157,6 +160,8 @@ def about_fit(surface: Surface, chart: Chart, tolerance: float, worst_fit: float
     if missed <= tolerance:
         return ()
     text = _missed(error, missed, tolerance, units)
+    if _branches(chart):
+        text = text.replace(_FINER, _LEGS)
     if missed <= max(MISSED * tolerance, SHOWS):
         return (Note(text),)
     return (Note(f"{text}; surface and mesh lie furthest apart {_places(surface, chart)}", True, FIT_PICTURE),)
@@ -188,7 +193,7 @@ def _followed(surface: Surface, chart: Chart, error: FitError, units: str) -> tu
 def _missed(error: FitError, missed: float, tolerance: float, units: str) -> str:
     return (
         f"the tolerance of {ratio(tolerance)} is missed: vertices lie up to {ratio(missed)} of the part "
-        f"({quantity(error.to_surface_max, units, 2)}) off the surface; give a finer or smoother mesh, or accept it "
+        f"({quantity(error.to_surface_max, units, 2)}) off the surface; {_FINER}, or accept it "
         f"with --tolerance {power(missed)}"
     )
 
@@ -203,10 +208,17 @@ def _unresolved(surface: Surface, chart: Chart, error: FitError, units: str) -> 
 
 def _cause(chart: Chart, error: FitError) -> str:
     """Why a surface lies far off the mesh, and what helps."""
+    if _branches(chart):
+        return _LEGS
     if error.to_surface_max < _HELD * error.to_mesh_max:
         return _CHORDS
     squeezed = float(np.quantile(chart.stretch, 0.99)) > SQUEEZED
     return _PROTRUSIONS if squeezed else _COARSE
+
+
+def _branches(chart: Chart) -> bool:
+    """Whether the part has wide ends beside the two that are wound between."""
+    return any(text.startswith(BRANCHES) for text in chart.annulus.warnings)
 
 
 def _places(surface: Surface, chart: Chart) -> str:

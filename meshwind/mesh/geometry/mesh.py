@@ -136,6 +136,8 @@ class Annulus(PicklableRecord):
     wall : Wall, optional
         Wall of a part whose skin this is: its `side`, "outer" or "inner", and its median `thickness`.  None for other
         parts.
+    warnings : tuple of str, default ()
+        Branches and wide holes that were closed, in words.
 
     Examples
     --------
@@ -153,3 +155,4 @@ class Annulus(PicklableRecord):
     ends: str
     notes: tuple[str, ...] = ()
     wall: Wall | None = None
+    warnings: tuple[str, ...] = ()

@@ -11,6 +11,7 @@ from meshwind.mesh.geometry.areas_and_volumes import areas, volume
 from meshwind.mesh.geometry.fill_holes import fill_defects, fill_hole
 from meshwind.mesh.geometry.mesh import Annulus, Mesh
 from meshwind.mesh.geometry.topology import euler, loops, patches
+from meshwind.mesh.opening.branches import branch_warnings
 from meshwind.mesh.opening.choose_ends import End, EndsRequest, choose_ends, parse_ends, rims_by_number
 from meshwind.mesh.opening.curved_facets import CurvedFacets, curved_facets, split_chords
 from meshwind.mesh.opening.cut_opening import pinched
@@ -89,18 +90,20 @@ def annulus(
     spare = [loop for loop in others if int(loop[0]) not in chosen]
     if spare:
         notes.append(f"filled {len(spare)} other open {'rim' if len(spare) == 1 else 'rims'}")
+    kept = [end.loop for end in pair if end.loop is not None]
+    warnings = () if requested else branch_warnings(vertices, faces, spare, kept)
     for loop in spare:
         vertices, faces = fill_hole(vertices, faces, loop)
     surface = curved_facets(vertices, faces, np.arange(len(vertices)) < len(part.vertices))
     if wall is not None:
         words = words.replace("open rims", f"rims of the {side} skin").replace("open rim", f"rim of the {side} skin")
-        for loop in [end.loop for end in pair if end.loop is not None]:
+        for loop in kept:
             surface = straightened(surface, vertices[loop])
     asked = opening is not None or opening_by != "auto"
     surface, openings = open_ends(surface, pair, opening, opening_by, mesh.name)
     found = _assembled(mesh, split_chords(surface), pair, [_ends_in_words(words, pair, openings, asked), *notes])
     decided = (*(in_words(wall) for wall in [wall] if wall), *(each.why for each in openings if each.why))
-    return replace(found, notes=decided, wall=wall)
+    return replace(found, notes=decided, wall=wall, warnings=warnings)
 
 
 def _check_opening(opening: float | None) -> None:
