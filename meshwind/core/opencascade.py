@@ -9,9 +9,9 @@ from typing import Any
 
 from meshwind.core.errors import BadInputError
 
-STEP, IGES, BREP = (".step", ".stp"), (".iges", ".igs"), (".brep",)
+STEP, IGES = (".step", ".stp"), (".iges", ".igs")
 """Endings of the files of CAD that OpenCASCADE reads."""
-MISSING = "files of CAD (STEP, IGES, BREP) need OpenCASCADE; install it with: pip install 'meshwind[cad]'"
+MISSING = "STEP and IGES need OpenCASCADE; install it with: pip install 'meshwind[cad]'"
 
 
 def need(before: str = "") -> None:
@@ -41,17 +41,12 @@ def quiet() -> Iterator[None]:
 
 
 def read_shape(path: Path) -> tuple[Any, int]:
-    """The shape in a STEP, IGES or BREP file, None if there is none, and how many of its roots could not be read.
+    """The shape in a STEP or IGES file, None if there is none, and how many of its roots could not be read.
 
-    Lengths are in mm where the file has a unit.  Raises BadInputError if the file cannot be read.
+    Lengths are in mm.  Raises BadInputError if the file cannot be read.
     """
     suffix = path.suffix.lower()
     with quiet():
-        if suffix in BREP:
-            shape = occ("TopoDS").TopoDS_Shape()
-            if not occ("BRepTools").BRepTools.Read_s(shape, str(path), occ("BRep").BRep_Builder()):
-                raise _unreadable(path)
-            return None if shape.IsNull() else shape, 0
         reader = occ("STEPControl").STEPControl_Reader() if suffix in STEP else occ("IGESControl").IGESControl_Reader()
         if reader.ReadFile(str(path)) != occ("IFSelect").IFSelect_ReturnStatus.IFSelect_RetDone:
             raise _unreadable(path)

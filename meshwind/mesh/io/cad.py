@@ -1,4 +1,4 @@
-"""Reading of STEP, IGES and BREP files by OpenCASCADE, which cuts their faces into triangles."""
+"""Reading of STEP and IGES files by OpenCASCADE, which cuts their faces into triangles."""
 
 from pathlib import Path
 from typing import Any
@@ -7,12 +7,12 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
-from meshwind.core.opencascade import BREP, IGES, STEP, occ, parts_of, quiet, read_shape
+from meshwind.core.opencascade import IGES, STEP, occ, parts_of, quiet, read_shape
 from meshwind.mesh.geometry.areas_and_volumes import areas
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.in_subprocess import Arrays
 
-CAD = STEP + IGES + BREP
+CAD = STEP + IGES
 _CHORD, _TURN = 1e-4, float(np.radians(8.0))
 """How far triangles may lie off the CAD faces, over the part's diagonal, and how far a face may turn within an edge.
 
@@ -25,7 +25,7 @@ _MISSING = 5e-3
 
 
 def read_cad_mesh(path: Path) -> Arrays:
-    """Surface of all faces of a file, for `in_subprocess`; STEP and IGES come in mm."""
+    """Surface of all faces of a file, for `in_subprocess`, in mm."""
     shape, lost = read_shape(path)
     if shape is None or not parts_of(shape, "FACE"):
         raise BadInputError(f"{path.name}: holds no CAD faces; export the whole part into one file, as STEP or STL")
@@ -45,8 +45,7 @@ def read_cad_mesh(path: Path) -> Arrays:
     vertices = np.concatenate([points for points, _ in held])
     triangles = np.concatenate([corners + start for (_, corners), start in zip(held, starts, strict=True)])
     cut = float(areas(vertices, triangles).sum()) if len(triangles) else 0.0
-    units = "" if path.suffix.lower() in BREP else "mm"
-    return FileMesh(vertices, triangles, units, _warnings(lost, counts, cut, area)).packed()
+    return FileMesh(vertices, triangles, "mm", _warnings(lost, counts, cut, area)).packed()
 
 
 def _warnings(lost: int, counts: list[int], cut: float, area: float) -> tuple[str, ...]:

@@ -63,8 +63,8 @@ _READERS: dict[str, _Reader] = {
     **dict.fromkeys(CAD, _separate(read_cad_mesh)),
 }
 _FROM_CAD = {
-    ".sldprt", ".sldasm", ".catpart", ".catproduct", ".cgr", ".ipt", ".iam", ".prt", ".asm", ".par", ".psm", ".x_t",
-    ".x_b", ".xmt_txt", ".sat", ".sab", ".jt", ".3dm", ".fcstd", ".f3d", ".skp", ".dwg", ".dxf", ".ifc", ".blend",
+    ".brep", ".sldprt", ".sldasm", ".catpart", ".catproduct", ".cgr", ".ipt", ".iam", ".prt", ".asm", ".par", ".psm",
+    ".x_t", ".x_b", ".xmt_txt", ".sat", ".sab", ".jt", ".3dm", ".fcstd", ".f3d", ".skp", ".dwg", ".dxf", ".ifc",
 }  # fmt: skip
 """Endings of files of CAD programs that no free library reads well."""
 SUFFIXES = tuple(_READERS)
@@ -84,8 +84,8 @@ RuntimeWarning comes from a cast, if the caller turns warnings into errors.
 def read(mesh: str | PathLike[str] | Any, component: int = 0, units: str | None = None) -> Mesh:
     """Read a triangle mesh from a file, or take it from another library, and repair it.
 
-    STL, PLY, OBJ, OFF, GLB, GLTF, 3MF, VTK, VTU, VTP, MSH and INP files are read, and STEP, IGES and BREP
-    files with the extra ``meshwind[cad]``.  Polygons are cut into triangles, and of a volume mesh the skin is taken.
+    STL, PLY, OBJ, OFF, GLB, GLTF, 3MF, VTK, VTU, VTP, MSH and INP files are read, and STEP and IGES files
+    with the extra ``meshwind[cad]``.  Polygons are cut into triangles, and of a volume mesh the skin is taken.
 
     Parameters
     ----------

@@ -4,6 +4,8 @@ import re
 import zipfile
 from pathlib import Path
 
+from meshwind.core.opencascade import IGES, STEP
+
 _START = 4096
 """Length of the part of a file that tells what it is."""
 _NUMBER = rb"[ \t]+[-+]?[\d.][-+.\deE]*"
@@ -71,7 +73,8 @@ def foreign(path: Path) -> str:
         return ""
     for pattern, words in _OTHERS:
         if pattern.match(start):
-            return words
+            own = (suffix in STEP and words.startswith("is a STEP")) or (suffix in IGES and "IGES" in words)
+            return "" if own else words
     if start.startswith(b"PK\x03\x04"):
         return _archive(path)
     if _is_utf16(start):
