@@ -1,98 +1,95 @@
-"""Polygons cut into triangles: convex ones by a fan, others by ears in their own plane."""
+"""Polygons cut into triangles: by a fan where that is a valid cut, otherwise by ears in their own plane."""
 
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
 
-_REFLEX = 1e-9
-"""A corner whose area is below minus this share of the polygon's is reflex."""
+_THIN = 1e-6
+"""Shape of a triangle, twice its area by the sum of its squared sides, up to which another cut is sought."""
+_MOST = 20_000
+"""Largest polygon that is cut by ears, whose time grows with the square of the number of corners."""
 
 
 def cut_polygons(points: Floats, sizes: Ints, nodes: Ints) -> tuple[Ints, int]:
     """Triangles (m, 3) of polygons, given by their sizes and the nodes of one after the other.
 
-    A polygon of k corners gives k - 2 triangles in its sense, with all its corners.  Also returns how many polygons
-    could not be cut by ears, because they cross themselves, and were cut by a fan.
+    A polygon of k corners gives k - 2 triangles in its sense, with all its corners: a fan about the first one if that
+    covers the polygon without overlap, the other diagonal of a quadrangle if that does, otherwise ears.  Also returns
+    how many polygons were cut by a fan though it overlaps, because they cross themselves.
     """
     count = np.maximum(sizes - 2, 0)
-    first = np.cumsum(sizes) - sizes
+    first, place = np.cumsum(sizes) - sizes, np.cumsum(count) - count
     start = np.repeat(first, count)
-    step = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    step = np.arange(count.sum()) - np.repeat(place, count)
     triangles = np.column_stack([nodes[start], nodes[start + step + 1], nodes[start + step + 2]])
-    place, failed = np.cumsum(count) - count, 0
-    reflex = _has_reflex(points, sizes, nodes)
-    for polygon in np.flatnonzero(reflex & (sizes > 3)):
-        corners = nodes[first[polygon] : first[polygon] + sizes[polygon]]
-        ears = _ears(_in_plane(points[corners]))
-        failed += ears is None
-        if ears is not None:
-            triangles[place[polygon] : place[polygon] + count[polygon]] = corners[ears]
-    return triangles, failed
+    if sizes.max(initial=0) < 4:
+        return triangles, 0
+    poor = np.flatnonzero(~_is_good_fan(points, triangles, count) & (sizes > 3))
+    four = poor[sizes[poor] == 4]
+    turned = nodes[first[four][:, None] + [1, 2, 3, 0]]
+    halves = np.stack([turned[:, [0, 1, 2]], turned[:, [0, 2, 3]]], axis=1)
+    better = _is_good_fan(points, halves.reshape(-1, 3), np.full(len(four), 2))
+    triangles[place[four[better]][:, None] + [0, 1]] = halves[better]
+    left = np.setdiff1d(poor, four[better], assume_unique=True)
+    crossed = _by_ears(points, (sizes[left], first[left], place[left]), nodes, triangles) if len(left) else 0
+    return triangles, crossed
 
 
-def _has_reflex(points: Floats, sizes: Ints, nodes: Ints) -> Bools:
-    """Which polygons have a corner of more than half a turn, or cross themselves."""
-    last = np.cumsum(sizes)
-    first = last - sizes
+def _is_good_fan(points: Floats, triangles: Ints, count: Ints) -> Bools:
+    """Whether the triangles of each polygon all look the same way, and none of them is without area."""
+    if len(triangles) == 0:
+        return np.ones(len(count), dtype=np.bool_)
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    along, across = b - a, c - a
+    areas = np.cross(along, across)
+    squares = (along**2).sum(axis=1) + (across**2).sum(axis=1) + ((c - b) ** 2).sum(axis=1)
+    of = np.repeat(np.arange(len(count)), count)
+    normal = np.column_stack([np.bincount(of, areas[:, axis], len(count)) for axis in range(3)])
+    length = np.sqrt((normal**2).sum(axis=1))[of]
+    poor = ~((areas * normal[of]).sum(axis=1) > _THIN * squares * length)
+    return np.bincount(of, poor, len(count)) == 0
+
+
+def _by_ears(points: Floats, polygons: tuple[Ints, Ints, Ints], nodes: Ints, triangles: Ints) -> int:
+    """Cut polygons, given by sizes, first corners and places of their triangles; count those that cross themselves."""
+    sizes, first, place = polygons
+    begin = np.concatenate([[0], np.cumsum(sizes)])
     of = np.repeat(np.arange(len(sizes)), sizes)
-    after, before = np.arange(1, len(nodes) + 1), np.arange(-1, len(nodes) - 1)
-    some = sizes > 0
-    after[last[some] - 1], before[first[some]] = first[some], last[some] - 1
-    here = points[nodes]
-    corner = np.cross(here - here[before], here[after] - here)
-    base = here[first[of]] if len(of) else here
-    turn = np.cross(here - base, here[after] - base)
-    normal = np.column_stack([np.bincount(of, turn[:, axis], len(sizes)) for axis in range(3)])
-    square = (normal**2).sum(axis=1)
-    reflex = (corner * normal[of]).sum(axis=1) < -_REFLEX * square[of]
-    return np.bincount(of, reflex, len(sizes)) > 0
+    corners = nodes[np.arange(begin[-1]) - begin[of] + first[of]]
+    flat, has_area, has_plane = _in_plane(points[corners], begin, of)
+    fits, crossed = (sizes <= _MOST) & has_plane, has_area
+    if fits.any():
+        from meshwind.mesh.io.ears import cut_by_ears  # compiled, and few files need it
+
+        which = np.flatnonzero(fits)
+        lengths = sizes[which]
+        found = np.empty((int((lengths - 2).sum()), 3), dtype=np.int64)
+        start = np.cumsum(lengths - 2) - (lengths - 2)
+        crossed[which] = cut_by_ears(flat[fits[of]], np.concatenate([[0], np.cumsum(lengths)]), found, start)
+        target = np.repeat(place[which] - start, lengths - 2) + np.arange(len(found))
+        good = np.repeat(~crossed[which], lengths - 2)
+        found += np.repeat(begin[which], lengths - 2)[:, None]
+        triangles[target[good]] = corners[found[good]]
+    return int(crossed.sum())
 
 
-def _in_plane(corners: Floats) -> Floats:
-    """Corners (k, 2) in the polygon's own plane, counterclockwise; its normal is the sum over the sides (Newell)."""
-    about = corners - corners.mean(axis=0)
-    normal = np.cross(about, np.roll(about, -1, axis=0)).sum(axis=0)
-    drop = int(np.argmax(np.abs(normal)))
-    x, y = (drop + 1) % 3, (drop + 2) % 3
-    flat = about[:, [x, y]]
-    return flat if normal[drop] > 0.0 else flat * [-1.0, 1.0]
+def _in_plane(corners: Floats, begin: Ints, of: Ints) -> tuple[Floats, Bools, Bools]:
+    """Corners (n, 2) in the plane of each polygon, counterclockwise; whether it has an area, and a plane (p,).
 
-
-def _ears(flat: Floats) -> Ints | None:
-    """Triangles (k - 2, 3) of a counterclockwise polygon, None if it crosses itself.
-
-    Of the corners that can be cut, the one with the largest smallest angle is taken: thin triangles come last.
+    The normal is the sum over the sides (Newell); the axis nearest to it is dropped.  Coordinates are relative to the
+    polygon's size.
     """
-    left = list(range(len(flat)))
-    triangles = []
-    while len(left) > 3:
-        ring = flat[left]
-        before, after = np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)
-        area = _cross(ring - before, after - ring)
-        sides = ((ring - before) ** 2).sum(1) + ((after - ring) ** 2).sum(1) + ((after - before) ** 2).sum(1)
-        shape = np.where(area > 0.0, area / np.where(sides > 0.0, sides, 1.0), 0.0)
-        for at in np.argsort(-shape, kind="stable"):
-            if not shape[at] > 0.0:
-                return None
-            if not _holds_any(before[at], ring[at], after[at], ring, int(at)):
-                break
-        else:
-            return None
-        triangles.append((left[at - 1], left[at], left[(at + 1) % len(left)]))
-        del left[at]
-    triangles.append((left[0], left[1], left[2]))
-    if not _cross(flat[left[1]] - flat[left[0]], flat[left[2]] - flat[left[0]]) >= 0.0:
-        return None
-    return np.array(triangles, dtype=np.int64)
-
-
-def _holds_any(a: Floats, b: Floats, c: Floats, ring: Floats, at: int) -> bool:
-    """Whether the triangle holds a corner of the ring other than its own three, or has one on its new side."""
-    inside = (_cross(b - a, ring - a) >= 0.0) & (_cross(c - b, ring - b) >= 0.0) & (_cross(a - c, ring - c) >= 0.0)
-    inside[[at - 1, at, (at + 1) % len(ring)]] = False
-    same = (ring == a).all(axis=1) | (ring == c).all(axis=1)  # a corner that touches another, as of a slit
-    return bool((inside & ~same).any())
-
-
-def _cross(a: Floats, b: Floats) -> Floats:
-    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
+    sizes = np.diff(begin)
+    about = corners - np.add.reduceat(corners, begin[:-1])[of] / sizes[of, None]
+    scale = np.maximum.reduceat(np.abs(about).max(axis=1), begin[:-1])
+    about /= np.where(scale > 0.0, scale, 1.0)[of, None]
+    after = np.arange(1, len(of) + 1)
+    after[begin[1:] - 1] = begin[:-1]
+    normal = np.add.reduceat(np.cross(about, about[after]), begin[:-1])
+    drop = np.abs(normal).argmax(axis=1)
+    sense = np.where(normal[np.arange(len(sizes)), drop] > 0.0, 1.0, -1.0)
+    row = np.arange(len(of))
+    flat = np.column_stack([about[row, (drop[of] + 1) % 3] * sense[of], about[row, (drop[of] + 2) % 3]])
+    spread = np.add.reduceat(np.abs(np.cross(about, about[after])).sum(axis=1), begin[:-1])
+    has_area = spread > _THIN
+    return flat, has_area, has_area & (np.abs(normal).max(axis=1) > _THIN * spread)

@@ -13,14 +13,20 @@ from meshwind.mesh.io.cells_to_triangles import SIDES_OF_POLYHEDRA, CellBlock, s
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.in_subprocess import DAMAGED, Arrays
 
-_VTK_KINDS = {
-    0: "empty", 1: "vertex", 2: "vertex", 3: "line", 4: "polyline", 21: "line3", 35: "line4", 68: "line",
+VTK_KINDS = {
+    0: "empty", 1: "vertex", 2: "vertex", 3: "line", 4: "polyline", 21: "line3", 35: "line4", 68: "line9", 75: "line9",
     5: "triangle", 6: "triangle strip", 7: "polygon", 8: "pixel", 9: "quad", 10: "tetra", 11: "voxel",
     12: "hexahedron", 13: "vtk-wedge", 14: "pyramid", 15: "pentagonal prism", 16: "hexagonal prism",
     22: "triangle6", 23: "quad8", 24: "tetra10", 25: "hexahedron20", 26: "vtk-wedge15", 27: "pyramid13",
-    28: "quad9", 29: "hexahedron27", 69: "triangle", 70: "quad", 71: "tetra", 72: "hexahedron",
+    28: "quad9", 29: "hexahedron27", 30: "quad6", 31: "vtk-wedge12", 32: "vtk-wedge18", 33: "hexahedron24",
+    34: "triangle7", 36: "quadratic polygon", 37: "pyramid19",
 }  # fmt: skip
-"""Kinds of cells by VTK's number."""
+"""Kinds of cells by VTK's number (vtkCellType.h)."""
+ANY_ORDER = {
+    69: "triangle", 70: "quad", 71: "tetra", 72: "hexahedron", 73: "vtk-wedge", 74: "pyramid",
+    76: "triangle", 77: "quad", 78: "tetra", 79: "hexahedron", 80: "vtk-wedge", 81: "pyramid",
+}  # fmt: skip
+"""Lagrange and Bezier cells, which have their corners first and any number of nodes after them."""
 _POLYHEDRON = 42
 _LISTS = rb"^(?:VERTICES|LINES|POLYGONS|TRIANGLE_STRIPS|CELLS)\s+(\d{1,10})\s+(\d{1,10})[ \t\r]*\n"
 
@@ -73,10 +79,10 @@ def _of_grid(grid: Any) -> list[CellBlock]:
         raise ValueError("its cell types are damaged")
     of_node = np.repeat(kind, sizes)
     codes = sorted(set(kind.tolist()) - {_POLYHEDRON})
-    known = [code for code in _VTK_KINDS if code in codes]  # in the order of the table
+    known = [code for code in {**VTK_KINDS, **ANY_ORDER} if code in codes]  # in the order of the tables
     blocks = [
-        (_VTK_KINDS.get(code, f"VTK {code}"), (sizes[kind == code], nodes[of_node == code]))
-        for code in [*known, *(code for code in codes if code not in _VTK_KINDS)]
+        (VTK_KINDS.get(code, f"VTK {code}"), (sizes[kind == code], nodes[of_node == code]))
+        for code in [*known, *(code for code in codes if code not in VTK_KINDS)]
     ]
     return blocks if not (kind == _POLYHEDRON).any() else [*blocks, (SIDES_OF_POLYHEDRA, _polyhedra(grid))]
 
