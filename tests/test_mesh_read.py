@@ -229,4 +229,4 @@ def test_nan_and_no_triangles(tmp_path: Path) -> None:
     meshio.Mesh(CORNERS, [("line", np.array([[0, 1]]))]).write(tmp_path / "lines.vtu")
     assert refusal(tmp_path / "lines.vtu").startswith("holds no triangles; export")
     pyvista.ImageData(dimensions=(3, 3, 3)).save(tmp_path / "image.vtk")
-    assert refusal(tmp_path / "image.vtk").startswith("holds no polygons or cells; save")
+    assert refusal(tmp_path / "image.vtk").startswith("holds an image (structured points), no polygons or cells; save")

@@ -13,7 +13,7 @@ from meshwind.mesh.io.cell_kinds import faces_of
 from meshwind.mesh.io.cells_to_triangles import SIDES_OF_POLYHEDRA, surface_mesh
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.polygons import cut_polygons
-from meshwind.mesh.io.vtk_vtu_vtp import VTK_KINDS
+from meshwind.mesh.io.vtk_cells import VTK_KINDS
 
 
 def block(kind: str, rows: Any) -> Any:

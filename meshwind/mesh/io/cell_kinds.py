@@ -15,7 +15,7 @@ STRIP = "triangle strip"
 _NO_SURFACE = ("vertex", "line", "polyline", "empty")
 """Kinds of cells that are left alone."""
 _SURFACES = {"triangle": [[0, 1, 2]], "quad": [[0, 1, 2, 3]], "pixel": [[0, 1, 3, 2]]}
-_SOLIDS = {
+SOLIDS = {
     "tetra": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
     "hexahedron": [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]],
     "voxel": [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]],
@@ -75,7 +75,7 @@ def has_no_surface(kind: str) -> bool:
 
 def is_known(kind: str) -> bool:
     """Whether faces of the cells of a kind are known."""
-    return kind in POLYGONS or kind == STRIP or base_of(kind) in _SURFACES or base_of(kind) in _SOLIDS
+    return kind in POLYGONS or kind == STRIP or base_of(kind) in _SURFACES or base_of(kind) in SOLIDS
 
 
 def is_flattened(kind: str) -> bool:
@@ -91,7 +91,7 @@ def _middles_of(kind: str) -> list[tuple[int, ...]]:
 def faces_of(kind: str) -> Faces:
     """Faces of the cells of a known kind; of those of third order and more without the nodes between the corners."""
     base = base_of(kind)
-    sides = _SURFACES.get(base) or _SOLIDS[base]
+    sides = _SURFACES.get(base) or SOLIDS[base]
     first = max(map(max, sides)) + 1
     places = {frozenset(corners): first + k for k, corners in enumerate(_middles_of(kind))}
     width = max(map(len, sides))
@@ -109,7 +109,7 @@ def sides_of_solid(kind: str) -> int | None:
     """Number of sides of the volume cells of a kind, 0 if it varies; None for cells that are no volumes."""
     if kind == SIDES_OF_POLYHEDRA:
         return 0
-    return len(_SOLIDS[base_of(kind)]) if base_of(kind) in _SOLIDS else None
+    return len(SOLIDS[base_of(kind)]) if base_of(kind) in SOLIDS else None
 
 
 @cache

@@ -15,7 +15,8 @@ from meshwind.mesh.io.face_lists import Lists, whole
 from meshwind.mesh.io.in_subprocess import Arrays, in_subprocess
 from meshwind.mesh.io.ply import read_tables
 from meshwind.mesh.io.ply_rows import Columns
-from meshwind.mesh.io.vtk_vtu_vtp import vtk_array, vtk_output
+from meshwind.mesh.io.vtk_cells import vtk_array
+from meshwind.mesh.io.vtk_vtu_vtp import vtk_output
 
 _BY_VTK = (".vtk", ".vtp", ".vtu")
 _HOLD_SCALARS = (*_BY_VTK, ".ply", ".msh")
