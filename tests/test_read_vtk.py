@@ -357,3 +357,11 @@ def test_the_unit_in_files_of_meshwind(tmp_path: Path) -> None:
         array.GetInformation().Set(array.UNITS_LABEL(), unit)
         labelled.save(tmp_path / "part.vtp")
         assert load(tmp_path / "part.vtp").units == found
+
+
+@pytest.mark.parametrize(("name", "advice"), [
+    ("part.vtm", "save one block or step as VTU or VTP, or as one of STL"), ("part.pvtu", "save one block or step"),
+    ("part.vti", "save the part's surface as VTP"), ("part.e", "save the mesh as VTU"),
+])  # fmt: skip
+def test_advice_on_kindred_formats(name: str, advice: str, tmp_path: Path) -> None:
+    assert f"unknown format '.{name.split('.')[1]}'; {advice}" in said(tmp_path / name, "x")

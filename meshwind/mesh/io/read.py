@@ -67,6 +67,21 @@ _FROM_CAD = {
     ".x_t", ".x_b", ".xmt_txt", ".sat", ".sab", ".jt", ".3dm", ".fcstd", ".f3d", ".skp", ".dwg", ".dxf", ".ifc",
 }  # fmt: skip
 """Endings of files of CAD programs that no free library reads well."""
+_WAYS = {
+    (
+        ".vtm",
+        ".vtmb",
+        ".pvd",
+        ".pvtu",
+        ".pvtp",
+        ".pvts",
+        ".vthb",
+        ".vtkhdf",
+    ): "save one block or step as VTU or VTP, or as",
+    (".vts", ".vtr", ".vti"): "save the part's surface as VTP, or as",
+    (".e", ".exo", ".ex2", ".g", ".cgns", ".xdmf", ".xmf", ".case"): "save the mesh as VTU, by ParaView for one, or as",
+}
+"""Advice on other formats of meshes and results, before the formats that are read."""
 SUFFIXES = tuple(_READERS)
 """File name endings that `read` understands."""
 
@@ -181,7 +196,8 @@ def _reader(file: Path) -> _Reader:
         need(f"{file.name}: ")
     if file.suffix.lower() not in _READERS:
         known = ", ".join(suffix[1:].upper() for suffix in SUFFIXES if suffix not in (".stp", ".igs"))
-        raise BadInputError(f"{file.name}: unknown format {file.suffix!r}; convert the mesh to one of {known}")
+        way = next((way for endings, way in _WAYS.items() if file.suffix.lower() in endings), "convert the mesh to")
+        raise BadInputError(f"{file.name}: unknown format {file.suffix!r}; {way} one of {known}")
     return _READERS[file.suffix.lower()]
 
 

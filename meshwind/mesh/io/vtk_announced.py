@@ -19,7 +19,7 @@ _POINTS = re.compile(rb"^[ \t]*POINTS\s+(\d{1,10})\s+\w+[ \t\r]*\n", re.MULTILIN
 _OFFSETS = re.compile(rb"^[ \t]*OFFSETS[ \t]", re.MULTILINE | re.IGNORECASE)
 _PIECE = re.compile(rb"<Piece\b[^>]*>")
 _ATTRIBUTE = re.compile(rb"\b(Number[A-Za-z]{2,20})\s*=\s*[\"']\s*(\d{1,12})\s*[\"']")
-_COMPRESSOR = re.compile(rb"<VTKFile\b[^>]*\bcompressor\s*=\s*[\"']([^\"']{1,60})[\"']")
+_COMPRESSOR = re.compile(rb"<VTKFile\b[^>]*\bcompressor\s*=\s*[\"'](\w{1,60})[\"']")
 _COMPRESSORS = (b"vtkZLibDataCompressor", b"vtkLZ4DataCompressor", b"vtkLZMADataCompressor")
 _WORD = re.compile(rb"[A-Za-z_]{3}")
 """Start of a keyword; numbers hold no three letters in turn but nan and inf."""
