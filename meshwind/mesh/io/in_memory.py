@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from meshwind.core.cast import Ints
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.io.cells_to_triangles import surface_mesh
 from meshwind.mesh.io.file_mesh import FileMesh
@@ -69,9 +70,20 @@ def _of_trimesh(mesh: Any) -> FileMesh | None:
 def _of_meshio(mesh: object) -> FileMesh | None:
     import meshio
 
-    from meshwind.mesh.io.msh import surface_of
+    if not isinstance(mesh, meshio.Mesh):
+        return None
+    points = np.asarray(mesh.points, dtype=np.float64)
+    if points.shape[1] == 2:
+        points = np.column_stack([points, np.zeros(len(points))])
+    return surface_mesh(points, [(block.type, _sizes_and_nodes(block.data)) for block in mesh.cells])
 
-    return surface_of(mesh) if isinstance(mesh, meshio.Mesh) else None
+
+def _sizes_and_nodes(data: Any) -> tuple[Ints, Ints]:
+    """Sizes and nodes of a block of cells, given as a table or as rows of different length."""
+    if isinstance(data, np.ndarray) and data.ndim == 2:
+        return np.full(len(data), data.shape[1], dtype=np.int64), data.astype(np.int64).ravel()
+    sizes = np.array([len(row) for row in data], dtype=np.int64)
+    return sizes, np.concatenate([np.asarray(row, dtype=np.int64) for row in data])
 
 
 def _of_vtk(mesh: object) -> FileMesh | None:

@@ -58,7 +58,7 @@ _READERS: dict[str, _Reader] = {
     ".vtk": _separate(read_vtk),
     ".vtu": _separate(read_vtk),
     ".vtp": _separate(read_vtk),
-    ".msh": _separate(read_msh),
+    ".msh": read_msh,
     ".inp": read_deck,
     **dict.fromkeys(CAD, _separate(read_cad_mesh)),
 }

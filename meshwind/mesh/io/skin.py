@@ -72,7 +72,7 @@ def surface_faces(sides: FaceList, shells: FaceList, points: int) -> tuple[FaceL
     words = []
     if inside := int((of_shell > 1).sum()):
         words.append(f"surface cells inside the solid are left out: {inside}")
-    if several := int((uses.counts > 2).sum()):
+    if several := int(((uses.counts > 2) & (uses.counts % 2 == 1)).sum()):
         words.append(f"sides that more than two volume cells share are taken as inside: {several}")
     return FaceList.joined([skin, shells.where((of_shell == 0) & ~of_quads & ~in_two)]), words
 
