@@ -3,10 +3,12 @@
 from collections import Counter
 from typing import Any
 
+import meshio
 import numpy as np
 import pytest
 from vtkmodules.vtkCommonDataModel import vtkGenericCell
 
+import meshwind as mw
 from meshwind.core.cast import Floats, Ints
 from meshwind.mesh.geometry.areas_and_volumes import areas, volume
 from meshwind.mesh.io.cell_kinds import faces_of
@@ -304,3 +306,12 @@ def test_a_block_of_many_cells() -> None:
     points = np.stack(np.meshgrid(*[np.arange(m, dtype=float)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     mesh = surface_mesh(points, [("hexahedron", (np.full(len(cells), 8), cells.ravel()))])
     assert is_closed(mesh.faces) and len(mesh.faces) == 12 * count**2 and size_of(mesh) == pytest.approx(count**3)
+
+
+def test_polygons_and_polyhedra_of_meshio() -> None:
+    sides = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
+    solid = meshio.Mesh(CUBE, [("polyhedron6", [sides]), ("hexahedron", np.array([UPPER]))])
+    mesh = mw.read(solid)
+    assert volume(mesh.vertices, mesh.faces) == pytest.approx(2.0) and len(mesh.faces) == 20
+    flat = mw.read(meshio.Mesh(CUBE, [("polygon", [[0, 1, 2, 3], [2, 1, 5, 6]]), ("polygon", np.array([[5, 4, 7]]))]))
+    assert areas(flat.vertices, flat.faces).sum() == pytest.approx(2.5)

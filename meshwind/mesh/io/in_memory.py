@@ -7,7 +7,7 @@ import numpy as np
 
 from meshwind.core.cast import Ints
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.io.cells_to_triangles import surface_mesh
+from meshwind.mesh.io.cells_to_triangles import SIDES_OF_POLYHEDRA, CellBlock, surface_mesh
 from meshwind.mesh.io.file_mesh import FileMesh
 
 _UNITS = {
@@ -75,7 +75,14 @@ def _of_meshio(mesh: object) -> FileMesh | None:
     points = np.asarray(mesh.points, dtype=np.float64)
     if points.shape[1] == 2:
         points = np.column_stack([points, np.zeros(len(points))])
-    return surface_mesh(points, [(block.type, _sizes_and_nodes(block.data)) for block in mesh.cells])
+    return surface_mesh(points, [_block(block.type, block.data) for block in mesh.cells])
+
+
+def _block(kind: str, data: Any) -> CellBlock:
+    """A block of meshio's cells; polyhedra, of which each is a list of sides, are given by their sides."""
+    if kind.startswith("polyhedron"):
+        return SIDES_OF_POLYHEDRA, _sizes_and_nodes([side for cell in data for side in cell])
+    return "polygon" if kind.startswith("polygon") else kind, _sizes_and_nodes(data)
 
 
 def _sizes_and_nodes(data: Any) -> tuple[Ints, Ints]:
@@ -83,7 +90,7 @@ def _sizes_and_nodes(data: Any) -> tuple[Ints, Ints]:
     if isinstance(data, np.ndarray) and data.ndim == 2:
         return np.full(len(data), data.shape[1], dtype=np.int64), data.astype(np.int64).ravel()
     sizes = np.array([len(row) for row in data], dtype=np.int64)
-    return sizes, np.concatenate([np.asarray(row, dtype=np.int64) for row in data])
+    return sizes, np.concatenate([np.empty(0, dtype=np.int64), *(np.asarray(row, dtype=np.int64) for row in data)])
 
 
 def _of_vtk(mesh: object) -> FileMesh | None:
