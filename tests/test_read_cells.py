@@ -313,5 +313,5 @@ def test_polygons_and_polyhedra_of_meshio() -> None:
     solid = meshio.Mesh(CUBE, [("polyhedron6", [sides]), ("hexahedron", np.array([UPPER]))])
     mesh = mw.read(solid)
     assert volume(mesh.vertices, mesh.faces) == pytest.approx(2.0) and len(mesh.faces) == 20
-    flat = mw.read(meshio.Mesh(CUBE, [("polygon", [[0, 1, 2, 3], [2, 1, 5, 6]]), ("polygon", np.array([[5, 4, 7]]))]))
+    flat = mw.read(meshio.Mesh(CUBE, [("polygon", [[0, 1, 2, 3], [2, 1, 5, 6]]), ("polygon", np.array([[5, 4, 1]]))]))
     assert areas(flat.vertices, flat.faces).sum() == pytest.approx(2.5)
