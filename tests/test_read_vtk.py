@@ -264,6 +264,7 @@ def test_pieces_of_a_solid_share_no_wall(tmp_path: Path) -> None:
         f"{body}</UnstructuredGrid></VTKFile>"
     )
     mesh = mw.read(tmp_path / "part.vtu")
+    assert len(load(tmp_path / "part.vtu").faces) == 20
     assert len(mesh.faces) == 20 and volume(mesh.vertices, mesh.faces) == pytest.approx(2.0)
 
 
