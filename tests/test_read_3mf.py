@@ -1,6 +1,7 @@
 """Reading of 3MF files: units, objects of every type, parts of the package, and what is refused or said."""
 
 import zipfile
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -48,7 +49,7 @@ def relationships(*targets: str, kind: str = "http://schemas.microsoft.com/3dman
     return f'<Relationships xmlns="{space}">{rows}</Relationships>'
 
 
-def saved(folder: Path, parts: dict[str, str | bytes] | str, method: int = zipfile.ZIP_DEFLATED) -> Path:
+def saved(folder: Path, parts: Mapping[str, str | bytes] | str, method: int = zipfile.ZIP_DEFLATED) -> Path:
     """A package of parts; of a model alone if it is one text."""
     path = folder / "part.3mf"
     if isinstance(parts, str):
@@ -123,12 +124,10 @@ def test_objects_in_model_parts_of_their_own(where: str, name: str, tmp_path: Pa
         root = model(thing(7, f"<components><component {use}/></components>"),
                      item(7, 'transform="1 0 0 0 1 0 0 0 1 9 0 0"'))  # fmt: skip
     parts = {"_rels/.rels": relationships("/3D/3dmodel.model"), "3D/3dmodel.model": root, name[1:]: inner}
-    held = load(saved(tmp_path, dict(parts)))
+    held = load(saved(tmp_path, parts))
     assert is_barrel(held) and np.abs(held.vertices - POINTS - [9, 0, 0]).max() < 1e-12 and held.warnings == ()
-    assert load(saved(tmp_path, dict(parts) | {name[1:]: model(thing(7), item(7))})).faces.shape == FACES.shape
-    assert "is in millimeter, but" in said(
-        saved(tmp_path, dict(parts) | {name[1:]: model(thing(7), "", 'unit="inch"')})
-    )
+    assert load(saved(tmp_path, parts | {name[1:]: model(thing(7), item(7))})).faces.shape == FACES.shape
+    assert "is in millimeter, but" in said(saved(tmp_path, parts | {name[1:]: model(thing(7), "", 'unit="inch"')}))
     assert "does not hold" in said(saved(tmp_path, {"3D/3dmodel.model": root}))
 
 
@@ -274,5 +273,5 @@ def test_document_types_and_parts_held_twice_are_refused(tmp_path: Path) -> None
 def test_volumes_that_a_slicer_does_not_print_are_named(tmp_path: Path) -> None:
     table = '<config><volume><metadata key="volume_type" value="NegativeVolume"/></volume></config>'
     parts = {"3D/3dmodel.model": model(thing(), item()), "Metadata/Slic3r_PE_model.config": table}
-    held = load(saved(tmp_path, dict(parts)))
+    held = load(saved(tmp_path, parts))
     assert is_barrel(held) and "which its program does not print, are read: 1" in held.warnings[0]

@@ -145,7 +145,8 @@ def test_strips_fans_and_plain_triangles(mode: int, indexed: bool, tmp_path: Pat
     mesh = load(scene.save(tmp_path))
     assert len(mesh.faces) == count
     if mode == 6:
-        normals = np.cross(*(mesh.vertices[mesh.faces[:, k]] - mesh.vertices[mesh.faces[:, 0]] for k in (1, 2)))
+        corners = mesh.vertices[mesh.faces]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         assert normals[:, 2] == pytest.approx(np.full(8, np.sin(np.pi / 4)), rel=1e-6)
     else:
         assert is_barrel(mesh)

@@ -107,8 +107,7 @@ def _from_table(table: Ints, faces: Faces, points: int) -> FaceList:
     """Faces of cells given by the table of their nodes (c, n)."""
     corners = np.unique(faces.corners[faces.corners >= 0])
     _check(table[:, corners], points)
-    if table.max(initial=-1) >= points:
-        raise ValueError("a cell refers to a vertex that is not in the file")
+    _check(np.maximum(table, 0), points)
     width = faces.corners.shape[1]
     padded = np.column_stack([table, np.full(len(table), -1, dtype=np.int64)])
     rows = padded[:, faces.corners].reshape(-1, width)
@@ -122,8 +121,9 @@ def _from_table(table: Ints, faces: Faces, points: int) -> FaceList:
 
 
 def _check(nodes: Ints, points: int) -> None:
-    if len(nodes) and (nodes.min() < 0 or nodes.max() >= points):
-        raise ValueError("a cell refers to a vertex that is not in the file")
+    if nodes.size and (nodes.min() < 0 or nodes.max() >= points):
+        wrong = int(nodes[(nodes < 0) | (nodes >= points)][0])
+        raise ValueError(f"a cell refers to vertex {wrong}, counted from 0, but there are {points}")
 
 
 def _strips(sizes: Ints, nodes: Ints) -> Ints:

@@ -15,9 +15,16 @@ class Lists(NamedTuple):
     values: Any
 
 
-def face_blocks(faces: Lists) -> tuple[list[CellBlock], tuple[str, ...]]:
-    """Triangles and larger polygons as blocks, and words on faces that have fewer than three corners."""
+def face_blocks(faces: Lists, points: int) -> tuple[list[CellBlock], tuple[str, ...]]:
+    """Triangles and larger polygons as blocks, and words on faces that have fewer than three corners.
+
+    points: the number of vertices.  Raises ValueError that names the first face that refers to none of them.
+    """
     sizes, nodes = faces.sizes, whole(faces.values)
+    if len(nodes) and (nodes.min() < 0 or nodes.max() >= points):
+        at = int(np.flatnonzero((nodes < 0) | (nodes >= points))[0])
+        face = int(np.searchsorted(np.cumsum(sizes), at, side="right")) + 1
+        raise ValueError(f"face {face} refers to vertex {nodes[at]}, counted from 0, but there are {points}")
     if len(sizes) and (sizes == 3).all():
         return [("triangle", (sizes, nodes))], ()
     few = int(np.count_nonzero(sizes < 3))

@@ -24,7 +24,7 @@ _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 
 
 def read_gltf(path: Path) -> FileMesh:
-    """Vertices and triangles of the scene that the file shows, in metres (section 3.3)."""
+    """Vertices and triangles of the scene that the file shows, in metres (clause 3.3)."""
     return _Scene(Document(path)).surface()
 
 
@@ -38,12 +38,12 @@ class _Shape:
     weights: Floats | None = None
 
     def placed(self, matrix: Floats) -> "_Shape":
-        """The same moved by a matrix (4, 4); one that mirrors turns the triangles (section 3.7.4)."""
+        """The same moved by a matrix (4, 4); one that mirrors turns the triangles (clause 3.7.4)."""
         mirrors = np.linalg.det(matrix[:3, :3]) < 0.0
         return _Shape(self.points @ matrix[:3, :3].T + matrix[:3, 3], self.faces[:, ::-1] if mirrors else self.faces)
 
     def posed(self, matrices: Floats) -> "_Shape":
-        """The same moved by the joints (section 3.7.3.3)."""
+        """The same moved by the joints (clause 3.7.3.3)."""
         if self.joints is None or self.weights is None:
             raise ValueError("a mesh of a skin has no joints and weights")
         if len(self.joints) and self.joints.max() >= len(matrices):
@@ -119,7 +119,7 @@ class _Scene:
         shapes = self._mesh(node)
         if not shapes:
             return
-        if "skin" in node:  # "the transform of the skinned mesh node MUST be ignored", section 3.7.3.2
+        if "skin" in node:  # "the transform of the skinned mesh node MUST be ignored", clause 3.7.3.2
             joints = self.nodes.joints(self.document.entry("skins", node["skin"]))
             self._keep([shape.posed(joints) for shape in shapes])
             return
@@ -133,7 +133,7 @@ class _Scene:
         self.parts += shapes
 
     def _mesh(self, node: dict[str, Any]) -> list[_Shape]:
-        """Triangles of a node's mesh in the state of its morph targets (section 3.7.2.2)."""
+        """Triangles of a node's mesh in the state of its morph targets (clause 3.7.2.2)."""
         number = whole(node["mesh"], "a mesh's number")
         mesh = self.document.entry("meshes", number)
         own = node.get("weights")
@@ -221,7 +221,7 @@ class _Scene:
 
 
 def _triangles(nodes: Ints, mode: int) -> Ints:
-    """Triangles of a primitive (section 3.7.2.1)."""
+    """Triangles of a primitive (clause 3.7.2.1)."""
     if mode == _STRIP:
         at = np.arange(max(len(nodes) - 2, 0))
         odd = at % 2

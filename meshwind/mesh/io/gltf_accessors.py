@@ -1,4 +1,4 @@
-"""Numbers in glTF files: accessors, which say how bytes of the buffers become arrays (section 3.6.2)."""
+"""Numbers in glTF files: accessors, which say how bytes of the buffers become arrays (clause 3.6.2)."""
 
 from typing import Any
 
@@ -25,7 +25,7 @@ class Accessors:
         self._values: dict[int, Floats] = {}
 
     def values(self, number: object, kind: str) -> Floats:
-        """Numbers (count, width) of an accessor of a kind such as "VEC3", normalised where it says so (section 3.11).
+        """Numbers (count, width) of an accessor of a kind such as "VEC3", normalised where it says so (clause 3.11).
 
         Raises ValueError if it is of another kind, or its buffer does not hold them.
         """
@@ -55,7 +55,7 @@ class Accessors:
         return "bufferView" in accessor or "sparse" in accessor
 
     def _raw(self, number: int) -> NDArray[Any]:
-        """Numbers as they are stored: zeros without a buffer, and sparse ones replaced (section 3.6.2.3)."""
+        """Numbers as they are stored: zeros without a buffer, and sparse ones replaced (clause 3.6.2.3)."""
         accessor = self.document.entry("accessors", number)
         kind, width = _kind(accessor), _WIDTHS.get(str(accessor.get("type")), 0)
         count = whole(accessor.get("count"), f"the count of accessor {number}")

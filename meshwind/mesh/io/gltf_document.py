@@ -38,7 +38,7 @@ def is_harmless(extension: str) -> bool:
 
 
 def whole(value: object, what: str) -> int:
-    """A whole number that is not negative; JSON may write it with a decimal point (section 2.5)."""
+    """A whole number that is not negative; JSON may write it with a decimal point (clause 2.5)."""
     if isinstance(value, bool) or not isinstance(value, int | float) or value < 0 or value != value // 1:
         raise ValueError(f"{what} is {str(value)[:20]}, not a whole number")
     return int(value)
@@ -139,7 +139,7 @@ class Document:
         return file.read_bytes()
 
     def _check(self) -> None:
-        """Refuse other versions (section 3.2), and extensions that are required and not read (section 3.12)."""
+        """Refuse other versions (clause 3.2), and extensions that are required and not read (clause 3.12)."""
         asset = table(self.tree.get("asset", {}), "its asset")
         version, least = str(asset.get("version", "")), str(asset.get("minVersion", "2.0"))
         if not version.startswith("2."):
@@ -161,7 +161,7 @@ class Document:
 
 
 def _chunks(path: Path) -> tuple[bytes, bytes | None]:
-    """JSON of a file, and the binary chunk of a GLB file (section 4.4), None if there is none."""
+    """JSON of a file, and the binary chunk of a GLB file (clause 4.4), None if there is none."""
     content = path.read_bytes()
     if content[:4] != b"glTF":
         return content, None

@@ -118,7 +118,7 @@ class Nodes:
 
 
 def node_matrix(node: dict[str, Any]) -> Floats:
-    """Matrix (4, 4) of a node: its columns one after the other, or translation, rotation and scale (section 3.5.3)."""
+    """Matrix (4, 4) of a node: its columns one after the other, or translation, rotation and scale (clause 3.5.3)."""
     if "matrix" in node:
         given = numbers(node["matrix"], 16, "a node's matrix").reshape(4, 4).T
         if not np.array_equal(given[3], [0.0, 0.0, 0.0, 1.0]):

@@ -50,7 +50,7 @@ def read_obj(path: Path) -> FileMesh:
         np.concatenate([each.sizes for each in faces] or [np.zeros(0, dtype=np.int64)]),
         np.concatenate([each.values for each in faces] or [np.zeros(0, dtype=np.int64)]),
     )
-    blocks, more = face_blocks(joined)
+    blocks, more = face_blocks(joined, len(points))
     return surface_mesh(points, blocks, own_unit(content), warnings + more)
 
 

@@ -122,7 +122,7 @@ class _Data:
         at, points = self._points()
         faces, used = self._faces(self.filled[at:])
         left = len(self.filled) - at - used
-        blocks, warnings = face_blocks(faces)
+        blocks, warnings = face_blocks(faces, len(points))
         more = (f"{left} lines after the last face are not read",) if left else ()
         return surface_mesh(points, blocks, units, (*warnings, *more))
 
@@ -228,6 +228,6 @@ def _binary(name: str, content: bytes, keyword: "re.Match[bytes]") -> FileMesh:
             "copy or export it again"
         ) from None
     columns = np.column_stack([points.columns[f"{k}"].astype(np.float64) for k in range(3 + layout.homogeneous)])
-    blocks, warnings = face_blocks(faces.columns["corners"])
+    blocks, warnings = face_blocks(faces.columns["corners"], layout.vertices)
     after = data.after(faces.end)
     return surface_mesh(_flat(name, columns, layout.homogeneous), blocks, "", (*warnings, *((after,) if after else ())))

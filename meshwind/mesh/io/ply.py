@@ -74,7 +74,7 @@ def read_ply(path: Path) -> FileMesh:
     told: tuple[str, ...] = ()
     faces, strips = ply.corners("face"), ply.corners("tristrips")
     if faces is not None:
-        blocks, told = face_blocks(faces)
+        blocks, told = face_blocks(faces, len(points))
     if strips is not None:
         blocks.append(strip_block(strips))
     left = ply.not_read()

@@ -13,6 +13,7 @@ _COARSE = 2e-5
 fitted surface by more than the default tolerance: by about 0.6 of a step, as measured on a barrel."""
 _USELESS = 1e-2
 """Steps from which on the surface is off by half a per cent of the part and more."""
+_HUGE = 1e50
 _FAR = 10.0
 """Least distance from the origin, over the extent, at which a lack of digits is looked for."""
 _DIGITS = 7
@@ -34,9 +35,10 @@ class _Steps:
 def resolved(name: str, held: FileMesh) -> FileMesh:
     """The surface, with a warning if its coordinates are coarse; raises BadInputError if they hold no shape."""
     points = _used(held)
-    if len(points) == 0 or not np.isfinite(points).all():
+    size = float(np.abs(points).max(initial=0.0))
+    if not 0.0 < size < _HUGE:
         return held  # refused by the repair
-    size, extent = float(np.abs(points).max()), float(np.ptp(points, axis=0).max())
+    extent = float(np.ptp(points, axis=0).max())
     if not size > _FAR * extent > 0.0:
         return held
     steps = _single(points, extent)

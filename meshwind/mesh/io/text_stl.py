@@ -36,7 +36,7 @@ def read_text_stl(name: str, content: bytes) -> FileMesh:
         number = lines.number(int(at[wrong[0]]))
         raise BadInputError(f"{name}: the vertex in line {number} has not three coordinates; export the mesh again")
     points = numbers.reshape(-1, 3)
-    blocks, warnings = face_blocks(Lists(sizes, np.arange(len(points))))
+    blocks, warnings = face_blocks(Lists(sizes, np.arange(len(points))), len(points))
     return surface_mesh(points, blocks, own_unit(content), strange + warnings)
 
 

@@ -18,7 +18,7 @@ from meshwind.mesh.io.threemf_package import Package, open_archive
 
 _Parts = list[tuple[Floats, Ints]]
 _UNITS = {"micron": "um", "millimeter": "mm", "centimeter": "cm", "inch": "in", "foot": "ft", "meter": "m"}
-"""Units of the core specification, section 3.4; millimeter is its default."""
+"""Units of the core specification, clause 3.4; millimeter is its default."""
 _READ = ("/3dmanufacturing/core/", "/production/", "/material/", "/trianglesets/")
 """Extensions that are read, or that say nothing of the shape, by a part of their namespace."""
 _NAMES = {
@@ -27,7 +27,7 @@ _NAMES = {
 }  # fmt: skip
 """What other extensions are for, by a part of their namespace."""
 _NOT_THE_PART = {"support": "supports", "solidsupport": "supports", "other": "of the type 'other'"}
-"""Types of objects that are left out: supports, and what "MUST NOT be referenced in the Build section", section 4.1."""
+"""Types of objects that are left out: supports, and what "MUST NOT be referenced in the Build section", clause 4.1."""
 _MAX_DEPTH = 64
 """Levels of objects within objects."""
 _MAX_USES = 20_000

@@ -55,7 +55,7 @@ class Pieces:
         dropped = f"dropped {count - 1} {'piece' if count == 2 else 'pieces'} beside {which}"
         notes = [f"{dropped} ({len(self.faces) - len(kept)} faces)"]
         other = 1 if component == 0 else 0
-        share = self.areas[other] / self.areas[component]
+        share = self.areas[other] / max(self.areas[component], np.finfo(float).tiny)
         if share > _LARGE:
             inside = ", within its bounds," if self._within(kept, self.faces[self.rank == other]) else ""
             notes.append(
