@@ -118,7 +118,7 @@ def test_what_is_left_out_is_told(tmp_path: Path) -> None:
     (off().replace("3 0 1 9\n", "3 0 1 x\n"), "line 51 has 'x' where a number should be"),
     (off().replace("20.0 0.0 0.0\n", "20,0 0.0 0.0\n"), "line 3 has '20,0' where a number should be; write"),
     (off().replace("20.0 0.0 0.0\n", "20.0 0.0 0.0 1.0\n"), "vertex 2 in line 4 has 3 numbers, and the first one 4"),
-    (off().replace("3 0 1 9\n", "3 0 1 99\n"), "cannot be read as OFF (face 1 refers to vertex 99, counted from 0, but"),
+    (off().replace("3 0 1 9\n", "3 0 1 99\n"), "cannot be read as OFF (face 1 refers to vertex 99, counted from 0"),
     (off().replace("3 0 1 9\n", "3 0 1.5 9\n"), "cannot be read as OFF (a face refers to a vertex by a number"),
     (off("OFF\nmany\n"), "cannot be read as OFF (its first lines do not count vertices and faces)"),
     (off("OFF BINARY\n"), "is cut short: it announces"),
