@@ -90,7 +90,7 @@ _READER_ERRORS = (
     RuntimeError, RuntimeWarning, EOFError, MemoryError, OSError, struct.error, zlib.error, zipfile.BadZipFile,
     json.JSONDecodeError, ParseError, SystemExit,
 )  # fmt: skip
-"""Exceptions that trimesh was seen to raise on files that are cut short, overwritten or of another format.
+"""Exceptions that readers were seen to raise on files that are cut short, overwritten or of another format.
 
 RuntimeWarning comes from a cast, if the caller turns warnings into errors.
 """
