@@ -10,7 +10,10 @@ from meshwind.cli.config import Config
 from meshwind.cli.help import FILES, PRINTED
 
 MeshFile = Annotated[
-    Path, typer.Argument(help="Mesh: STL, OBJ, PLY, OFF, GLB, 3MF, VTK, MSH, INP; STEP and IGES with the extra cad.", metavar="MESH")
+    Path,
+    typer.Argument(
+        help="Mesh: STL, OBJ, PLY, OFF, GLB, 3MF, VTK, MSH, INP; STEP, IGES with the extra cad.", metavar="MESH"
+    ),
 ]
 ResultsFolder = Annotated[Path, typer.Argument(metavar="DIR", help="Results folder of `meshwind wind --out DIR`.")]
 OtherFolder = Annotated[Path | None, typer.Option(help="Folder for the files.  [default: DIR]", rich_help_panel=FILES)]
