@@ -22,6 +22,13 @@ def block(kind: str, rows: Any) -> Any:
     return kind, (np.array([len(row) for row in rows]), np.concatenate([np.array(row) for row in rows]))
 
 
+def polyhedra(cells: Any) -> Any:
+    """A block of cells, each given by its sides."""
+    sides = [side for cell in cells for side in cell]
+    sizes, nodes = np.array([len(side) for side in sides]), np.array([node for side in sides for node in side])
+    return SIDES_OF_POLYHEDRA, (sizes, nodes, np.array([len(cell) for cell in cells]))
+
+
 def directed(faces: Ints) -> Counter[tuple[int, int]]:
     return Counter((int(a), int(b)) for face in faces for a, b in zip(face, np.roll(face, -1), strict=True))
 
@@ -245,7 +252,7 @@ def test_a_quad_side_between_two_triangles_is_inner() -> None:
     tetrahedra = block("tetra", [[4, 5, 6, 8], [4, 6, 7, 8]])
     mesh = surface_mesh(points, [block("hexahedron", [LOWER]), tetrahedra])
     assert is_closed(mesh.faces) and size_of(mesh) == pytest.approx(4 / 3) and len(mesh.faces) == 14
-    sides = block(SIDES_OF_POLYHEDRA, [[4, 6, 5], [4, 7, 6], [4, 5, 8], [5, 6, 8], [6, 7, 8], [7, 4, 8]])
+    sides = polyhedra([[[4, 6, 5], [4, 7, 6], [4, 5, 8], [5, 6, 8], [6, 7, 8], [7, 4, 8]]])
     mesh = surface_mesh(points, [block("hexahedron", [LOWER]), sides])
     assert is_closed(mesh.faces) and size_of(mesh) == pytest.approx(4 / 3)
 
@@ -271,9 +278,37 @@ def test_polyhedra_with_large_sides_beside_prisms() -> None:
     turn = 2.0 * np.pi * np.arange(6) / 6
     rows = [np.column_stack([np.cos(turn), np.sin(turn), np.full(6, z)]) for z in (0.0, 1.0, 2.0)]
     sides = [[6 + k, 6 + (k + 1) % 6, 12 + (k + 1) % 6, 12 + k] for k in range(6)]
-    polyhedron = block(SIDES_OF_POLYHEDRA, [*sides, range(11, 5, -1), range(12, 18)])
+    polyhedron = polyhedra([[*sides, range(11, 5, -1), range(12, 18)]])
     mesh = surface_mesh(np.concatenate(rows), [block("hexagonal prism", [range(12)]), polyhedron])
     assert is_closed(mesh.faces) and size_of(mesh) == pytest.approx(3.0 * np.sqrt(3.0))
+
+
+SIDES = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
+"""Of the lower of the two cubes."""
+ABOVE = [[UPPER[k] for k in side] for side in SIDES]
+TURNED = [side[1:] + side[:1] for side in SIDES[::-1]]
+
+
+@pytest.mark.parametrize("blocks", [
+    [polyhedra([SIDES, ABOVE, SIDES])],
+    [polyhedra([SIDES, SIDES, TURNED, ABOVE, ABOVE])],
+    [polyhedra([SIDES]), block("hexahedron", [UPPER]), polyhedra([TURNED, ABOVE])],
+    [block("hexahedron", [LOWER, UPPER]), polyhedra([SIDES, TURNED])],
+    [polyhedra([[*SIDES, [0, 1], []], ABOVE, [], [[2, 3]], SIDES])],  # sides without area
+], ids=["twice", "turned", "among others", "of a hexahedron", "without area"])  # fmt: skip
+def test_polyhedra_that_are_given_twice_count_once(blocks: Any) -> None:
+    mesh = surface_mesh(CUBE, blocks)
+    assert len(mesh.faces) == 20 and is_closed(mesh.faces) and size_of(mesh) == pytest.approx(2.0)
+    assert mesh.warnings == ()
+
+
+def test_polyhedra_of_the_same_corners_are_no_copies() -> None:
+    """Two prisms on the same six corners that share three sides of five; neither is the other."""
+    turn = 2.0 * np.pi * np.arange(3) / 3
+    points = np.concatenate([np.column_stack([np.cos(turn), np.sin(turn), np.full(3, z)]) for z in (0.0, 1.0)])
+    prisms = [[[a, c, b], [d, e, f], [a, b, e, d], [b, c, f, e], [c, a, d, f]]
+              for a, b, c, d, e, f in ((0, 1, 2, 3, 4, 5), (0, 1, 5, 3, 4, 2))]  # fmt: skip
+    assert len(surface_mesh(points, [polyhedra(prisms)]).faces) == 4
 
 
 def test_strips_keep_their_sense() -> None:

@@ -210,20 +210,21 @@ def polyhedron(faces: list[list[int]]) -> list[int]:
     return [len(faces), *(number for face in faces for number in (len(face), *face))]
 
 
-def rod() -> tuple[Any, float]:
-    """A rod of five sides: wedges below, two equal polyhedra of which one is a copy above, and its area."""
+def rod(times: int = 1) -> tuple[Any, float]:
+    """A rod of five sides: wedges below, a polyhedron above that is given once or several times, and its area."""
     points = np.concatenate([prism_rows(5), [[0, 0, 0], [0, 0, 1.0]]])
     around = [[(k + 1) % 5, k] for k in range(5)]
     wedges = [[15, b, a, 16, 5 + b, 5 + a] for b, a in around]
     faces = [*([5 + a, 5 + b, 10 + b, 10 + a] for b, a in around), list(range(10, 15)), [9, 8, 7, 6, 5]]
-    grid = grid_of([*wedges, polyhedron(faces)], [13] * 5 + [42], points)
+    grid = grid_of([*wedges, *[polyhedron(faces)] * times], [13] * 5 + [42] * times, points)
     side = 2.0 * np.sin(np.pi / 5)
     return grid, 10.0 * side + 5.0 * np.sin(2.0 * np.pi / 5)
 
 
 @pytest.mark.parametrize("name", ["part.vtu", "ascii.vtu", "part.vtk"])
-def test_polyhedra_beside_wedges(name: str, tmp_path: Path) -> None:
-    grid, area = rod()
+@pytest.mark.parametrize("times", [1, 2, 3])
+def test_polyhedra_beside_wedges(name: str, times: int, tmp_path: Path) -> None:
+    grid, area = rod(times)
     grid.save(tmp_path / name, binary=name != "ascii.vtu")
     mesh = mw.read(tmp_path / name)
     assert np.ptp(mesh.vertices[:, 2]) == pytest.approx(2.0)

@@ -103,6 +103,17 @@ def faces_of_cells(kind: str, sizes: Ints, nodes: Ints, points: int) -> FaceList
     return _from_table(nodes.reshape(len(sizes), -1), faces, points)
 
 
+def with_area(sides: FaceList, counts: Ints) -> tuple[FaceList, Ints]:
+    """Sides of polyhedra, given with the number of those of each cell, without sides of fewer than three corners."""
+    if len(sides.sizes) != counts.sum():
+        raise ValueError("its polyhedra are damaged")
+    kept = sides.sizes > 2
+    if not kept.all():
+        cell = np.repeat(np.arange(len(counts)), counts)
+        sides, counts = sides.where(kept), np.bincount(cell[kept], minlength=len(counts))
+    return sides, counts[counts > 0]
+
+
 def _from_table(table: Ints, faces: Faces, points: int) -> FaceList:
     """Faces of cells given by the table of their nodes (c, n)."""
     corners = np.unique(faces.corners[faces.corners >= 0])

@@ -3,8 +3,10 @@
 from collections import Counter
 from typing import TypeAlias
 
+import numpy as np
+
 from meshwind.core.cast import Floats, Ints
-from meshwind.mesh.io.cell_faces import FaceList, faces_of_cells
+from meshwind.mesh.io.cell_faces import FaceList, faces_of_cells, with_area
 from meshwind.mesh.io.cell_kinds import SIDES_OF_POLYHEDRA, has_no_surface, is_flattened, is_known, sides_of_solid
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.second_order import cut_faces
@@ -12,8 +14,11 @@ from meshwind.mesh.io.skin import surface_faces, without_copies
 
 __all__ = ["SIDES_OF_POLYHEDRA", "CellBlock", "surface_mesh"]
 
-CellBlock: TypeAlias = tuple[str, tuple[Ints, Ints]]
-"""Kind of the cells, their sizes (c,), and the nodes of one cell after the other."""
+CellBlock: TypeAlias = tuple[str, tuple[Ints, ...]]
+"""Kind of the cells, their sizes (c,), and the nodes of one cell after the other.
+
+Of polyhedra these are the sizes and nodes of their sides, and a third array has the number of sides of each cell (c,).
+"""
 
 
 def surface_mesh(
@@ -26,13 +31,15 @@ def surface_mesh(
     """
     told = [*warnings, *_not_read(blocks)]
     solids, shells = [], []
-    for kind, (sizes, nodes) in blocks:
+    for kind, (sizes, nodes, *counts) in blocks:
         if is_known(kind) and len(sizes):
             faces, sides = faces_of_cells(kind, sizes, nodes, len(points)), sides_of_solid(kind)
-            if sides is None:
+            if kind == SIDES_OF_POLYHEDRA:
+                solids.append(with_area(faces, counts[0]))
+            elif sides is None:
                 shells.append(faces.without_repeats())
             else:
-                solids.append((faces, sides))
+                solids.append((faces, np.full(len(sizes), sides)))
     surface = FaceList.joined(shells)
     if solids:
         surface, words = surface_faces(without_copies(solids, len(points)), surface, len(points))
@@ -45,10 +52,10 @@ def surface_mesh(
 def _not_read(blocks: list[CellBlock]) -> list[str]:
     """Words on cells that are not known, and on those that are read without the nodes between their corners."""
     total, unknown, flat = 0, Counter[str](), Counter[str]()
-    for kind, (sizes, _) in blocks:
+    for kind, (sizes, _, *counts) in blocks:
         if has_no_surface(kind) or len(sizes) == 0:
             continue
-        total += len(sizes)
+        total += len(counts[0] if counts else sizes)
         if not is_known(kind):
             unknown[kind] += len(sizes)
         elif is_flattened(kind):

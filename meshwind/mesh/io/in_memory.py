@@ -81,7 +81,8 @@ def _of_meshio(mesh: object) -> FileMesh | None:
 def _block(kind: str, data: Any) -> CellBlock:
     """A block of meshio's cells; polyhedra, of which each is a list of sides, are given by their sides."""
     if kind.startswith("polyhedron"):
-        return SIDES_OF_POLYHEDRA, _sizes_and_nodes([side for cell in data for side in cell])
+        counts = np.array([len(cell) for cell in data], dtype=np.int64)
+        return SIDES_OF_POLYHEDRA, (*_sizes_and_nodes([side for cell in data for side in cell]), counts)
     return "polygon" if kind.startswith("polygon") else kind, _sizes_and_nodes(data)
 
 

@@ -1,6 +1,7 @@
 """The surface of cells: of volume cells the skin, and surface cells that are not their sides."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -35,22 +36,22 @@ class _Uses:
         return np.where(self.keys[at] == keys, self.counts[at], 0)
 
 
-def without_copies(solids: list[tuple[FaceList, int]], points: int) -> FaceList:
-    """Sides of volume cells of several kinds, without cells that have the corners of one before.
+def without_copies(solids: list[tuple[FaceList, Ints]], points: int) -> FaceList:
+    """Sides of volume cells of several kinds, without cells that have the sides of one before.
 
-    Each kind comes with the number of sides of its cells, 0 if it varies; such cells are all kept.
+    Each kind comes with the number of sides of each of its cells (c,), which is 1 or more.
     """
     mixed = _mixed(points)
-    keys = [faces.keys(mixed).reshape(-1, sides).sum(axis=1) for faces, sides in solids if sides]
+    keys = [np.add.reduceat(_mix(faces.keys(mixed)), np.cumsum(counts) - counts) for faces, counts in solids
+            if len(counts)]  # fmt: skip
     kept = np.zeros(sum(map(len, keys)), dtype=np.bool_)
     if len(kept):
         kept[np.unique(np.concatenate(keys), return_index=True)[1]] = True
     lists, at = [], 0
-    for faces, sides in solids:
-        count = len(faces.sizes) // sides if sides else 0
-        of_cell = kept[at : at + count]
-        at += count
-        lists.append(faces if of_cell.all() else faces.where(np.repeat(of_cell, sides)))
+    for faces, counts in solids:
+        of_cell = kept[at : at + len(counts)]
+        at += len(counts)
+        lists.append(faces if of_cell.all() else faces.where(np.repeat(of_cell, counts)))
     return FaceList.joined([faces.without_repeats() for faces in lists])
 
 
@@ -98,9 +99,13 @@ def _halves(quads: FaceList, mixed: Ints, triangles: FaceList | None, keys: Ints
     return found, used
 
 
-def _mixed(points: int) -> Ints:
+def _mixed(points: int) -> Any:
     """A random number for each node (SplitMix64): their sums over two different sets agree once in 2^64."""
-    mixed = (np.arange(points, dtype=np.uint64) + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15)
+    return _mix((np.arange(points, dtype=np.uint64) + np.uint64(1)) * np.uint64(0x9E3779B97F4A7C15))
+
+
+def _mix(mixed: Any) -> Any:
+    """The same numbers with their bits mixed, so that their sums tell sets of them apart."""
     mixed = (mixed ^ (mixed >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     mixed = (mixed ^ (mixed >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     return mixed ^ (mixed >> np.uint64(31))

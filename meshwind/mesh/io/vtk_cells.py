@@ -1,6 +1,6 @@
 """Cells of VTK's data as blocks: only its raw arrays are used, as its filters end the process on damaged ones."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -35,10 +35,14 @@ _HIDDEN_POINT = 2
 
 @dataclass(frozen=True)
 class Cells:
-    """Points (n, 3), blocks of cells on them, and words on cells that are left out or flattened."""
+    """Points (n, 3), blocks of cells on them, and words on cells that are left out or flattened.
+
+    places: of each block where VTK's arrays of cells have the values of its cells.
+    """
 
     points: Floats
     blocks: list[CellBlock]
+    places: list[Ints]
     words: tuple[str, ...] = ()
 
 
@@ -46,31 +50,38 @@ def of_polygons(data: Any) -> Cells:
     """Polygons and strips of vtkPolyData, whose cells are its vertices, lines, polygons and strips in turn."""
     lists = [("vertex", data.GetVerts()), ("line", data.GetLines())]
     at = sum(cells.GetNumberOfCells() for _, cells in lists)
-    ghosts, blocks, left_out = _ghosts(data.GetCellData()), [], 0
+    ghosts, left_out = _ghosts(data.GetCellData()), 0
+    blocks: list[CellBlock] = []
+    places = []
     for kind, cells in (("polygon", data.GetPolys()), ("triangle strip", data.GetStrips())):
         if cells.GetNumberOfCells() == 0:
             continue
         sizes, nodes = sizes_and_nodes(cells)
         shown = _shown(ghosts, at, len(sizes))
+        places.append(at + np.flatnonzero(shown))
         at += len(sizes)
         left_out += int((~shown).sum())
         blocks.append((kind, (sizes[shown], nodes[np.repeat(shown, sizes)])))
-    return Cells(points_of(data), blocks, _of_ghosts(left_out, sum(len(sizes) for _, (sizes, _) in blocks)))
+    return Cells(points_of(data), blocks, places, _of_ghosts(left_out, sum(map(len, places))))
 
 
 def of_grid(grid: Any) -> Cells:
     """Cells of vtkUnstructuredGrid by their kind."""
     cells = grid.GetCells()
     if cells is None or cells.GetNumberOfCells() == 0:
-        return Cells(points_of(grid), [])
+        return Cells(points_of(grid), [], [])
     sizes, nodes = sizes_and_nodes(cells)
     kind = _kinds(grid)
     if len(kind) != len(sizes):
         raise ValueError("its cell types are damaged")
     shown = _shown(_ghosts(grid.GetCellData()), 0, len(sizes))
-    blocks, words = [], list(_of_ghosts(int((~shown).sum()), int(shown.sum())))
+    words = list(_of_ghosts(int((~shown).sum()), int(shown.sum())))
+    blocks: list[CellBlock] = []
+    places = []
     for code in _in_order(kind[shown]):
         of = shown & (kind == code)
+        if code not in _ANY_ORDER:
+            places.append(np.flatnonzero(of))
         if code == _POLYHEDRON:
             blocks.append((SIDES_OF_POLYHEDRA, _polyhedra(grid, of)))
         elif code not in _ANY_ORDER:
@@ -80,8 +91,9 @@ def of_grid(grid: Any) -> Cells:
                 same = of & (sizes == size)
                 block, word = _any_order(code, nodes[np.repeat(same, sizes)].reshape(-1, size))
                 blocks.append(block)
+                places.append(np.flatnonzero(same))
                 words += [word] if word else []
-    return Cells(points_of(grid), blocks, tuple(words))
+    return Cells(points_of(grid), blocks, places, tuple(words))
 
 
 def of_structured(grid: Any) -> Cells:
@@ -96,7 +108,7 @@ def of_structured(grid: Any) -> Cells:
     across = tuple(slice(None) if count > 1 else 0 for count in (k, j, i))
     table = _boxes(numbers[across])
     if table is None:
-        return Cells(points, [])
+        return Cells(points, [], [])
     hidden = _ghosts(grid.GetPointData(), _HIDDEN_POINT)
     shown = _shown(_ghosts(grid.GetCellData()), 0, len(table))
     if hidden is not None and len(hidden) == len(points):
@@ -104,7 +116,8 @@ def of_structured(grid: Any) -> Cells:
     kept = table[shown]
     kind = "quad" if table.shape[1] == 4 else "hexahedron"
     words = _of_ghosts(int((~shown).sum()), len(kept))
-    return Cells(points, [(kind, (np.full(len(kept), table.shape[1]), kept.ravel()))], words)
+    blocks: list[CellBlock] = [(kind, (np.full(len(kept), table.shape[1]), kept.ravel()))]
+    return Cells(points, blocks, [np.flatnonzero(shown)], words)
 
 
 def _boxes(numbers: Ints) -> Ints | None:
@@ -125,7 +138,8 @@ def merged(cells: Cells) -> Cells:
     rows = np.ascontiguousarray(cells.points + 0.0).view(f"V{3 * 8}").ravel()
     _, first, place = np.unique(rows, return_index=True, return_inverse=True)
     number = first[place.ravel()]
-    return Cells(cells.points, [(kind, (sizes, number[nodes])) for kind, (sizes, nodes) in cells.blocks], cells.words)
+    blocks: list[CellBlock] = [(kind, (sizes, number[nodes], *more)) for kind, (sizes, nodes, *more) in cells.blocks]
+    return replace(cells, blocks=blocks)
 
 
 def _in_order(kinds: Ints) -> list[int]:
@@ -148,8 +162,11 @@ def _any_order(code: int, table: Ints) -> tuple[CellBlock, str]:
     return block, word if size > corners else ""
 
 
-def _polyhedra(grid: Any, shown: Bools) -> tuple[Ints, Ints]:
-    """The sides of the polyhedra that are shown.  Raises ValueError where VTK is too old to tell."""
+def _polyhedra(grid: Any, shown: Bools) -> tuple[Ints, Ints, Ints]:
+    """The sides of the polyhedra that are shown, and how many each has.
+
+    Raises ValueError where VTK is too old to tell.
+    """
     if not hasattr(grid, "GetPolyhedronFaces") or grid.GetPolyhedronFaces() is None:
         raise ValueError("it holds polyhedra, which VTK reads from version 9.4 on")
     sizes, nodes = sizes_and_nodes(grid.GetPolyhedronFaces())
@@ -162,7 +179,7 @@ def _polyhedra(grid: Any, shown: Bools) -> tuple[Ints, Ints]:
     start = (np.cumsum(sizes) - sizes)[which]
     taken = sizes[which]
     step = np.arange(taken.sum()) - np.repeat(np.cumsum(taken) - taken, taken)
-    return taken, nodes[np.repeat(start, taken) + step]
+    return taken, nodes[np.repeat(start, taken) + step], counts[shown]
 
 
 def _ghosts(data: Any, flags: int = _NOT_SHOWN) -> Bools | None:

@@ -40,9 +40,7 @@ def read_vtk(path: Path) -> Arrays:
     else:
         announced, pieces = announced_by_xml(content)
     data = _output(path, form, changed)
-    cells = _cells(data)
-    if cells is None:
-        raise BadInputError(f"{path.name}: holds no polygons or cells; {ADVICE}")
+    cells = cells_of(data, path.name)
     check_counts(announced, _counts(data))
     return _surface(merged(cells) if pieces > 1 else cells, _unit(data) or unit).packed()
 
@@ -51,6 +49,14 @@ def surface_of_vtk(data: Any) -> FileMesh | None:
     """Surface of polygons and strips, or of an unstructured or structured grid, None for another kind of data."""
     cells = _cells(data)
     return None if cells is None else _surface(cells, _unit(data))
+
+
+def cells_of(data: Any, name: str) -> Cells:
+    """Cells of VTK's data.  Raises BadInputError with the file's name for data of another kind."""
+    cells = _cells(data)
+    if cells is None:
+        raise BadInputError(f"{name}: holds no polygons or cells; {ADVICE}")
+    return cells
 
 
 def _cells(data: Any) -> Cells | None:
