@@ -4,6 +4,7 @@ meshio reads neither version 1 nor parametric coordinates, partitions or some bi
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -17,12 +18,27 @@ from meshwind.mesh.io.msh_sections import Reader, Sections, sections_of, whole
 _DENSE = 4
 """Largest number of a node, by their count, up to which nodes are looked up in a table of all numbers."""
 _Elements = dict[int, list[Ints]]
-"""Tables of nodes (e, nodes) by the type of elements."""
+"""Tables of the number and the nodes (e, 1 + nodes) by the type of elements."""
+
+
+@dataclass(frozen=True)
+class MshMesh:
+    """Points (n, 3) with their numbers (n,), and blocks of cells on them with the numbers of the elements of each."""
+
+    ids: Ints
+    points: Floats
+    blocks: list[CellBlock]
+    numbers: list[Ints]
 
 
 def read_msh(path: Path) -> FileMesh:
     """Surface of a file: all its elements, whatever groups and partitions they are in."""
-    sections = sections_of(path.read_bytes())
+    mesh = mesh_of(sections_of(path.read_bytes()))
+    return surface_mesh(mesh.points, mesh.blocks)
+
+
+def mesh_of(sections: Sections) -> MshMesh:
+    """Nodes and elements of a file.  Raises ValueError if an element refers to a node that does not exist."""
     if sections.version >= 4.0:
         ids, points = _nodes_by_entity(sections)
         elements = _elements_by_entity(sections)
@@ -31,11 +47,13 @@ def read_msh(path: Path) -> FileMesh:
         elements = _elements_in_binary_list(sections) if sections.order else _elements_in_a_list(sections)
     find = _finder(ids)
     blocks: list[CellBlock] = []
+    numbers = []
     for number in sorted(elements):
         kind = element_type(number)
-        table = find(np.concatenate(elements[number]))[:, kind.order]
+        table = find(np.concatenate([part[:, 1:] for part in elements[number]]))[:, kind.order]
         blocks.append((kind.kind, (np.full(len(table), kind.nodes, dtype=np.int64), table.ravel())))
-    return surface_mesh(points, blocks)
+        numbers.append(np.concatenate([part[:, 0] for part in elements[number]]))
+    return MshMesh(ids, points, blocks, numbers)
 
 
 def _nodes_by_entity(sections: Sections) -> tuple[Ints, Floats]:
@@ -67,7 +85,7 @@ def _elements_by_entity(sections: Sections) -> _Elements:
         entity, size = reader.table(1, ("i4", 3), ("size", 1))
         kind = int(entity[0, 2])
         table = reader.table(int(size[0, 0]), (number, 1 + element_type(kind).nodes))[0]
-        elements.setdefault(kind, []).append(table[:, 1:])
+        elements.setdefault(kind, []).append(table)
     reader.end()
     _counted(np.concatenate([np.empty(0), *(part[:, 0] for parts in elements.values() for part in parts)]), total)
     return elements
@@ -104,23 +122,25 @@ def _elements_in_a_list(sections: Sections) -> _Elements:
     total = reader.line()
     values = whole(reader.content)
     held = values.tolist()
-    starts: dict[tuple[int, int], list[int]] = {}
+    starts: dict[tuple[int, int], list[tuple[int, int]]] = {}
     at, read = 1, 0
     while at + 4 < len(held) and read < total:
         kind = held[at + 1]
         begin = at + (5 if first else 3 + held[at + 2])
         if begin <= at:
             raise ValueError("an element has fewer than no tags")
-        starts.setdefault((kind, held[at + 4] if first else element_type(kind).nodes), []).append(begin)
+        starts.setdefault((kind, held[at + 4] if first else element_type(kind).nodes), []).append((at, begin))
         at = begin + (held[at + 4] if first else element_type(kind).nodes)
         read += 1
     if read < total or at != len(held):
         raise ValueError(f"its elements do not fill their section: it announces {total}, and {read} can be read")
     elements: _Elements = {}
-    for (kind, count), begins in starts.items():
+    for (kind, count), places in starts.items():
         if count != element_type(kind).nodes:
             raise ValueError(f"an element of the type {kind} has {count} nodes")
-        elements.setdefault(kind, []).append(values[np.array(begins)[:, None] + np.arange(count)])
+        number, begin = np.array(places).T
+        nodes = values[begin[:, None] + np.arange(count)]
+        elements.setdefault(kind, []).append(np.column_stack([values[number], nodes]))
     return elements
 
 
@@ -134,7 +154,7 @@ def _elements_in_binary_list(sections: Sections) -> _Elements:
         if count < 1 or tags < 0:
             raise ValueError("its section $Elements is damaged")
         table = reader.table(count, ("i4", 1 + tags + element_type(kind).nodes))[0]
-        elements.setdefault(kind, []).append(table[:, 1 + tags :])
+        elements.setdefault(kind, []).append(np.delete(table, np.s_[1 : 1 + tags], axis=1))
         read += count
     reader.end()
     return elements

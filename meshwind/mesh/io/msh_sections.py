@@ -12,6 +12,7 @@ from meshwind.core.cast import Floats, Ints
 _OPEN = re.compile(rb"^\$([A-Za-z]\w{0,60})[^\S\n]*\r?\n", re.MULTILINE)
 _FORMAT = re.compile(rb"\s*(\d+(?:\.\d+)?)\s+([01])\s+(\d+)[^\S\n]*\r?\n")
 _OLD_ENDS = {"NOD": b"$ENDNOD", "ELM": b"$ENDELM"}
+_DATA = ("NodeData", "ElementData", "ElementNodeData")
 _READ = ("MeshFormat", "Nodes", "ParametricNodes", "Elements", "NOD", "ELM")
 _ONE = 1
 """The number by which a binary file shows its byte order."""
@@ -21,11 +22,13 @@ _ONE = 1
 class Sections:
     """Contents of the sections of a file by their names, and how they are written.
 
-    version: 1, 2, 4.0 or 4.1; order: "" in text, "<" or ">" in binary; size: bytes of a size in binary.
+    version: 1, 2, 4.0 or 4.1; data: sections of values on nodes and elements in turn, as their names may repeat;
+    order: "" in text, "<" or ">" in binary; size: bytes of a size in binary.
     """
 
     contents: dict[str, bytes]
     version: float
+    data: tuple[tuple[str, bytes], ...] = ()
     order: str = ""
     size: int = 8
 
@@ -39,6 +42,7 @@ class Sections:
 def sections_of(content: bytes) -> Sections:
     """The sections of a file.  Raises ValueError if one does not end, or if the version is not known."""
     held: dict[str, bytes] = {}
+    data = []
     at = 0
     while found := _OPEN.search(content, at):
         name = found[1].decode()
@@ -50,10 +54,12 @@ def sections_of(content: bytes) -> Sections:
             raise ValueError(f"it has two sections ${name}; save one mesh only")
         if name in _READ:
             held[name] = content[found.end() : stop]
+        elif name in _DATA:
+            data.append((name, content[found.end() : stop]))
         at = stop + len(end)
     if "MeshFormat" not in held:
         if "NOD" in held:
-            return Sections(held, 1.0)
+            return Sections(held, 1.0, tuple(data))
         raise ValueError("it has no section $MeshFormat")
     header = _FORMAT.match(held["MeshFormat"])
     if header is None:
@@ -65,12 +71,12 @@ def sections_of(content: bytes) -> Sections:
             f"it is of the version {header[1].decode()[:20]} of MSH, which is not read; save it as MSH 4.1"
         )
     if header[2] == b"0":
-        return Sections(held, version)
+        return Sections(held, version, tuple(data))
     sign = held["MeshFormat"][header.end() : header.end() + 4]
     orders = {_ONE.to_bytes(4, "little"): "<", _ONE.to_bytes(4, "big"): ">"}
     if sign not in orders or int(header[3]) not in (4, 8):
         raise ValueError("its section $MeshFormat is damaged")
-    return Sections(held, version, orders[sign], int(header[3]))
+    return Sections(held, version, tuple(data), orders[sign], int(header[3]))
 
 
 def numbers(text: bytes, name: str) -> Floats:

@@ -28,6 +28,8 @@ _ANY_ORDER = {
 _SECOND_ORDER = {(69, 6): "triangle6", (70, 9): "quad9", (71, 10): "tetra10"}
 """Those whose nodes are those of a cell of second order, by number and size."""
 _POLYHEDRON = 42
+GHOSTS = "vtkGhostType"
+"""Name of the array that marks points and cells."""
 _NOT_SHOWN = 1 | 8 | 32
 """Flags of vtkGhostType on cells: a copy of another piece's cell, one that others refine, a hidden one."""
 _HIDDEN_POINT = 2
@@ -184,7 +186,7 @@ def _polyhedra(grid: Any, shown: Bools) -> tuple[Ints, Ints, Ints]:
 
 def _ghosts(data: Any, flags: int = _NOT_SHOWN) -> Bools | None:
     """Which cells or points are marked, None if none is."""
-    array = data.GetArray("vtkGhostType")
+    array = data.GetArray(GHOSTS)
     if array is None:
         return None
     marks = vtk_array(array, np.int64) & flags
