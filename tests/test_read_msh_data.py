@@ -103,6 +103,15 @@ def test_nodes_and_elements_of_the_geometry_need_no_value(tmp_path: Path) -> Non
     assert held.points[:, 2].tolist() == [0.0, 1.0] and held.values.tolist() == [5.0, 6.0]
 
 
+def test_text_of_meshio(tmp_path: Path) -> None:
+    """It writes numbers by their repr, which names their type since NumPy 2."""
+    for kind in ("{}", "np.float64({})", "np.float32({})"):
+        rows = [(number, kind.format(value)) for number, value in NODES]
+        assert scalars(tmp_path, msh("2.2") + data("NodeData", rows)).values == pytest.approx([v for _, v in NODES])
+    wrong = data("NodeData", [(number, f"np.int8({value})") for number, value in NODES])
+    assert "its section $NodeData holds something else than numbers" in refusal(tmp_path, msh("2.2") + wrong)
+
+
 @pytest.mark.parametrize("order", ["", "<"])
 @pytest.mark.parametrize(("where", "rows"), [("NodeData", NODES), ("ElementData", ON_CELLS)])
 def test_what_is_not_one_number_each_is_refused(where: str, rows: Any, order: str, tmp_path: Path) -> None:

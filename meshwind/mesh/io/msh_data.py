@@ -17,6 +17,8 @@ from meshwind.mesh.io.msh_sections import Reader, Sections
 _NAME = re.compile(rb'\s*(?:"([^"\n]*)"|([^\n]*?))[^\S\n]*\n')
 _REAL = re.compile(rb"\s*(\S{1,60})(?=\s)")
 _INTEGER = re.compile(rb"\s*([-+]?\d{1,18})(?=\s)")
+_NAMED = re.compile(rb"\bnp\.float(?:32|64)\(([^()\s]{1,60})\)")
+"""A number as meshio writes it in text with NumPy 2."""
 _LINE_END = re.compile(rb"[^\S\n]*\n?")
 _ELEMENT_NODES = "is given for the nodes of each element ($ElementNodeData), which is not read; save it as $NodeData"
 
@@ -62,6 +64,7 @@ def _part(sections: Sections, where: str, content: bytes) -> tuple[str, _Part | 
     if where == "ElementNodeData":
         return name, _Part(step, np.empty(0, dtype=np.int64), np.empty(0))
     rest = content[_end_of_line(content, at) :]
+    rest = rest if sections.order else _NAMED.sub(rb"\1", rest)
     reader = Reader(replace(sections, contents={where: rest}), where)
     numbers, values = reader.table(count, ("i4", 1), ("f8", 1))
     reader.end()
