@@ -7,6 +7,7 @@ import numpy as np
 from meshwind.core.cast import Ints
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.io.in_subprocess import DAMAGED
+from meshwind.mesh.io.vtk_arrays import words_in
 
 _HEAD = re.compile(rb"# vtk DataFile Version (\d{1,3})\.(\d{1,3})[^\n]*\n[^\n]*\n\s*(ASCII|BINARY)\b", re.IGNORECASE)
 _SET = re.compile(rb"^[ \t]*DATASET[ \t]+(\w+)", re.MULTILINE | re.IGNORECASE)
@@ -36,7 +37,6 @@ _OTHER = {
     b"MULTIBLOCK": "several blocks", b"HIERARCHICAL_BOX": "several blocks", b"OVERLAPPING_AMR": "several blocks",
 }  # fmt: skip
 LEGACY, POLYGONS, GRID = "legacy", "PolyData", "UnstructuredGrid"
-_BLANKS = np.frombuffer(b" \t\n\r\v\f\0", np.uint8)
 _MOST = 4096
 """Length of the part of a file in which VTK's XML names its type."""
 ADVICE = "save the part's surface as VTP, PLY or STL"
@@ -119,8 +119,7 @@ def _check_length(content: bytes, start: int, count: int, keyword: str) -> None:
     while (found := _WORD.search(content, end)) and found[0].lower() in (b"nan", b"inf"):
         end = found.end()
     stop = found.start() if found else len(content)
-    blank = np.concatenate([[True], np.isin(np.frombuffer(content, np.uint8, stop - start, start), _BLANKS)])
-    held = int(np.count_nonzero(blank[:-1] & ~blank[1:]))
+    held = words_in(content, start, stop)
     if held != count:
         raise ValueError(f"its list {keyword} has {held} numbers, where it announces {count}")
 

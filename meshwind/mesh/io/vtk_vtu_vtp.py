@@ -24,6 +24,7 @@ from meshwind.mesh.io.vtk_announced import (
     check_counts,
     form_of,
 )
+from meshwind.mesh.io.vtk_arrays import check_held, held_by_xml
 from meshwind.mesh.io.vtk_cells import Cells, merged, of_grid, of_polygons, of_structured
 
 _HEAD = 400
@@ -42,6 +43,8 @@ def read_vtk(path: Path) -> Arrays:
     data = _output(path, form, changed)
     cells = cells_of(data, path.name)
     check_counts(announced, _counts(data))
+    if form != LEGACY:
+        check_held(held_by_xml(content), _counts(data) | _node_counts(data))
     return _surface(merged(cells) if pieces > 1 else cells, _unit(data) or unit).packed()
 
 
@@ -90,6 +93,16 @@ def _counts(data: Any) -> dict[str, int]:
     if isinstance(data, vtkPolyData):
         return counts | {"polygons": data.GetNumberOfPolys(), "strips": data.GetNumberOfStrips()}
     return counts | {"cells": data.GetNumberOfCells()} if isinstance(data, vtkUnstructuredGrid) else counts
+
+
+def _node_counts(data: Any) -> dict[str, int]:
+    """Numbers of nodes of the cells that were read, all counted as often as they are used."""
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+
+    lists = {"cells": data.GetCells} if not isinstance(data, vtkPolyData) else {
+        "polygons": data.GetPolys, "strips": data.GetStrips}  # fmt: skip
+    found = {f"nodes of {key}": get() for key, get in lists.items()}
+    return {key: cells.GetConnectivityArray().GetNumberOfValues() for key, cells in found.items() if cells}
 
 
 def vtk_output(path: Path) -> Any:
