@@ -16,8 +16,8 @@ from test_read_round_trip import AREA, BY_HAND, FACES, POINTS, QUADS
 import meshwind as mw
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.geometry.areas_and_volumes import areas, volume
-from meshwind.mesh.io.deck_elements import cell_kind
-from meshwind.mesh.io.polygons import cut_polygons
+from meshwind.mesh.io.cells.polygons import cut_polygons
+from meshwind.mesh.io.deck.elements import cell_kind
 from meshwind.planning.pins import read_pins
 
 

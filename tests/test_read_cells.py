@@ -11,11 +11,11 @@ from vtkmodules.vtkCommonDataModel import vtkGenericCell
 import meshwind as mw
 from meshwind.core.cast import Floats, Ints
 from meshwind.mesh.geometry.areas_and_volumes import areas, volume
-from meshwind.mesh.io.cell_kinds import faces_of
-from meshwind.mesh.io.cells_to_triangles import SIDES_OF_POLYHEDRA, surface_mesh
+from meshwind.mesh.io.cells.kinds import faces_of
+from meshwind.mesh.io.cells.polygons import cut_polygons
+from meshwind.mesh.io.cells.surface import SIDES_OF_POLYHEDRA, surface_mesh
 from meshwind.mesh.io.file_mesh import FileMesh
-from meshwind.mesh.io.polygons import cut_polygons
-from meshwind.mesh.io.vtk_cells import VTK_KINDS
+from meshwind.mesh.io.vtk.cells import VTK_KINDS
 
 
 def block(kind: str, rows: Any) -> Any:

@@ -9,9 +9,9 @@ import pytest
 import meshwind as mw
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.geometry.areas_and_volumes import areas, volume
-from meshwind.mesh.io.deck import read_deck
-from meshwind.mesh.io.deck_blocks import blocks
-from meshwind.mesh.io.deck_elements import SECTION, cell_kind, cells_of
+from meshwind.mesh.io.deck.blocks import blocks
+from meshwind.mesh.io.deck.deck import read_deck
+from meshwind.mesh.io.deck.elements import SECTION, cell_kind, cells_of
 
 AROUND, RINGS = 8, 6
 _HEIGHT = np.repeat(np.linspace(0.0, 90.0, RINGS), AROUND)

@@ -14,7 +14,7 @@ import meshwind as mw
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.geometry.areas_and_volumes import areas, volume
 from meshwind.mesh.io.file_mesh import FileMesh
-from meshwind.mesh.io.msh_elements import TYPES
+from meshwind.mesh.io.msh.elements import TYPES
 from meshwind.mesh.io.read import load
 
 AROUND = 10

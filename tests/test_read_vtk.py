@@ -16,7 +16,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.mesh.geometry.areas_and_volumes import areas, volume
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.read import load
-from meshwind.mesh.io.vtk_announced import check_counts
+from meshwind.mesh.io.vtk.announced import check_counts
 
 AROUND = 10
 

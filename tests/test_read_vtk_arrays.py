@@ -9,7 +9,7 @@ from test_read_vtk import BARREL, SURFACE, is_barrel, said
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
 
 from meshwind.mesh.io.read import load
-from meshwind.mesh.io.vtk_arrays import held_by_xml
+from meshwind.mesh.io.vtk.arrays import held_by_xml
 
 MODES = [("Ascii", False), ("Binary", False), ("Appended", False), ("Appended", True)]
 

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from meshwind.core.cast import Ints
-from meshwind.mesh.io.cells_to_triangles import CellBlock
+from meshwind.mesh.io.cells.surface import CellBlock
 
 
 class Lists(NamedTuple):

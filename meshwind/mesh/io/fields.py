@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
-from meshwind.mesh.io.cell_kinds import has_no_surface, is_known
-from meshwind.mesh.io.cells_to_triangles import CellBlock
+from meshwind.mesh.io.cells.kinds import has_no_surface, is_known
+from meshwind.mesh.io.cells.surface import CellBlock
 from meshwind.mesh.io.in_subprocess import Arrays
 
 _NONE = np.empty(0)

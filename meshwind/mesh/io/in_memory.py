@@ -7,7 +7,7 @@ import numpy as np
 
 from meshwind.core.cast import Ints
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.io.cells_to_triangles import SIDES_OF_POLYHEDRA, CellBlock, surface_mesh
+from meshwind.mesh.io.cells.surface import SIDES_OF_POLYHEDRA, CellBlock, surface_mesh
 from meshwind.mesh.io.file_mesh import FileMesh
 
 _UNITS = {
@@ -95,6 +95,6 @@ def _sizes_and_nodes(data: Any) -> tuple[Ints, Ints]:
 
 
 def _of_vtk(mesh: object) -> FileMesh | None:
-    from meshwind.mesh.io.vtk_vtu_vtp import surface_of_vtk
+    from meshwind.mesh.io.vtk.vtk import surface_of_vtk
 
     return surface_of_vtk(mesh)

@@ -12,7 +12,7 @@ import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.io.cells_to_triangles import surface_mesh
+from meshwind.mesh.io.cells.surface import surface_mesh
 from meshwind.mesh.io.face_lists import Lists, face_blocks
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.lines import JOINED, Lines, NotANumber, Rows, without_comments

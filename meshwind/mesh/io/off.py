@@ -12,13 +12,13 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.io.cells_to_triangles import surface_mesh
+from meshwind.mesh.io.cells.surface import surface_mesh
 from meshwind.mesh.io.face_lists import Lists, face_blocks
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.lines import Lines, NotANumber, without_comments
-from meshwind.mesh.io.ply_header import Element, Property
-from meshwind.mesh.io.ply_rows import Binary, BrokenRow, CutShort, Step, spread, walk
-from meshwind.mesh.io.ply_text import list_length
+from meshwind.mesh.io.ply.header import Element, Property
+from meshwind.mesh.io.ply.rows import Binary, BrokenRow, CutShort, Step, spread, walk
+from meshwind.mesh.io.ply.text import list_length
 from meshwind.mesh.io.text import own_unit, plain_text
 
 _KEYWORD = re.compile(rb"((?:ST|C|N|4|n)*)OFF|((?:st|c|4)*)off")

@@ -19,20 +19,20 @@ from meshwind.core.opencascade import need
 from meshwind.core.units import BY_FILE
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.mesh.io.cad import CAD, read_cad_mesh
-from meshwind.mesh.io.deck import read_deck
+from meshwind.mesh.io.deck.deck import read_deck
 from meshwind.mesh.io.file_mesh import FileMesh
-from meshwind.mesh.io.gltf import read_gltf
+from meshwind.mesh.io.gltf.gltf import read_gltf
 from meshwind.mesh.io.in_memory import surface_in_memory
 from meshwind.mesh.io.in_subprocess import DAMAGED, Arrays, in_subprocess
-from meshwind.mesh.io.msh import read_msh
+from meshwind.mesh.io.msh.msh import read_msh
 from meshwind.mesh.io.obj import read_obj
 from meshwind.mesh.io.off import read_off
-from meshwind.mesh.io.ply import read_ply
+from meshwind.mesh.io.ply.ply import read_ply
 from meshwind.mesh.io.precision import resolved
 from meshwind.mesh.io.signature import foreign
-from meshwind.mesh.io.stl import read_stl
-from meshwind.mesh.io.threemf import read_3mf
-from meshwind.mesh.io.vtk_vtu_vtp import read_vtk
+from meshwind.mesh.io.stl.stl import read_stl
+from meshwind.mesh.io.threemf.threemf import read_3mf
+from meshwind.mesh.io.vtk.vtk import read_vtk
 from meshwind.mesh.repair.repair import mesh_from
 
 _Reader = Callable[[Path], FileMesh]

@@ -14,13 +14,13 @@ from meshwind.core.errors import BadInputError
 from meshwind.mesh.io.face_lists import Lists, whole
 from meshwind.mesh.io.fields import Field, Fields, add_scalar, centroids, has_surface, means, packed, used_points
 from meshwind.mesh.io.in_subprocess import Arrays, in_subprocess
-from meshwind.mesh.io.msh import mesh_of
-from meshwind.mesh.io.msh_data import msh_fields
-from meshwind.mesh.io.msh_sections import sections_of
-from meshwind.mesh.io.ply import read_tables
-from meshwind.mesh.io.ply_rows import Columns
-from meshwind.mesh.io.vtk_cells import GHOSTS
-from meshwind.mesh.io.vtk_vtu_vtp import cells_of, vtk_output
+from meshwind.mesh.io.msh.data import msh_fields
+from meshwind.mesh.io.msh.msh import mesh_of
+from meshwind.mesh.io.msh.sections import sections_of
+from meshwind.mesh.io.ply.ply import read_tables
+from meshwind.mesh.io.ply.rows import Columns
+from meshwind.mesh.io.vtk.cells import GHOSTS
+from meshwind.mesh.io.vtk.vtk import cells_of, vtk_output
 
 _BY_VTK = (".vtk", ".vtp", ".vtu")
 _HOLD_SCALARS = (*_BY_VTK, ".ply", ".msh")

@@ -1,0 +1,1 @@
+"""Cells of every kind, and the triangles of their surface."""

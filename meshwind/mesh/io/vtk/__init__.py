@@ -1,0 +1,1 @@
+"""VTK's files (VTK, VTU, VTP) and its data in memory."""
