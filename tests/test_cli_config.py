@@ -77,7 +77,7 @@ def test_whatever_was_left_to_the_run_is_left_to_it_again(tmp_path: Path) -> Non
 @pytest.mark.parametrize(("text", "says"), [
     ("path = 3", "my.toml: 'path' is no option; did you mean 'paths'?"),
     ("band_width = 3", "'band_width' is no option; did you mean 'band-width'?"),
-    ("no-render = true", "'no-render' is no option; did you mean 'render'?"),
+    ("no-render = true", "'no-render' is no option; write render = false"),
     ("xyz = 3", "'xyz' is no option; give mesh, paths, "), ("[wind]\npaths = 3", "'wind' is no option; give mesh"),
     ("paths = 'many'", "paths is 'many'; give a whole number"), ("paths = 2.5", "paths is 2.5; give a whole number"),
     ("paths = true", "paths is True; give a whole number"), ("tolerance = '1'", "tolerance is '1'; give a number"),
@@ -85,6 +85,8 @@ def test_whatever_was_left_to_the_run_is_left_to_it_again(tmp_path: Path) -> Non
     ("mesh = 3", "mesh is 3; give a text in quotes"),
     ("revolutions = [1]", "revolutions is [1]; give a number or a text in quotes"),
     ("opening = 2024-01-01", "opening is datetime.date(2024, 1, 1); give a number"),
+    ("revolutions = 0,5", "write decimals with a point"),
+    (r'mesh = "C:\Users\me\part.stl"', "write folders with /, or the path in single quotes"),
     ("a b", "is not valid TOML"), ("paths = 3\npaths = 4", "is not valid TOML"), ("\0", "is not valid TOML"),
     ("paths = 0", "paths is 0; give a whole number from 1 up"), ("revolutions = -1", "revolutions is -1; give"),
 ])  # fmt: skip

@@ -23,6 +23,7 @@ MISTAKES = {
     "wind part.ply --revolutions 0,5": "revolutions is '0,5'; give a number as in 0.5 or 5/12, or auto",
     "wind part.ply --units inches": "units is 'inches'; give mm, cm, m, um, in, inch, ft",
     "wind part.ply --ends loops 0 1": "put a value with spaces in quotes",
+    "wind part.ply out": "name the folder for the results by --out",
     "wind part.ply --out": "Option '--out' requires an argument; see `meshwind wind --help`",
     "wind part.ply --opening 500": "opening 500 is too large at (0, 0, -120); give a radius between",
     "check part.ply --component -1": "component is -1; give a whole number from 0 up",

@@ -65,6 +65,8 @@ BAD = {
     "u0;v0;u1;v1\n0;0;0.25;1\n\n1,234.5;0;1;1": "row 4 has a comma in a number and row 2 a point",
     "u0\tv0\tu1\tv1\n1,234\t0\t2\t1\n": "row 2 has a comma in a number, which may part decimals or thousands",
     "u0,v0,u1,v1\n0,0,0,0,0,25,1,0\n": "row 2 is not 4 numbers, as commas part both columns and decimals",
+    "u0,v0,u1,v1\n0,0,0,0,25\n": "row 2 is not 4 numbers, as commas part both columns and decimals",
+    "x0;y0;z0;x1;y1;z1;revolutions\n1.040,0;0;0;1;0;9,5;1\n": "'1.040,0' has a point between its thousands",
     "u0,v0,u1,v1\n0;0;0.25;1\n": "row 2 is parted by semicolons, but the names by commas",
     "# top\nu0;v0;u1;v1\n0;0;1;1\n\n0\t0\t1\t1\n": "row 5 is parted by tabs, but the names by semicolons",
     "u0;v0;u1;v1\n0;0;1\n": "row 2 is not 4 numbers, parted by semicolons",

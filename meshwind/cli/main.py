@@ -106,9 +106,11 @@ def _usage_error(error: typer.TyperException, typed: list[str], commands: list[s
     wrong = _COMMAND.search(line)
     if wrong and Path(wrong[1]).suffix:
         return f"{line}; to wind a mesh type `meshwind wind {wrong[1]}`"
+    context = getattr(error, "ctx", None)
     if line.startswith(_EXTRA):
         line += "; put a value with spaces in quotes"
-    context = getattr(error, "ctx", None)
+        if context and any("--out" in parameter.opts for parameter in context.command.params):
+            line += ", and name the folder for the results by --out"
     command = f"meshwind {typed[0]}" if typed and typed[0] in commands else "meshwind"
     return f"{line}; see `{context.command_path if context else command} --help`"
 

@@ -47,12 +47,29 @@ def read_toml(file: Path, kind: str) -> dict[str, Any]:
     except UnicodeDecodeError as error:
         raise BadInputError(f"the {kind} {file} is not text in UTF-8; save it as UTF-8") from error
     except tomllib.TOMLDecodeError as error:
-        raise BadInputError(f"the {kind} {file} is not valid TOML: {error}; write option = value") from error
+        raise BadInputError(f"the {kind} {file} is not valid TOML: {error}; {_mend(data, error)}") from error
+
+
+_COMMA = re.compile(r"=\s*[-+]?\d+,\d+")
+"""A number with a decimal comma, at its end or before more of it."""
+
+
+def _mend(data: bytes, error: tomllib.TOMLDecodeError) -> str:
+    """What to write instead, by the line that the error names."""
+    place = re.search(r"at line (\d+)", str(error))
+    lines = data.decode("utf-8-sig").splitlines()
+    line = lines[int(place[1]) - 1] if place and int(place[1]) <= len(lines) else ""
+    if "\\" in line and '"' in line:
+        return "write folders with /, or the path in single quotes"
+    return "write decimals with a point" if _COMMA.search(line) else "write option = value"
 
 
 def nearest(key: str, known: Collection[str]) -> str:
     """Advice on an unknown name: the one that was probably meant, or a list of all."""
-    near = difflib.get_close_matches(key.lower().replace("_", "-").removeprefix("no-"), list(known), 1)
+    plain = key.lower().replace("_", "-")
+    if plain.startswith("no-") and plain.removeprefix("no-") in known:
+        return f"write {plain.removeprefix('no-')} = false"
+    near = difflib.get_close_matches(plain.removeprefix("no-"), list(known), 1)
     return f"did you mean {near[0]!r}?" if near else f"give {', '.join(known)}"
 
 

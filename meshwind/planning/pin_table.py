@@ -20,6 +20,8 @@ _SEP_LINE = re.compile(r'"?sep=(.)"?', re.IGNORECASE)
 """First line by which a file tells a spreadsheet its separator."""
 _GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
 """A number whose commas may group its digits by thousands."""
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+,\d*")
+"""A number whose points group its digits by thousands, before a decimal comma."""
 
 
 @dataclass(frozen=True)
@@ -74,6 +76,11 @@ class PinTable:
             for sign in ",."
             if any(sign in cell for row in cells for cell in row)
         }
+        both = next((cell for row in cells for cell in row if _THOUSANDS.fullmatch(cell)), None)
+        if both is not None:
+            raise BadInputError(
+                f"{self.file}: {both!r} has a point between its thousands; save the numbers without a sign of thousands"
+            )
         if "." in which:
             raise BadInputError(
                 f"{self.file}: row {which[',']} has a comma in a number and row {which['.']} a point, with columns "
@@ -172,7 +179,7 @@ def _row(table: PinTable, line: int, text: str) -> tuple[str, ...]:
             f"{table.file}: row {line} is parted by {_SEPARATORS[other]}, but the names by "
             f"{table.parted}; part all by the same sign"
         )
-    if table.separator == "," and cells is not None and len(cells) == 2 * count:
+    if table.separator == "," and cells is not None and count < len(cells) <= 2 * count:
         raise BadInputError(
             f"{table.file}: row {line} is not {count} numbers, as commas part both columns and decimals; write "
             "decimals with points, or part columns by semicolons"
