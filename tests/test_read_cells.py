@@ -311,6 +311,34 @@ def test_polyhedra_of_the_same_corners_are_no_copies() -> None:
     assert len(surface_mesh(points, [polyhedra(prisms)]).faces) == 4
 
 
+@pytest.mark.parametrize("first", range(6))
+@pytest.mark.parametrize("below", ["wedges", "hexahedra", "mixed"])
+def test_a_large_side_on_several_smaller_ones_is_inner(below: str, first: int) -> None:
+    turn = 2.0 * np.pi * np.arange(6) / 6
+    rows = [np.column_stack([np.cos(turn), np.sin(turn), np.full(6, z)]) for z in (0.0, 1.0, 2.0)]
+    sides = [[6 + k, 6 + (k + 1) % 6, 12 + (k + 1) % 6, 12 + k] for k in range(6)]
+    ends = [[start + (k + first) % 6 for k in range(6)][::step] for start, step in ((6, -1), (12, 1))]
+    parts = {"wedges": [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5)], "hexahedra": [(0, 1, 2, 3), (0, 3, 4, 5)],
+             "mixed": [(1, 2, 3), (1, 3, 4), (0, 1, 4, 5)]}[below]  # fmt: skip
+    blocks = [polyhedra([[*sides, *ends]])]
+    for part in parts:
+        kind = "wedge" if len(part) == 3 else "hexahedron"
+        blocks.append(block(kind, [[*part, *(6 + k for k in part)]]))
+    mesh = surface_mesh(np.concatenate(rows), blocks)
+    assert is_closed(mesh.faces) and mesh.warnings == ()
+    assert size_of(mesh) == pytest.approx(3.0 * np.sqrt(3.0))
+
+
+def test_smaller_sides_that_leave_a_gap_do_not_cover_a_large_one() -> None:
+    turn = 2.0 * np.pi * np.arange(6) / 6
+    rows = [np.column_stack([np.cos(turn), np.sin(turn), np.full(6, z)]) for z in (0.0, 1.0, 2.0)]
+    sides = [[6 + k, 6 + (k + 1) % 6, 12 + (k + 1) % 6, 12 + k] for k in range(6)]
+    polyhedron = polyhedra([[*sides, range(11, 5, -1), range(12, 18)]])
+    wedges = block("wedge", [[0, a, b, 6, 6 + a, 6 + b] for a, b in ((1, 2), (2, 3), (3, 4))])
+    mesh = surface_mesh(np.concatenate(rows), [polyhedron, wedges])
+    assert len(mesh.faces) == 2 * 4 + 6 * 2 + 2 * 3 + 5 * 2
+
+
 def test_strips_keep_their_sense() -> None:
     points = np.array([[k // 2, k % 2, 0] for k in range(9)], dtype=float)
     blocks = [block("triangle strip", [range(8), [8, 7, 6], [0, 1]]), block("triangle", [[0, 2, 1]])]

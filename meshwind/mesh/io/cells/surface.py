@@ -10,6 +10,7 @@ from meshwind.mesh.io.cells.faces import FaceList, faces_of_cells, with_area
 from meshwind.mesh.io.cells.kinds import SIDES_OF_POLYHEDRA, has_no_surface, is_flattened, is_known, sides_of_solid
 from meshwind.mesh.io.cells.second_order import cut_faces
 from meshwind.mesh.io.cells.skin import surface_faces, without_copies
+from meshwind.mesh.io.cells.tiled_sides import without_tiled
 from meshwind.mesh.io.file_mesh import FileMesh
 
 __all__ = ["SIDES_OF_POLYHEDRA", "CellBlock", "surface_mesh"]
@@ -42,7 +43,8 @@ def surface_mesh(
                 solids.append((faces, np.full(len(sizes), sides)))
     surface = FaceList.joined(shells)
     if solids:
-        surface, words = surface_faces(without_copies(solids, len(points)), surface, len(points))
+        of_cells = without_tiled(without_copies(solids, len(points)), len(points))
+        surface, words = surface_faces(of_cells, surface, len(points))
         told += words
     triangles, crossed = cut_faces(points, surface)
     told += [f"polygons that cross themselves are cut by a fan: {crossed}"] if crossed else []
