@@ -275,3 +275,30 @@ def test_volumes_that_a_slicer_does_not_print_are_named(tmp_path: Path) -> None:
     parts = {"3D/3dmodel.model": model(thing(), item()), "Metadata/Slic3r_PE_model.config": table}
     held = load(saved(tmp_path, parts))
     assert is_barrel(held) and "which its program does not print, are read: 1" in held.warnings[0]
+
+
+@pytest.mark.parametrize("purpose", ["modifier_part", "negative_part", "support_blocker", "support_enforcer"])
+@pytest.mark.parametrize("kind", ["model", "other"])
+def test_components_that_a_slicer_does_not_print_are_left_out(kind: str, purpose: str, tmp_path: Path) -> None:
+    objects = thing(1) + thing(2, mesh(0.3 * POINTS), f'type="{kind}"')
+    both = "<components>" + "".join(
+        f'<component objectid="{key}" p:path="/3D/Objects/one.model"/>' for key in (1, 2)
+    ) + "</components>"  # fmt: skip
+    table = f'<config><object id="3"><part id="1" subtype="normal_part"/><part id="2" subtype="{purpose}"/></object>'
+    parts = {"3D/3dmodel.model": model(thing(3, both), item(3)), "3D/Objects/one.model": model(objects, ""),
+             "_rels/.rels": relationships("/3D/3dmodel.model"),
+             "Metadata/model_settings.config": table + "</config>"}  # fmt: skip
+    held = load(saved(tmp_path, parts))
+    assert is_barrel(held)
+    assert held.warnings == (f"objects that its program does not print ({purpose}) are left out: 1",)
+
+
+def test_components_of_another_object_are_printed(tmp_path: Path) -> None:
+    both = '<components><component objectid="1"/></components>'
+    table = '<config><object id="2"><part id="1" subtype="modifier_part"/></object><object id="3"/></config>'
+    parts = {"3D/3dmodel.model": model(thing() + thing(3, both), item(3)), "Metadata/model_settings.config": table,
+             "_rels/.rels": relationships("/3D/3dmodel.model")}  # fmt: skip
+    held = load(saved(tmp_path, parts))
+    assert is_barrel(held) and held.warnings == ()
+    parts["Metadata/model_settings.config"] = "<config><object"
+    assert "metadata/model_settings.config is damaged" in said(saved(tmp_path, parts))

@@ -15,6 +15,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.threemf.model import ModelPart, Solid, Use, read_model
 from meshwind.mesh.io.threemf.package import Package, open_archive
+from meshwind.mesh.io.threemf.slicers import not_printed, painted
 
 _Parts = list[tuple[Floats, Ints]]
 _UNITS = {"micron": "um", "millimeter": "mm", "centimeter": "cm", "inch": "in", "foot": "ft", "meter": "m"}
@@ -34,9 +35,6 @@ _MAX_USES = 20_000
 """Uses of objects by others: a few objects that contain each other many times would take forever."""
 _MAX_ROWS = 50_000_000
 """Triangles or vertices of all uses together."""
-_PAINTED = rb'"(?:NegativeVolume|ParameterModifier|SupportBlocker|SupportEnforcer)"'
-_PAINTED_IN = "metadata/slic3r_pe_model.config"
-"""Where PrusaSlicer keeps what each part of a mesh is for, and those that are not printed."""
 
 
 def read_3mf(path: Path) -> FileMesh:
@@ -44,10 +42,10 @@ def read_3mf(path: Path) -> FileMesh:
     with open_archive(path) as archive:
         build = _Build(Package(path, archive))
         parts = build.parts()
-        painted = build.package.count(_PAINTED_IN, _PAINTED)
+        among = painted(build.package)
     warnings = build.warnings()
-    if painted:
-        warnings += (f"volumes of modifiers and the like, which its program does not print, are read: {painted}",)
+    if among:
+        warnings += (f"volumes of modifiers and the like, which its program does not print, are read: {among}",)
     if not parts:
         found = f" ({'; '.join(warnings)})" if warnings else ""
         raise BadInputError(f"{path.name}: nothing in its build is a mesh of the part{found}; export the part's mesh")
@@ -67,6 +65,7 @@ class _Build:
         self.used: set[int] = set()
         self.left_out: Counter[str] = Counter()
         self.unread: Counter[str] = Counter()
+        self.not_printed = not_printed(package)
         self.root = package.root()
         self.unit = self._model(self.root).unit
 
@@ -138,6 +137,9 @@ class _Build:
         if self.uses > _MAX_USES or len(outer) > _MAX_DEPTH:
             raise ValueError(f"it uses objects more than {_MAX_USES} times, or on more than {_MAX_DEPTH} levels")
         self.used.add(id(solid))
+        if outer and (purpose := self.not_printed.get((outer[-1][1], use.object_id))):
+            self.left_out[f"that its program does not print ({purpose[:40]})"] += 1
+            return []
         if solid.resolution != "fullres":
             return self._stand_in(solid, use, part, (*outer, key))
         if solid.components:  # "The object type is ignored on objects that contain components", chapter 4
