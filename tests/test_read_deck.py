@@ -222,6 +222,18 @@ def test_an_instance_is_moved_then_turned(tmp_path: Path) -> None:
     assert read_deck(deck(tmp_path, LINER + assembly(turn))).vertices == pytest.approx(about, abs=1e-9)
 
 
+@pytest.mark.parametrize("first", ["\n", ",,\n", " 0., 0., 0.\n", "** turned only\n,\n"])
+def test_an_instance_that_is_turned_only(first: str, tmp_path: Path) -> None:
+    turn = f"part=Liner\n{first}0., 0., 0., 0., 1., 0., 90.\n"
+    about_y = np.column_stack([POINTS[:, 2], POINTS[:, 1], -POINTS[:, 0]])
+    assert read_deck(deck(tmp_path, LINER + assembly(turn))).vertices == pytest.approx(about_y, abs=1e-9)
+
+
+def test_an_instance_of_one_line_that_is_no_translation_is_refused(tmp_path: Path) -> None:
+    turn = "part=Liner\n0., 0., 0., 0., 1., 0., 90.\n"
+    assert "has more numbers than a translation and a rotation" in refusal(tmp_path, LINER + assembly(turn))
+
+
 def test_a_part_used_twice_and_nodes_of_the_assembly(tmp_path: Path) -> None:
     uses = assembly("part=Liner\n", "part=Liner\n0., 0., 200.\n").replace("*End Assembly", "*Node\n1, 9., 9., 9.\n"
                     "*Element, type=MASS\n1, 1\n*Nset, nset=s, instance=I0\n1, 2\n*End Assembly")  # fmt: skip

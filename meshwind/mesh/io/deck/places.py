@@ -66,8 +66,13 @@ def local_system(block: Block) -> Place:
 
 
 def instance_place(block: Block) -> Place:
-    """Place of *INSTANCE: a translation, then a rotation about the axis from a to b by an angle in degrees."""
+    """Place of *INSTANCE: a translation, then a rotation about the axis from a to b by an angle in degrees.
+
+    A first line that is blank, or of commas only, is a translation of zero.
+    """
     rows = floats_of(block).rows()
+    if len(rows) == 1 and len(rows[0]) > 3 and _begins_empty(block):
+        rows = [[], *rows]
     shift = np.array((rows[0] + [0.0] * 3)[:3]) if rows else np.zeros(3)
     if len(rows) > 2 or (rows and len(rows[0]) > 3) or (len(rows) == 2 and len(rows[1]) > 7):
         raise block.refusal("has more numbers than a translation and a rotation; mend it")
@@ -78,6 +83,12 @@ def instance_place(block: Block) -> Place:
         raise block.refusal("has a rotation about an axis of no length; mend it")
     turn = about(b - a, (rows[1] + [0.0] * 7)[6])
     return Place(turn, turn @ (shift - a) + a)
+
+
+def _begins_empty(block: Block) -> bool:
+    """Whether the first line of data has no numbers; remarks do not count."""
+    lines = (line.strip() for line in block.data.split(b"\n"))
+    return not next((line for line in lines if not line.startswith(b"**")), b"").strip(b", \t")
 
 
 def about(axis: Floats, degrees: float) -> Floats:
