@@ -54,6 +54,14 @@ def test_a_part_that_single_precision_does_not_resolve_is_refused(suffix: str, t
     )
 
 
+@pytest.mark.parametrize("far", [[2e7, 1.8e7, 0.0], [5e8, 0.0, 0.0], [0.0, -6.4e7, 3.0], [3.3e7, 3.3e7, 3.3e7]])
+@pytest.mark.parametrize("suffix", [".stl", ".ply"])
+def test_a_part_of_which_few_steps_are_left_is_refused(suffix: str, far: list[float], tmp_path: Path) -> None:
+    points, faces = barrel()
+    with pytest.raises(BadInputError, match="from the origin, where single precision resolves steps of"):
+        read(written(tmp_path / f"part{suffix}", points / 50.0 + far, faces))
+
+
 @pytest.mark.parametrize("suffix", [".stl", ".ply", ".vtu"])
 def test_a_part_that_it_resolves_coarsely_is_read_with_a_warning(suffix: str, tmp_path: Path) -> None:
     points, faces = barrel()

@@ -67,7 +67,7 @@ def _used(held: FileMesh) -> Floats:
 
 
 def _single(points: Floats, extent: float) -> _Steps:
-    """Steps of single precision, if all coordinates are such numbers and some use its last digit."""
+    """Steps of single precision, if all coordinates are such numbers and some use its last digit, or steps are few."""
     with np.errstate(over="ignore"):
         held = points.astype(np.float32)
     if (held != points).any():
@@ -76,7 +76,10 @@ def _single(points: Floats, extent: float) -> _Steps:
     found = [
         step
         for axis, step in enumerate(np.spacing(size).astype(np.float64))
-        if step > _COARSE * extent and _limits(points[:, axis], step) and (points[:, axis] / step % 2.0 == 1.0).any()
+        if step > _COARSE * extent
+        and _limits(points[:, axis], step)
+        # few steps may all be even ones
+        and (step > _USELESS * extent or (points[:, axis] / step % 2.0 == 1.0).any())
     ]
     return _Steps(max(found, default=0.0))
 
