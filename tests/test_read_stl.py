@@ -83,6 +83,11 @@ def test_bytes_after_the_last_triangle_are_told(more: int, tmp_path: Path) -> No
     read_back(path, warns=f"{more} bytes after the last triangle are not read")
 
 
+@pytest.mark.parametrize("more", [50, 100, 512, 4096])
+def test_zeros_after_the_last_triangle_are_no_triangles(more: int, tmp_path: Path) -> None:
+    read_back(written(tmp_path, "part.stl", SOUND + bytes(more)), warns=f"{more} zeros after the last triangle")
+
+
 def test_a_length_that_is_no_whole_number_is_refused(tmp_path: Path) -> None:
     assert refusal(written(tmp_path, "part.stl", SOUND[:-13])) == (
         "is cut short: it announces 80 triangles and holds 79; copy or export it again"

@@ -56,6 +56,9 @@ def _binary(name: str, content: bytes) -> FileMesh:
     present, odd = divmod(len(content) - _HEADER, _FACET)
     warnings = []
     facets = _FACETS
+    if announced and left >= _FACET and not content[at:].strip(b"\0"):
+        warnings.append(f"{left} zeros after the last triangle are not read")
+        left = 0
     if left and not odd and int.from_bytes(content[80:_HEADER], "big") == present:
         solids, left, facets = [(_HEADER, present)], 0, _TURNED
         warnings.append("count and coordinates are stored highest byte first, against the format; read as stored")
