@@ -169,7 +169,7 @@ def _cells(line: str, separator: str) -> list[str] | None:
 
 
 def _row(table: PinTable, line: int, text: str) -> tuple[str, ...]:
-    """The cells of a row, as many as there are names."""
+    """The cells of a row, as many as there are names; those of trailing separators are empty."""
     cells, count = _cells(text, table.separator), len(table.names)
     if cells is not None and len(cells) == count:
         return tuple(cells)
@@ -184,6 +184,8 @@ def _row(table: PinTable, line: int, text: str) -> tuple[str, ...]:
             f"{table.file}: row {line} is not {count} numbers, as commas part both columns and decimals; write "
             "decimals with points, or part columns by semicolons"
         )
+    if cells is not None and 1 < len(cells) < count:
+        return (*cells, *[""] * (count - len(cells)))  # the last ones, such as remarks, may be empty
     raise table.not_numbers(line)
 
 
