@@ -27,6 +27,7 @@ SAME: dict[str, bytes | str] = {
     "old Mac": PLAIN.replace("\n", "\r"),
     "byte order mark": "\ufeff" + PLAIN,
     "UTF-16": PLAIN.encode("utf-16"),
+    "mark of the end": PLAIN + "\x1a",
     "no last line end": PLAIN.rstrip("\n"),
     "blank lines": PLAIN.replace("\n", "\n\n  \n"),
     "continued": PLAIN.replace(" ", " \\\n"),
