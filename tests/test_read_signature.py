@@ -63,7 +63,7 @@ OTHERS = {
     "ZIP": (zipped("part.stl", exported("stl")), "is a ZIP archive by its content; unpack it first"),
     "web page": (b"\n<!DOCTYPE html>\n<html><body>404</body></html>\n", "is a web page, not a mesh; download the file"),
     "web page in capitals": (b"<HTML>\n<HEAD></HEAD></HTML>\n", "is a web page, not a mesh; download the file itself"),
-    "STEP": (b"ISO-10303-21;\nHEADER;\n" + 100 * b" ", "is a STEP file by its content; export it as a triangle mesh"),
+    "STEP": (b"ISO-10303-21;\nHEADER;\n" + 100 * b" ", "is a STEP file by its content; rename it to part.step"),
     "picture": (b"\x89PNG\r\n\x1a\n" + bytes(200), "is a picture by its content"),
     "PDF": (b"%PDF-1.7\n" + bytes(200), "is a PDF document by its content"),
     "zeros": (bytes(1000), "begins with nothing but zeros, as after a copy that failed; copy or export it again"),
@@ -91,3 +91,16 @@ def test_a_broken_file_of_its_own_kind_keeps_its_reason(tmp_path: Path) -> None:
     for ending in ENDINGS:
         whole = MESHES[ending][0]
         assert "by its content" not in refusal(written(tmp_path, f"part{ending}", whole[: len(whole) // 2]))
+
+
+@pytest.mark.parametrize("ending", [".p21", ".txt", ".dat", ""])
+@pytest.mark.parametrize("kind", ["STEP", "gzip", "web page", "stl", "obj"])
+def test_a_file_of_an_unknown_ending_is_named_by_its_content(kind: str, ending: str, tmp_path: Path) -> None:
+    content, words = OTHERS.get(kind) or (exported(kind), f" file by its content; rename it to part.{kind}")
+    assert words in refusal(written(tmp_path, f"part{ending}", content))
+
+
+def test_an_iges_file_is_to_be_renamed(tmp_path: Path) -> None:
+    content = b"".join(b"%-72sS%7d\n" % (b"part", line) for line in (1, 2))
+    words = "is an IGES file by its content; rename it to part.igs, or export it as STL"
+    assert refusal(written(tmp_path, "part.stl", content)) == words

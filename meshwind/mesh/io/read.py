@@ -195,6 +195,7 @@ def _reader(file: Path) -> _Reader:
     if file.suffix.lower() in CAD:
         need(f"{file.name}: ")
     if file.suffix.lower() not in _READERS:
+        _refuse_foreign(file)
         known = ", ".join(suffix[1:].upper() for suffix in SUFFIXES if suffix not in (".stp", ".igs"))
         way = next((way for endings, way in _WAYS.items() if file.suffix.lower() in endings), "convert the mesh to")
         raise BadInputError(f"{file.name}: unknown format {file.suffix!r}; {way} one of {known}")

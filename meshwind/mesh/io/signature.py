@@ -45,8 +45,8 @@ _OTHERS: tuple[tuple["re.Pattern[bytes]", str], ...] = tuple(
         (rb"%PDF-", "is a PDF document by its content; give the mesh itself"),
         (rb"\x89PNG\r\n|\xff\xd8\xff|GIF8|BM....\0\0\0\0", "is a picture by its content; give the mesh itself"),
         (rb"\x00\x05\x16\x07", "is a Mac's companion file; give the file whose name has no ._ before it"),
-        (rb"\s*ISO-10303-21\s*;", "is a STEP file by its content; export it as a triangle mesh, such as STL"),
-        (rb"[^\r\n]{72}S[ 0]*1\s", "is an IGES file by its content; export it as a triangle mesh, such as STL"),
+        (rb"\s*ISO-10303-21\s*;", "is a STEP file by its content; rename it to {}.step, or export it as STL"),
+        (rb"[^\r\n]{72}S[ 0]*1\s", "is an IGES file by its content; rename it to {}.igs, or export it as STL"),
         (rb"Kaydara FBX Binary|; FBX ", "is an FBX file by its content; export it as STL, OBJ or PLY"),
         (rb"BLENDER", "is a Blender file by its content; export it as STL, OBJ or PLY"),
         (rb"3D Geometry File Format", "is a Rhino file by its content; export its mesh as STL, OBJ or PLY"),
@@ -74,7 +74,7 @@ def foreign(path: Path) -> str:
     for pattern, words in _OTHERS:
         if pattern.match(start):
             own = (suffix in STEP and words.startswith("is a STEP")) or (suffix in IGES and "IGES" in words)
-            return "" if own else words
+            return "" if own else words.replace("{}", path.stem[:80])
     if start.startswith(b"PK\x03\x04"):
         return _archive(path)
     if _is_utf16(start):
