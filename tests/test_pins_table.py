@@ -41,6 +41,7 @@ GOOD = {
     "a column more": "name;u0;v0;u1;v1\npin A;0;0;0,25;1\npin B;0,5;0,1;-0,125;0,9\n",
     "remarks at the end": "Nr.;u0;v0;u1;v1;Bemerkung\n1;0;0;0,25;1;links, oben\n2;0,5;0,1;-0,125;0,9;\n",
     "remarks of one row": "u0,v0,u1,v1,a,b\n0,0,0.25,1\n0.5,0.1,-0.125,0.9,,late\n",
+    "bars": "u0 | v0 | u1 | v1\n0 | 0 | 0,25 | 1\n0,5 | 0,1 | -0,125 | 0,9\n",
     "exponents": "u0;v0;u1;v1\r\n0,00E+00;0;2,5E-01;1,00E+00\r\n5,0E-01;1E-01;-1,25E-01;9,0E-01\r\n",
     "names in another order": "v1;u1;v0;u0\n1;0,25;0;0\n0,9;-0,125;0,1;0,5\n",
     "a typographic minus": "u0;v0;u1;v1\n0;0;0,25;1\n0,5;0,1;\u22120,125;0,9\n",

@@ -13,7 +13,7 @@ from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import shortened
 
-_SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", " ": "blanks"}
+_SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", "|": "bars", " ": "blanks"}
 """What may part the columns, with its name; the row of names determines which one does."""
 _UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 _SEP_LINE = re.compile(r'"?sep=(.)"?', re.IGNORECASE)
@@ -106,7 +106,7 @@ def read_table(path: Path, kinds: Collection[Collection[str]]) -> PinTable:
     separators = list(_SEPARATORS)
     if lines and (named := _SEP_LINE.fullmatch(lines[0].strip(" "))):
         lines[0], separators = "", [named[1]]
-    filled = [(number, line.strip(" ")) for number, line in enumerate(lines, start=1) if line.strip(" \t;,")]
+    filled = [(number, line.strip(" ")) for number, line in enumerate(lines, start=1) if line.strip(" \t;,|")]
     rows = [(number, line) for number, line in filled if not line.startswith("#")]
     # the row of names may be a comment; what is above it is none of the pins
     above = [(number, line.removeprefix("#")) for number, line in filled if not rows or number < rows[0][0]]
