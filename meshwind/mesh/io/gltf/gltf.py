@@ -225,7 +225,9 @@ def _triangles(nodes: Ints, mode: int) -> Ints:
     if mode == _STRIP:
         at = np.arange(max(len(nodes) - 2, 0))
         odd = at % 2
-        return np.column_stack([nodes[at], nodes[at + 1 + odd], nodes[at + 2 - odd]])
+        found = np.column_stack([nodes[at], nodes[at + 1 + odd], nodes[at + 2 - odd]])
+        repeats = found == np.roll(found, 1, axis=1)  # strips are joined by corners that are given twice
+        return found[~repeats.any(axis=1)]
     if mode == _FAN:
         first = np.broadcast_to(nodes[:1], max(len(nodes) - 2, 0))
         return np.column_stack([nodes[1:-1], nodes[2:], first])
