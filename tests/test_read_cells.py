@@ -329,6 +329,16 @@ def test_a_large_side_on_several_smaller_ones_is_inner(below: str, first: int) -
     assert size_of(mesh) == pytest.approx(3.0 * np.sqrt(3.0))
 
 
+def test_very_many_large_sides_at_one_node_take_no_memory_beyond_bounds() -> None:
+    turn = np.linspace(0.0, 2.0 * np.pi, 80_001)
+    ring = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(len(turn))])
+    first = np.arange(1, 80_001, 4)[:, None]
+    sides = np.column_stack([np.zeros(20_000, dtype=int), first + np.arange(4)])
+    block = (SIDES_OF_POLYHEDRA, (np.full(20_000, 5), sides.ravel(), np.ones(20_000, dtype=int)))
+    mesh = surface_mesh(np.concatenate([[[0.0, 0.0, 1.0]], ring]), [block])
+    assert len(mesh.faces) == 60_000
+
+
 def test_smaller_sides_that_leave_a_gap_do_not_cover_a_large_one() -> None:
     turn = 2.0 * np.pi * np.arange(6) / 6
     rows = [np.column_stack([np.cos(turn), np.sin(turn), np.full(6, z)]) for z in (0.0, 1.0, 2.0)]

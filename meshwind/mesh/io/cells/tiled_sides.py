@@ -11,6 +11,8 @@ from meshwind.mesh.io.cells.faces import FaceList
 
 _LARGE = 4
 """Sides of more corners are looked at; a quadrangle on two triangles is found with the skin."""
+_MOST, _AT_ONCE = 100_000_000, 5_000_000
+"""Pairs of a polygon and a side at one of its corners: the largest number that is looked at, and how many at once."""
 _SEED = 16
 
 
@@ -47,10 +49,16 @@ def _within(sides: FaceList, points: int) -> tuple[Ints, Ints]:
     of = np.repeat(np.arange(len(sides.sizes)), sides.sizes)
     table = csr_array((np.ones(len(of), dtype=np.int64), (of, sides.corners)), shape=(len(sides.sizes), points))
     large = np.flatnonzero(sides.sizes > _LARGE)
-    shared = (table[large] @ table.T).tocoo()
-    which, small = large[shared.coords[0]], shared.coords[1].astype(np.int64)
-    inside = (shared.data == sides.sizes[small]) & (sides.sizes[small] < sides.sizes[which])
-    return which[inside], small[inside]
+    about = np.bincount(of, np.bincount(sides.corners, minlength=points)[sides.corners])[large].cumsum()
+    if len(large) == 0 or about[-1] > _MOST:
+        return large[:0], large[:0]
+    pairs = []
+    for rows in np.split(large, np.flatnonzero(np.diff(about // _AT_ONCE)) + 1):
+        shared = (table[rows] @ table.T).tocoo()
+        which, small = rows[shared.coords[0]], shared.coords[1].astype(np.int64)
+        inside = (shared.data == sides.sizes[small]) & (sides.sizes[small] < sides.sizes[which])
+        pairs.append((which[inside], small[inside]))
+    return np.concatenate([pair[0] for pair in pairs]), np.concatenate([pair[1] for pair in pairs])
 
 
 def _covered(sides: FaceList, large: Ints, small: Ints) -> Ints:
