@@ -16,16 +16,21 @@ from test_mesh_ends_choice import arms
 import meshwind as mw
 from meshwind.core.cast import Floats
 from meshwind.mesh import mesh_from
+from meshwind.mesh.geometry.fill_holes import fill_hole
 from meshwind.mesh.geometry.mesh import Mesh
+from meshwind.mesh.geometry.topology import loops
 from meshwind.mesh.inspection import inspect
 from meshwind.surface import FitError
 from meshwind.workflow.notes import about_fit, about_opening
 
 X, Y, Z = np.eye(3)
+DATA = Path(__file__).parent.parent / "data"
 Leg = tuple[tuple[float, float, float], float]
 """End point and radius of a leg that begins at the origin."""
 Y_PIPE = (((0, 0, -60), 12.0), ((35, 0, 50), 10.0), ((-35, 0, 50), 10.0))
 TEE = (((-60, 0, 0), 12.0), ((60, 0, 0), 12.0), ((0, 0, 45), 10.0))
+BOSS = (((-60, 0, 0), 12.0), ((60, 0, 0), 12.0), ((0, 0, 10), 10.0))
+BEND = (((-60, 0, 0), 12.0), ((0, 0, 60), 12.0))
 NOZZLE = (((-60, 0, 0), 12.0), ((60, 0, 0), 12.0), ((0, 0, 27), 3.5))
 
 
@@ -78,10 +83,51 @@ def test_a_cross_has_more_wide_ends_than_one() -> None:
     assert opened.warnings[0].startswith("the part branches: it has 2 more wide ends, the longest 8 round at")
 
 
-def test_a_nozzle_and_a_closed_leg_are_no_branch() -> None:
-    assert mw.annulus(mesh_from(*pipes(NOZZLE))).warnings == ()
-    assert mw.annulus(mesh_from(*pipes(TEE, closed=1))).warnings == ()
+@pytest.mark.parametrize("legs", [Y_PIPE, TEE], ids=["Y", "tee"])
+@pytest.mark.parametrize("closed", [1, 3])
+def test_a_closed_leg_is_told_as_an_open_one_is(legs: tuple[Leg, ...], closed: int) -> None:
+    (warning,) = mw.annulus(mesh_from(*pipes(legs, closed))).warnings
+    found = re.match(r"the part branches: it has 1 more wide end, (\S+) round at \((\S+), (\S+), (\S+)\)", warning)
+    assert found is not None and "loops" not in warning
+    assert 50.0 < float(found[1]) < 90.0
+    tip = np.array([float(found[k]) for k in (2, 3, 4)])
+    away = [np.linalg.norm(tip - end) for end, _ in legs]
+    assert min(away) < 16.0  # on the cap of a leg, which may be any of them
+
+
+def test_four_closed_legs_and_a_cross_of_bars() -> None:
+    legs = (((-60, 0, 0), 12.0), ((60, 0, 0), 12.0), ((0, 0, 45), 10.0), ((0, -45, 0), 10.0))
+    (warning,) = mw.annulus(mesh_from(*pipes(legs, 4))).warnings
+    assert warning.startswith("the part branches: it has 2 more wide ends, the longest ")
+    vertices, faces = arms(6 * X, -6 * X, 5 * Y)
+    for loop in loops(faces):
+        vertices, faces = fill_hole(vertices, faces, loop)
+    (warning,) = mw.annulus(mesh_from(vertices, faces)).warnings
+    assert warning.startswith("the part branches: it has 1 more wide end, ")
+
+
+def test_a_nozzle_a_boss_and_a_bend_are_no_branch() -> None:
+    for closed in (0, 1, 3):
+        assert mw.annulus(mesh_from(*pipes(NOZZLE, closed))).warnings == ()
+        assert mw.annulus(mesh_from(*pipes(BOSS, closed))).warnings == ()
+    assert mw.annulus(mesh_from(*pipes(BEND))).warnings == ()
+    assert mw.annulus(mesh_from(*pipes(BEND, 2))).warnings == ()
     assert mw.annulus(mesh_from(*tube(lambda z: 1.0 + 0.0 * z))).warnings == ()
+
+
+def test_an_end_at_the_knee_of_a_bend_leaves_a_leg() -> None:
+    part = mesh_from(*pipes(BEND, 1))
+    (warning,) = mw.annulus(part).warnings  # the pole across the open rim is at the knee
+    assert warning.startswith("the part branches: it has 1 more wide end, ")
+    assert warning.endswith("choose other ends with --ends 'x,y,z x,y,z'")
+    assert mw.annulus(part, "-60,0,0 0,0,70").warnings == ()
+
+
+@pytest.mark.parametrize(
+    "file", sorted(path.name for path in DATA.iterdir() if path.suffix in {".obj", ".stl", ".ply"})
+)
+def test_the_parts_of_the_examples_do_not_branch(file: str) -> None:
+    assert mw.annulus(mw.read(DATA / file)).warnings == ()
 
 
 def test_a_hole_is_no_branch_however_wide() -> None:
@@ -90,14 +136,34 @@ def test_a_hole_is_no_branch_however_wide() -> None:
     assert warning.startswith("1 open rim nearly as wide as the ends, ") and "branch" not in warning
 
 
-def test_the_advice_works() -> None:
-    part = mesh_from(*pipes(Y_PIPE))
-    chosen = mw.annulus(part, "loops 0 2")  # said by the user
-    assert chosen.warnings == () and "rims number 0 and 2" in chosen.ends
-    end = np.array([35.0, 0.0, 50.0])
-    leg = (part.vertices @ end > 0.35 * end @ end)[part.faces].all(axis=1)  # cut where it branches
-    wound = mw.wind(mesh_from(part.vertices, part.faces[leg]), paths=3, revolutions=0.3, particles=41, tolerance=1e-2)
-    assert wound.settled and wound.chart.annulus.warnings == ()
+def test_a_branch_is_told_where_the_ends_are_chosen_too() -> None:
+    (warning,) = mw.annulus(mesh_from(*pipes(Y_PIPE)), "loops 0 2").warnings
+    assert warning.startswith("the part branches: it has 1 more wide end, ") and "--ends" not in warning
+    (warning,) = mw.annulus(drilled(0.7), "loops 0 1").warnings
+    assert warning.startswith("1 open rim nearly as wide") and "--ends" not in warning
+    assert "meshwind check lists" in mw.annulus(drilled(0.7)).warnings[0]
+
+
+def cut_at(part: Mesh, place: float, closed: bool) -> tuple[Mesh, Mesh]:
+    """The leg of the tee above a height, and the rest below it with the hole of the cut closed or open."""
+    above = (part.vertices[:, 2] > place)[part.faces].all(axis=1)
+    vertices, rest = part.vertices, mesh_from(part.vertices, part.faces[~above])
+    hole = min(loops(rest.faces), key=lambda loop: abs(float(rest.vertices[loop, 2].mean()) - place))
+    filled = fill_hole(rest.vertices, rest.faces, hole) if closed else (rest.vertices, rest.faces)
+    return mesh_from(vertices, part.faces[above]), mesh_from(*filled)
+
+
+@pytest.mark.parametrize("closed", [0, 3], ids=["open", "closed"])
+def test_the_advice_works(closed: int) -> None:
+    part = mesh_from(*pipes(TEE, closed))
+    (warning,) = mw.annulus(part).warnings
+    assert "cut each leg off just beside where it branches" in warning
+    assert "the rest with the hole that this leaves closed" in warning
+    for each in cut_at(part, 17.0, closed=True):
+        wound = mw.wind(each, paths=3, revolutions=0.3, particles=41, tolerance=1e-2)
+        assert wound.settled and wound.chart.annulus.warnings == ()
+    length = mw.annulus(cut_at(part, 17.0, closed=True)[1]).rims
+    assert len(length) == 2
 
 
 def test_a_failed_fit_of_a_branch_says_that_it_branches() -> None:
@@ -106,7 +172,7 @@ def test_a_failed_fit_of_a_branch_says_that_it_branches() -> None:
     surface = mw.fit(chart)
     coarse = replace(surface, error=FitError(0.03 * size, 0.03 * size, 0.02 * size, 0.03 * size, size))
     (note,) = about_fit(coarse, chart, 1e-5, 0.2)
-    assert note.warning and "the part branches; cut it where it branches and wind each leg" in note.text
+    assert note.warning and "the part branches; cut each leg off just beside where it branches" in note.text
     missed = replace(surface, error=FitError(1e-3 * size, 1e-3 * size, 1e-3 * size, 1e-3 * size, size, data="vertices"))
     (note,) = about_fit(missed, chart, 1e-5, 0.2)
     assert "the part branches; cut" in note.text and "finer" not in note.text

@@ -9,7 +9,7 @@ from meshwind.chart import Chart
 from meshwind.core.errors import BadInputError
 from meshwind.layup.layup import Layup
 from meshwind.mesh import Annulus, Mesh
-from meshwind.mesh.opening.branches import BRANCHES
+from meshwind.mesh.opening.branches import BRANCHES, CUT
 from meshwind.mesh.opening.choose_ends import position_text
 from meshwind.path.lengths import lengths, unresolved_share
 from meshwind.path.paths import EDGE, Paths, Status, converged_or_all
@@ -37,7 +37,7 @@ _MAX_LISTED = 3
 """Places where surface and mesh lie far apart that are listed with their coordinates."""
 _PROTRUSIONS = "protrusions such as fingers, ears and branches are squeezed by the chart; wind a part without them"
 _FINER = "give a finer or smoother mesh"
-_LEGS = f"{BRANCHES}; cut it where it branches and wind each leg as a part of its own"
+_LEGS = f"{BRANCHES}; {CUT}"
 _COARSE = "its edges there are too sharp for the mesh; give a finer mesh, or round them"
 _CHORDS = (
     "its facets there are chords of the smooth surface through their corners; where the part itself is flat, give a "

@@ -1,44 +1,114 @@
-"""Wide open rims beside the two ends: branches of a part, or holes in it, that are filled."""
+"""Branches of a part beside its two ends, open or closed, and wide holes in it that are filled."""
+
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import dijkstra
+from scipy.spatial import KDTree
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.mesh.geometry.areas_and_volumes import areas, loop_centroid, perimeter
+from meshwind.mesh.geometry.mesh import Annulus
 from meshwind.mesh.geometry.topology import edges
 from meshwind.mesh.opening.choose_ends import position_text
+from meshwind.mesh.opening.legs import Leg, legs
 
 _WIDE = 0.4
-"""Length of a rim over that of the shorter end's from which on it may be meant for an end, or a branch's.  Nozzles and
-holes for bolts are less: 0.24 for a branch pipe of a quarter of the diameter."""
+"""Length of a rim over that of the shorter end's from which on it may be meant for an end, or a branch's, and girth of
+a closed leg over that of the part.  Nozzles and holes for bolts are less: 0.24 for a branch pipe of a quarter of the
+diameter."""
 _REACH = 2.0
 """Radii of the rim within which the surface tells a leg from a hole."""
 _LEG = 1.4
 """Area within that reach over that of a cylinder below which a rim is the end of a leg; 2 for a hole in a plane."""
+_MOSTLY = 0.5
+"""Share of a rim's points above which it is on a leg."""
 
 BRANCHES = "the part branches"
 """How the warning of a branch begins."""
+CUT = (
+    "cut each leg off just beside where it branches and wind it as a part of its own, and the rest with the hole that "
+    "this leaves closed"
+)
+"""What helps: the hole of a cut, left open, is an end of the rest where the part has no other open rims."""
 
 
-def branch_warnings(vertices: Floats, faces: Ints, spare: list[Ints], ends: list[Ints]) -> tuple[str, ...]:
-    """What to know of wide rims among those that are filled, in words; `ends` are the rims that are kept."""
-    shorter = min((perimeter(vertices, loop) for loop in ends), default=np.inf)
-    wide = [loop for loop in spare if perimeter(vertices, loop) >= _WIDE * shorter]
-    legs = [loop for loop in wide if _is_leg(vertices, faces, loop)]
-    holes = [loop for loop in wide if not any(loop is leg for leg in legs)]
+@dataclass(frozen=True)
+class WideRim:
+    """An open rim beside the ends that is wide enough to be one: its points (n, 3), its length, its centre (3,).
+
+    tube: whether the surface goes on from it as from the end of a tube.
+    """
+
+    points: Floats
+    length: float
+    centre: Floats
+    tube: bool
+
+
+@dataclass(frozen=True)
+class OpenRims:
+    """Wide open rims of a part that are not its ends, before they are filled.
+
+    shorter: length of the shorter of the ends that are open rims, infinite if none is; by_number: whether the ends
+    were chosen by the numbers of their rims.
+    """
+
+    wide: tuple[WideRim, ...]
+    shorter: float
+    by_number: bool
+
+    @staticmethod
+    def of(vertices: Floats, faces: Ints, spare: list[Ints], ends: list[Ints], by_number: bool) -> "OpenRims":
+        """Find the wide ones among the loops that are to be filled; `ends` are those that are kept."""
+        shorter = min((perimeter(vertices, loop) for loop in ends), default=np.inf)
+        lengths = [(loop, perimeter(vertices, loop)) for loop in spare]
+        wide = tuple(
+            WideRim(vertices[loop], length, loop_centroid(vertices, loop), _is_leg(vertices, faces, loop))
+            for loop, length in lengths
+            if length >= _WIDE * shorter
+        )
+        return OpenRims(wide, shorter, by_number)
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Where a leg ends or a hole is, and how long round."""
+
+    centre: Floats
+    length: float
+
+
+def branch_warnings(opened: Annulus, rims: OpenRims) -> tuple[str, ...]:
+    """What to know of the legs of a part that is opened at its ends, and of its wide rims that are filled, in words."""
+    found, mean = legs(opened)
+    wide = [leg for leg in found if leg.girth >= _WIDE * min(rims.shorter, mean)]
+    at_tips = [any(_holds(leg, opened, rim) for leg in wide) for rim in rims.wide]
+    ends = [_Place(rim.centre, rim.length) for rim, tip in zip(rims.wide, at_tips, strict=True) if rim.tube or tip]
+    holes = [
+        _Place(rim.centre, rim.length) for rim, tip in zip(rims.wide, at_tips, strict=True) if not (rim.tube or tip)
+    ]
+    closed = [leg for leg in wide if not any(_holds(leg, opened, rim) for rim in rims.wide)]
+    tips = [_Place(leg.tip, leg.girth) for leg in closed]
+    diagonal = float(np.linalg.norm(np.ptp(opened.vertices, axis=0)))
     words = []
-    if legs:
+    if ends or tips:
+        kind = "'x,y,z x,y,z'" if tips else "'loops i j', which meshwind check lists"
+        others = "" if rims.by_number else f", or choose other ends with --ends {kind}"
         words.append(
-            f"{BRANCHES}: it has {_count(len(legs), 'more wide end')}, {_place(vertices, legs)}, which "
-            f"{'is' if len(legs) == 1 else 'are'} closed, and fibres run over the branch; cut it where it branches and "
-            "wind each leg as a part of its own, or choose its two ends with --ends 'loops i j'"
+            f"{BRANCHES}: it has {_count(len(ends + tips), 'more wide end')}, {_longest(ends + tips, diagonal)}, which "
+            f"{_is(ends + tips)} closed, and fibres run over the branch; {CUT}{others}"
         )
     if holes:
+        others = (
+            ""
+            if rims.by_number
+            else "; if it is to be an end, choose it with --ends 'loops i j', which meshwind check lists"
+        )
         words.append(
-            f"{_count(len(holes), 'open rim')} nearly as wide as the ends, {_place(vertices, holes)}, "
-            f"{'is' if len(holes) == 1 else 'are'} filled, and fibres cross the hole; choose other ends with "
-            "--ends 'loops i j' if it is to be one"
+            f"{_count(len(holes), 'open rim')} nearly as wide as the ends, {_longest(holes, diagonal)}, "
+            f"{_is(holes)} filled, and fibres cross the hole{others}"
         )
     return tuple(words)
 
@@ -47,12 +117,21 @@ def _count(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def _place(vertices: Floats, rims: list[Ints]) -> str:
-    """Length and place of the longest rim."""
-    longest = max(rims, key=lambda loop: perimeter(vertices, loop))
-    diagonal = float(np.linalg.norm(np.ptp(vertices, axis=0)))
-    where = position_text(loop_centroid(vertices, longest), diagonal)
-    return f"{'' if len(rims) == 1 else 'the longest '}{perimeter(vertices, longest):.3g} round at {where}"
+def _is(places: list[_Place]) -> str:
+    return "is" if len(places) == 1 else "are"
+
+
+def _longest(places: list[_Place], diagonal: float) -> str:
+    """Length and place of the longest one."""
+    longest = max(places, key=lambda place: place.length)
+    where = position_text(longest.centre, diagonal)
+    return f"{'' if len(places) == 1 else 'the longest '}{longest.length:.3g} round at {where}"
+
+
+def _holds(leg: Leg, opened: Annulus, rim: WideRim) -> bool:
+    """Whether a rim that was filled is that of a leg."""
+    away, _ = KDTree(opened.vertices[leg.vertices]).query(rim.points)
+    return bool((away == 0.0).mean() > _MOSTLY)
 
 
 def _is_leg(vertices: Floats, faces: Ints, loop: Ints) -> bool:

@@ -11,7 +11,7 @@ from meshwind.mesh.geometry.areas_and_volumes import areas, volume
 from meshwind.mesh.geometry.fill_holes import fill_defects, fill_hole
 from meshwind.mesh.geometry.mesh import Annulus, Mesh
 from meshwind.mesh.geometry.topology import euler, loops, patches
-from meshwind.mesh.opening.branches import branch_warnings
+from meshwind.mesh.opening.branches import OpenRims, branch_warnings
 from meshwind.mesh.opening.choose_ends import End, EndsRequest, choose_ends, parse_ends, rims_by_number
 from meshwind.mesh.opening.curved_facets import CurvedFacets, curved_facets, split_chords
 from meshwind.mesh.opening.cut_opening import pinched
@@ -91,7 +91,7 @@ def annulus(
     if spare:
         notes.append(f"filled {len(spare)} other open {'rim' if len(spare) == 1 else 'rims'}")
     kept = [end.loop for end in pair if end.loop is not None]
-    warnings = () if requested else branch_warnings(vertices, faces, spare, kept)
+    open_rims = OpenRims.of(vertices, faces, spare, kept, bool(requested))
     for loop in spare:
         vertices, faces = fill_hole(vertices, faces, loop)
     surface = curved_facets(vertices, faces, np.arange(len(vertices)) < len(part.vertices))
@@ -103,7 +103,7 @@ def annulus(
     surface, openings = open_ends(surface, pair, opening, opening_by, mesh.name)
     found = _assembled(mesh, split_chords(surface), pair, [_ends_in_words(words, pair, openings, asked), *notes])
     decided = (*(in_words(wall) for wall in [wall] if wall), *(each.why for each in openings if each.why))
-    return replace(found, notes=decided, wall=wall, warnings=warnings)
+    return replace(found, notes=decided, wall=wall, warnings=branch_warnings(found, open_rims))
 
 
 def _check_opening(opening: float | None) -> None:
