@@ -73,7 +73,7 @@ def complete(words: str) -> list[str]:
 
 @pytest.mark.parametrize(("words", "offered"), [
     ("meshwind ex", ["export"]), ("meshwind wind --rev", ["--revolutions"]),
-    ("meshwind wind --units i", ["in", "inch"]),
+    ("meshwind wind --units i", ["in"]),
     ("meshwind wind --ends ", ["auto", "x", "y", "z", "loops"]), ("meshwind wind --revolutions ", ["auto"]),
     ("meshwind export d --to inp,f", ["inp,fibers", "inp,frames"]),
     ("meshwind export d --formats ply,", [f"ply,{name}" for name in FORMATS if name != "ply"]),

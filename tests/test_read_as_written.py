@@ -216,10 +216,12 @@ def test_coordinates_that_are_too_coarse(far: float, tmp_path: Path) -> None:
 def test_the_unit_of_the_file_and_of_the_user(tmp_path: Path) -> None:
     path = tmp_path / "part.gltf"
     path.write_bytes(BY_HAND["gltf H"])
-    assert (mw.read(path).units, mw.read(path).units_from) == ("m", "file")
+    assert (mw.read(path).units, mw.read(path).units_from) == ("m", "as glTF always is")
     given = mw.read(path, units="mm")
     assert (given.units, given.units_from) == ("mm", "given")
-    assert given.warnings == ("lengths are taken in mm, as given, though the file says m; nothing is converted",)
+    assert given.warnings == (
+        "lengths are taken in 'mm', as given, though the file is in 'm', as glTF always is; nothing is converted",
+    )
     assert mw.read(path, units="M").warnings == ()
     (tmp_path / "part.obj").write_bytes(BY_HAND["obj plain  '\\n'"])
     assert mw.read(tmp_path / "part.obj").units == ""

@@ -1,7 +1,9 @@
 """Files of CAD given to `check` and `wind`: true to the CAD surface, in its unit, and the word on what to install."""
 
+import re
 import subprocess
 import sys
+from codecs import BOM_UTF8
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -15,6 +17,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.core.opencascade import occ, quiet
 from meshwind.mesh.geometry.areas_and_volumes import areas, volume
 from meshwind.mesh.io.read import load, read
+from meshwind.workflow.notes import about_file
 
 TURNED = 0.002
 """Relative error of areas from facets that turn by up to 8 degrees."""
@@ -125,14 +128,111 @@ def test_vertices_are_on_the_surface_and_facets_near(tmp_path: Path) -> None:
     assert middles.min() > 20.0 - 1.1e-4 * mesh.diagonal
 
 
-@pytest.mark.parametrize("unit", ["INCH", "M", "CM"])
+NAMED = {"INCH": "in", "M": "m", "CM": "cm", "FT": "ft", "KM": "kilometre"}
+
+
+@pytest.mark.parametrize("unit", NAMED)
 @pytest.mark.usefixtures("cad")
 def test_other_units_come_in_millimetres(unit: str, tmp_path: Path) -> None:
     path = save(tmp_path / "part.step", cylinder(), unit)
-    assert ("CONVERSION_BASED_UNIT" in path.read_text()) == (unit == "INCH")
+    assert ("CONVERSION_BASED_UNIT" in path.read_text()) == (unit in ("INCH", "FT"))
     held = load(path)
     assert np.ptp(held.vertices, axis=0) == pytest.approx([40.0, 40.0, 120.0], rel=1e-3)
-    assert held.units == "mm"
+    assert (held.units, held.units_from) == ("mm", f"converted from {NAMED[unit]}")
+
+
+@pytest.mark.parametrize(("unit", "named"), [("IN", "in"), ("M", "m"), ("FT", "ft"), ("UM", "um"), ("CM", "cm")])
+@pytest.mark.usefixtures("cad")
+def test_the_unit_of_an_iges_file(unit: str, named: str, tmp_path: Path) -> None:
+    held = load(save(tmp_path / "part.igs", cylinder(), unit))
+    assert (held.units, held.units_from) == ("mm", f"converted from {named}")
+    assert np.ptp(held.vertices, axis=0) == pytest.approx([40.0, 40.0, 120.0], rel=1e-3)
+
+
+@pytest.mark.parametrize(("name", "unit"), [("part.step", "INCH"), ("part.igs", "M")])
+@pytest.mark.usefixtures("cad")
+def test_the_converted_unit_is_said_and_not_to_be_changed(name: str, unit: str, tmp_path: Path) -> None:
+    path = save(tmp_path / name, cylinder(), unit)
+    for mesh in (path, read(path)):
+        assert mw.mesh.inspect(mesh).units_from == f"converted from {unit.lower()[:2]}"
+    assert read(path, units="MM").warnings == ()
+    for words in ("in", "meters"):
+        with pytest.raises(
+            BadInputError, match=r"but the lengths of the file are 'mm', 'converted from .*; leave --un"
+        ):
+            mw.mesh.inspect(path, units=words)
+        with pytest.raises(BadInputError, match="leave --units out"):
+            read(path).in_units(words)
+
+
+@pytest.mark.usefixtures("cad")
+def test_a_file_that_names_millimetres_or_no_unit(tmp_path: Path) -> None:
+    path = save(tmp_path / "part.step", cylinder())
+    assert (load(path).units, load(path).units_from) == ("mm", "file")
+    text = path.read_text()
+    context = re.search(r"GLOBAL_UNIT_ASSIGNED_CONTEXT\s*\(\(#\d+,", text)
+    assert context is not None
+    path.write_text(text.replace(context[0], "GLOBAL_UNIT_ASSIGNED_CONTEXT(("))
+    found = read(path)
+    assert found.units == "" and found.size[2] == pytest.approx(120.0)
+    assert read(path, units="in").units == "in"
+
+
+@pytest.mark.usefixtures("cad")
+def test_a_byte_order_mark_is_no_obstacle(tmp_path: Path) -> None:
+    for name in ("part.step", "part.igs"):
+        path = save(tmp_path / name, cylinder())
+        before = load(path)
+        path.write_bytes(BOM_UTF8 + path.read_bytes())
+        assert np.array_equal(load(path).vertices, before.vertices)
+        assert load(path).warnings == before.warnings == ()
+
+
+@pytest.mark.parametrize("kept", [0.1, 0.5, 0.9, 0.999])
+@pytest.mark.usefixtures("cad")
+def test_files_that_are_cut_short_are_named_so(kept: float, tmp_path: Path) -> None:
+    path = save(tmp_path / "part.step", frustum())
+    path.write_bytes(path.read_bytes()[: int(kept * path.stat().st_size)])
+    with pytest.raises(BadInputError, match=r"part\.step: is cut short, as its end \(END-ISO-10303-21\) is missing"):
+        read(path)
+
+
+@pytest.mark.usefixtures("cad")
+def test_an_iges_file_without_its_last_lines(tmp_path: Path) -> None:
+    path = save(tmp_path / "part.igs", frustum())
+    lines = path.read_text().splitlines(keepends=True)
+    for lost in (2, 10, len(lines) // 2, len(lines) - 12):
+        path.write_text("".join(lines[:-lost]))
+        with pytest.raises(BadInputError, match=r"part\.igs: is cut short, as \d+ of \d+ lines of its parameter sec"):
+            read(path)
+    path.write_text("".join(lines[:-1]))
+    assert read(path).warnings == ("its last line, which counts the others, is missing; it may be cut short",)
+    path.write_text("".join(lines).replace("S      1G", "S      2G"))
+    assert read(path).warnings == ("1 of 2 lines of its section S are there; it may be cut short",)
+
+
+@pytest.mark.usefixtures("cad")
+def test_how_cad_is_cut_is_noted(tmp_path: Path) -> None:
+    path = save(tmp_path / "part.step", frustum())
+    note = "its 3 CAD faces are cut into triangles within 1e-4 of the diagonal of each solid"
+    assert read(path).notes == mw.mesh.inspect(path).notes[:1] == (note,)
+    assert mw.mesh.inspect(read(path)).notes[:1] == (note,)
+    assert str(about_file(read(path))[0]) == note
+    assert read(save(tmp_path / "part.igs", frustum())).notes == (note.replace("each solid", "all of them"),)
+
+
+@pytest.mark.usefixtures("cad")
+def test_a_part_of_an_assembly_is_cut_as_finely_as_alone(tmp_path: Path) -> None:
+    round_part = occ("BRepPrimAPI").BRepPrimAPI_MakeTorus(axis(), 20.0, 6.0).Shape()
+    alone = load(save(tmp_path / "part.step", round_part))
+    far = occ("BRepPrimAPI").BRepPrimAPI_MakeBox(occ("gp").gp_Pnt(500.0, 0.0, 0.0), 900.0, 900.0, 900.0).Shape()
+    both = load(save(tmp_path / "both.step", together(round_part, far)))
+    assert len(both.faces) == len(alone.faces) + 12
+    small = [moved(cylinder(1.0, 2.0 + number), 1500.0 + 10.0 * number) for number in range(20)]
+    many = load(save(tmp_path / "many.step", together(far, *small, round_part)))
+    part = many.faces[(np.abs(many.vertices[many.faces][:, :, 0]) < 30.0).all(axis=1)]
+    assert len(part) == len(alone.faces)
+    assert many.notes[0].endswith("of each of the 20 largest solids, and of all of them for the others")
 
 
 @pytest.mark.usefixtures("cad")
@@ -157,7 +257,7 @@ def test_a_smooth_part_is_fitted_as_well_as_its_mesh_allows(tmp_path: Path) -> N
 @pytest.mark.parametrize(("name", "text", "says"), [
     ("bad.step", "no step", "bad.step: OpenCASCADE cannot read it; export it again from CAD"),
     ("bad.igs", "no iges", "bad.igs: holds no CAD faces"),
-    ("cut.step", "ISO-10303-21; HEADER;", "cut.step: OpenCASCADE cannot read it"),
+    ("cut.step", "ISO-10303-21; HEADER;", "cut.step: is cut short, as its end (END-ISO-10303-21) is missing"),
     ("none.igs", None, "none.igs: file not found; give the path of a triangle mesh"),
 ])  # fmt: skip
 @pytest.mark.usefixtures("cad")

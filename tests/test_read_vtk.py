@@ -353,7 +353,7 @@ def test_the_unit_in_files_of_meshwind(tmp_path: Path) -> None:
     title = "meshwind, paths of a winding, lengths in cm"
     (tmp_path / "part.vtk").write_text(legacy(cell_list("POLYGONS", QUADS), title=title))
     assert load(tmp_path / "part.vtk").units == "cm"
-    for unit, found in (("in", "in"), ("furlong", "")):
+    for unit, found in (("in", "in"), ("furlong", "furlong")):
         labelled = pv.PolyData(POINTS, faces=np.insert(QUADS, 0, 4, axis=1))
         array = labelled.GetPoints().GetData()
         array.GetInformation().Set(array.UNITS_LABEL(), unit)

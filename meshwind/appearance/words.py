@@ -3,9 +3,13 @@
 import math
 from collections.abc import Sequence
 
-from meshwind.core.units import BY_DEFAULT, BY_FILE, GIVEN, millimetres
+from meshwind.core.units import BY_DEFAULT, BY_FILE, GIVEN, UNKNOWN, millimetres
 
-_NAMED = {GIVEN: "as given", BY_FILE: "as the file says", BY_DEFAULT: "assumed, as the file names no unit"}
+_NAMED = {
+    GIVEN: " as given",
+    BY_FILE: " as the file says",
+    BY_DEFAULT: " assumed, as the file names no known unit; see --units",
+}
 """Who named the unit."""
 
 
@@ -22,7 +26,9 @@ def size(extents: Sequence[float], units: str, units_from: str) -> str:
     if units and millimetres(units) != 1.0:
         long += f" ({quantity(length * millimetres(units), 'mm')})"
     words = f"{long}, {' x '.join(quantity(each) for each in across)}{f' {units}' if units else ''} across"
-    return f"{words}; {units} {_NAMED[units_from]}" if units_from in _NAMED else f"{words}; unit unknown"
+    if units_from in ("", UNKNOWN):
+        return f"{words}; unit unknown"
+    return f"{words}; {units}{_NAMED.get(units_from, f', {units_from}')}"
 
 
 def power(value: float) -> str:

@@ -125,7 +125,7 @@ def _faces(path: Path) -> list[Any]:
         raise BadInputError(f"{path.name} is neither STEP nor IGES; give one of {', '.join(STEP + IGES)}")
     if not path.is_file():
         raise BadInputError(f"{path} not found; give the path of a STEP or IGES file")
-    shape, _ = read_shape(path)
+    shape = read_shape(path).shape
     if shape is None:
         return []
     return parts_of(occ("BRepBuilderAPI").BRepBuilderAPI_NurbsConvert(shape, True).Shape(), "FACE")

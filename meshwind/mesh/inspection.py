@@ -68,7 +68,8 @@ class Findings:
     and what was noticed, ends how the ends are chosen, what is filled and how wide the openings are.
     annulus_vertices, annulus_faces and rim_lengths are those of the mesh that is wound; wall is the median thickness
     of a part's wall, 0 if it has none, side the skin that is wound, empty if it has none; notes says what was decided
-    in opening it; problem is why it cannot be wound, empty if it can; units, units_from and warnings are as in `Mesh`.
+    in reading and opening it; problem is why it cannot be wound, empty if it can; units, units_from and warnings are as
+    in `Mesh`.
     """
 
     name: str
@@ -116,11 +117,11 @@ def inspect(
     """
     if isinstance(mesh, Mesh):
         name, kind = mesh.name, ""
-        held = FileMesh(mesh.vertices, mesh.faces, mesh.units, mesh.warnings)
-        unit = Unit(mesh.units, mesh.units_from) if units is None else Unit.of(units, "")
+        held = FileMesh(mesh.vertices, mesh.faces, mesh.units, mesh.warnings, mesh.units_from, mesh.notes)
+        unit = held.unit if units is None else Unit.of(units, Unit())
     else:
         name, kind, held = Path(mesh).name, Path(mesh).suffix[1:].upper(), load(mesh)
-        unit = Unit.of(units, held.units, ASSUMED)
+        unit = Unit.of(units, held.unit, ASSUMED)
     vertices, faces = held.vertices, held.faces
     pieces, notes = made_manifold(vertices, faces, name)
     used = vertices[np.unique(faces)]
@@ -130,7 +131,7 @@ def inspect(
         name, kind, len(vertices), len(faces), _point(extent), float(np.linalg.norm(extent)), crowded, turned,
         len(pieces.areas), _listed(pieces),
         component, repairs=tuple(notes), units=unit.name, units_from=unit.named_by,
-        warnings=(*held.warnings, *([unit.warning] if unit.warning else [])),
+        warnings=(*held.warnings, *filter(None, (unit.warning, unit.doubt(float(extent.max()))))), notes=held.notes,
     )  # fmt: skip
     try:
         chosen, _ = pieces.chosen(component, name)
@@ -149,7 +150,7 @@ def inspect(
         annulus_faces=len(found.faces),
         wall=0.0 if found.wall is None else found.wall.thickness,
         side="" if found.wall is None else found.wall.side,
-        notes=found.notes,
+        notes=(*held.notes, *found.notes),
         warnings=(*findings.warnings, *found.warnings),
         rim_lengths=tuple(perimeter(found.vertices, rim) for rim in found.rims),
     )

@@ -24,8 +24,8 @@ class WallFigures(TypedDict):
 class MeshFigures(TypedDict):
     """The mesh that was read, after repair.
 
-    read_vertices and read_faces are those of the file; units_from is "given", "file", "default" or "unknown"; size is
-    the extent along x, y and z.
+    read_vertices and read_faces are those of the file; units_from is "given", "file", "default" or "unknown", or
+    words where the format names the unit; size is the extent along x, y and z.
     """
 
     name: str

@@ -68,8 +68,8 @@ class Note:
 
 
 def about_file(mesh: Mesh) -> tuple[Note, ...]:
-    """Warnings of what the file holds beside the mesh, or was read otherwise than it is written."""
-    return tuple(Note(text, warning=True) for text in mesh.warnings)
+    """Notes on how the mesh was made, and warnings of what the file holds beside it or was not read as written."""
+    return (*map(Note, mesh.notes), *(Note(text, warning=True) for text in mesh.warnings))
 
 
 def about_opening(annulus: Annulus) -> tuple[Note, ...]:

@@ -1,15 +1,16 @@
 """A mesh made ready for winding: read, opened at its ends, flattened and fitted with a surface."""
 
 from dataclasses import dataclass, replace
-from os import PathLike, fspath
+from os import PathLike
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from meshwind.chart import Chart, flatten
 from meshwind.core.errors import BadInputError
-from meshwind.core.units import ASSUMED
+from meshwind.core.units import ASSUMED, Unit
 from meshwind.mesh import Annulus, Mesh, annulus, read
 from meshwind.mesh.geometry.facet_tree import FacetTree
+from meshwind.mesh.io.read import path_of
 from meshwind.mesh.io.scalars import Scalars, read_scalars
 from meshwind.surface import Surface, fit
 from meshwind.workflow.clock import Clock
@@ -43,9 +44,11 @@ class Part:
 
 def read_source(mesh: MeshLike, options: Options) -> Source:
     """Read a mesh and, where the friction is a field, its scalars; raises BadInputError where one cannot be read."""
-    file = Path(mesh) if isinstance(mesh, str | PathLike) else None
-    taken = mesh if isinstance(mesh, Mesh) else read(mesh, options.component)
+    file = path_of(mesh) if isinstance(mesh, str | PathLike) else None
+    taken = mesh if isinstance(mesh, Mesh) else read(mesh, options.component, options.units)
     taken = taken.in_units(options.units, "" if file is None else ASSUMED)
+    doubt = Unit(taken.units, taken.units_from).doubt(max(taken.size))
+    taken = replace(taken, warnings=(*taken.warnings, doubt)) if doubt else taken
     if not isinstance(options.friction, str):
         return Source(taken, None, file)
     name = options.friction.removeprefix(FIELD).strip()
@@ -56,7 +59,7 @@ def read_field(mesh: MeshLike, name: str, instead: str) -> Scalars:
     """Read a scalar of the mesh's file; raises BadInputError where there is none, with what to give instead."""
     if not isinstance(mesh, str | PathLike):
         raise BadInputError(f"{FIELD}{name} is a scalar of a mesh file, but the mesh is no file; {instead}")
-    return read_scalars(fspath(mesh), name)
+    return read_scalars(path_of(mesh), name)
 
 
 def on_wound_skin(scalars: Scalars, annulus: Annulus) -> Scalars:

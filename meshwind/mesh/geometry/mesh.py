@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints, PicklableRecord
-from meshwind.core.units import BY_FILE, Unit
+from meshwind.core.units import BY_DEFAULT, GIVEN, Unit
 
 
 @dataclass(frozen=True)
@@ -29,10 +29,12 @@ class Mesh(PicklableRecord):
     units : str, default ""
         Unit of length: "mm", "cm", "m", "um", "in" or "ft"; "" if it is not known.
     units_from : str, default ""
-        Who named the unit: "given" by the user, "file", or "default" where nobody did, so that it is assumed; "" if it
-        is not known.
+        Who named the unit: "given" by the user, "file", or "default" where nobody did, so that it is assumed; words,
+        such as "as glTF always is" or "converted from in", where the format did; "" if it is not known.
     warnings : tuple of str, optional
         What the file holds beside the mesh, or was read otherwise than it is written, in words.
+    notes : tuple of str, optional
+        How the mesh was made from the file, in words.
 
     Examples
     --------
@@ -51,6 +53,7 @@ class Mesh(PicklableRecord):
     units: str = ""
     units_from: str = ""
     warnings: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def size(self) -> tuple[float, float, float]:
@@ -91,7 +94,8 @@ class Mesh(PicklableRecord):
         """
         if given is None and self.units:
             return self
-        unit = Unit.of(given, self.units if self.units_from == BY_FILE else "", assumed)
+        named = self.units_from not in (GIVEN, BY_DEFAULT)
+        unit = Unit.of(given, Unit(self.units, self.units_from) if named else Unit(), assumed)
         warnings = (*self.warnings, unit.warning) if unit.warning else self.warnings
         return replace(self, units=unit.name, units_from=unit.named_by, warnings=warnings)
 

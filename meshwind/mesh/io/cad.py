@@ -8,16 +8,20 @@ import numpy as np
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.core.opencascade import IGES, STEP, occ, parts_of, quiet, read_shape
+from meshwind.core.units import BY_FILE, converted_from, unit_named
 from meshwind.mesh.geometry.areas_and_volumes import areas
+from meshwind.mesh.io.cad_end import about_end
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.in_subprocess import Arrays
 
 CAD = STEP + IGES
 _CHORD, _TURN = 1e-4, float(np.radians(8.0))
-"""How far triangles may lie off the CAD faces, over the part's diagonal, and how far a face may turn within an edge.
+"""How far triangles may lie off the CAD faces, over their solid's diagonal, and how far a face may turn within an edge.
 
 Vertices are on the faces: smooth parts are fitted to 1e-5 of the diagonal, as from meshes with four times as many.
 """
+_OWN = 20
+"""Solids, the largest ones, that are cut by their own diagonal; the others by that of all, as many would take long."""
 _SEAM = 1e-5
 """Gap between faces, over the diagonal, up to which surfaces without a solid are sewn together."""
 _MISSING = 5e-3
@@ -26,26 +30,50 @@ _MISSING = 5e-3
 
 def read_cad_mesh(path: Path) -> Arrays:
     """Surface of all faces of a file, for `in_subprocess`, in mm."""
-    shape, lost = read_shape(path)
+    warnings = about_end(path)
+    held = read_shape(path)
+    shape = held.shape
     if shape is None or not parts_of(shape, "FACE"):
         raise BadInputError(f"{path.name}: holds no CAD faces; export the whole part into one file, as STEP or STL")
     diagonal, area = _sizes(shape)
     if not 0.0 < diagonal < 1e50:
         raise BadInputError(f"{path.name}: its CAD faces have no finite size; export the part as STL from CAD")
-    if not parts_of(shape, "SOLID"):
+    solids = parts_of(shape, "SOLID")
+    if not solids:
         shape = _sewn(shape, _SEAM * diagonal)
+    largest = sorted(solids, key=lambda solid: -_sizes(solid)[1])[:_OWN]
+    for solid in largest:
+        _cut(solid, _sizes(solid)[0])
+    _cut(shape, diagonal)
+    tables = [_triangles(face) for face in parts_of(shape, "FACE")]
+    counts = [len(points) for points, _ in tables]
+    starts = np.cumsum([0, *counts[:-1]])
+    vertices = np.concatenate([points for points, _ in tables])
+    triangles = np.concatenate([corners + start for (_, corners), start in zip(tables, starts, strict=True)])
+    cut = float(areas(vertices, triangles).sum()) if len(triangles) else 0.0
+    warnings += _warnings(held.lost, counts, cut, area)
+    of = "each solid" if solids else "all of them"
+    if len(solids) > _OWN:
+        of = f"each of the {_OWN} largest solids, and of all of them for the others"
+    note = f"its {len(counts)} CAD faces are cut into triangles within 1e-4 of the diagonal of {of}"
+    units, units_from = _unit(held.units)
+    return FileMesh(vertices, triangles, units, warnings, units_from, (note,)).packed()
+
+
+def _unit(units: tuple[str, ...]) -> tuple[str, str]:
+    """The unit of the converted lengths, "" if the file names none and they are as written, and who named it."""
+    names = dict.fromkeys(unit_named(unit) or unit for unit in units)
+    if not names or list(names) == ["mm"]:
+        return "mm" if names else "", BY_FILE
+    return "mm", converted_from(" and ".join(names)[:60])
+
+
+def _cut(shape: Any, diagonal: float) -> None:
+    """Cut the faces of a shape into triangles, but for those that are cut as finely already."""
     rules = occ("IMeshTools").IMeshTools_Parameters()
     rules.Deflection, rules.Angle, rules.Relative, rules.InParallel = _CHORD * diagonal, _TURN, False, False
     with quiet():
         occ("BRepMesh").BRepMesh_IncrementalMesh(shape, rules)
-    faces = parts_of(shape, "FACE")
-    held = [_triangles(face) for face in faces]
-    counts = [len(points) for points, _ in held]
-    starts = np.cumsum([0, *counts[:-1]])
-    vertices = np.concatenate([points for points, _ in held])
-    triangles = np.concatenate([corners + start for (_, corners), start in zip(held, starts, strict=True)])
-    cut = float(areas(vertices, triangles).sum()) if len(triangles) else 0.0
-    return FileMesh(vertices, triangles, "mm", _warnings(lost, counts, cut, area)).packed()
 
 
 def _warnings(lost: int, counts: list[int], cut: float, area: float) -> tuple[str, ...]:

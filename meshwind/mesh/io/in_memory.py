@@ -10,14 +10,6 @@ from meshwind.core.errors import BadInputError
 from meshwind.mesh.io.cells.surface import SIDES_OF_POLYHEDRA, CellBlock, surface_mesh
 from meshwind.mesh.io.file_mesh import FileMesh
 
-_UNITS = {
-    "mm": "mm", "millimeter": "mm", "millimeters": "mm", "millimetre": "mm", "millimetres": "mm",
-    "cm": "cm", "centimeter": "cm", "centimeters": "cm", "centimetre": "cm", "centimetres": "cm",
-    "m": "m", "meter": "m", "meters": "m", "metre": "m", "metres": "m",
-    "um": "um", "micron": "um", "microns": "um", "micrometer": "um", "micrometers": "um",
-    "in": "in", "inch": "in", "inches": "in", "ft": "ft", "foot": "ft", "feet": "ft",
-}  # fmt: skip
-"""Units as `core.units` names them, by the words that other libraries use."""
 _ADVICE = "give a path, a trimesh.Trimesh, a pyvista.PolyData, a meshio.Mesh, a meshwind.Mesh or (vertices, faces)"
 
 
@@ -64,7 +56,7 @@ def _of_trimesh(mesh: Any) -> FileMesh | None:
     else:
         return None
     vertices, faces = np.asarray(mesh.vertices, dtype=np.float64), np.asarray(mesh.faces, dtype=np.int64)
-    return FileMesh(vertices, faces, _UNITS.get(str(units).lower(), ""))
+    return FileMesh(vertices, faces, "" if units is None else str(units))
 
 
 def _of_meshio(mesh: object) -> FileMesh | None:

@@ -9,14 +9,14 @@ import zipfile
 import zlib
 from collections.abc import Callable
 from dataclasses import replace
-from os import PathLike
+from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import ParseError
 
 from meshwind.core.errors import BadInputError
 from meshwind.core.opencascade import need
-from meshwind.core.units import BY_FILE
+from meshwind.core.units import Unit
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.mesh.io.cad import CAD, read_cad_mesh
 from meshwind.mesh.io.deck.deck import read_deck
@@ -82,6 +82,7 @@ _WAYS = {
     (".e", ".exo", ".ex2", ".g", ".cgns", ".xdmf", ".xmf", ".case"): "save the mesh as VTU, by ParaView for one, or as",
 }
 """Advice on other formats of meshes and results, before the formats that are read."""
+_ADVICE = "give the path of a triangle mesh (STL, OBJ, PLY, ...)"
 SUFFIXES = tuple(_READERS)
 """File name endings that `read` understands."""
 
@@ -130,16 +131,17 @@ def read(mesh: str | PathLike[str] | Any, component: int = 0, units: str | None 
     """
     held = load(mesh)
     name = Path(mesh).name if isinstance(mesh, str | PathLike) else "mesh"
+    unit = Unit.of(units, held.unit)
     repaired = mesh_from(held.vertices, held.faces, name, component)
-    named_by = BY_FILE if held.units else ""
-    return replace(repaired, units=held.units, units_from=named_by, warnings=held.warnings).in_units(units)
+    warnings = (*held.warnings, unit.warning) if unit.warning else held.warnings
+    return replace(repaired, units=unit.name, units_from=unit.named_by, warnings=warnings, notes=held.notes)
 
 
 def load(mesh: str | PathLike[str] | Any) -> FileMesh:
     """The surface in a file or in memory without repair; it has at least a triangle.  Raises BadInputError."""
     if not isinstance(mesh, str | PathLike):
         return resolved("mesh", surface_in_memory(mesh))
-    file = Path(mesh)
+    file = path_of(mesh)
     reader = _reader(file)
     try:
         # what the libraries print is replaced by the one line below
@@ -163,7 +165,18 @@ def load(mesh: str | PathLike[str] | Any) -> FileMesh:
 def check_file(mesh: object) -> None:
     """Raise BadInputError if a mesh is the path of a file that is missing, empty or of an unknown format."""
     if isinstance(mesh, str | PathLike):
-        _reader(Path(mesh))
+        _reader(path_of(mesh))
+
+
+def path_of(file: str | PathLike[str]) -> Path:
+    """Path of a file, its ~ replaced by the user's home, unless there is a file of that very name."""
+    if not fspath(file):
+        raise BadInputError(f"the path of the mesh is empty; {_ADVICE}")
+    path = Path(file)
+    try:
+        return path if path.exists() else path.expanduser()
+    except (RuntimeError, OSError, ValueError):
+        return path  # no such home; or a name that cannot be, which is said where it is opened
 
 
 def _refuse_foreign(file: Path) -> None:
@@ -178,10 +191,11 @@ def _refuse_foreign(file: Path) -> None:
 
 def _reader(file: Path) -> _Reader:
     """Reader for the file's suffix.  Raises BadInputError if the file is missing, empty or of an unknown format."""
-    advice = "give the path of a triangle mesh (STL, OBJ, PLY, ...)"
+    advice = _ADVICE
     try:
         if file.is_dir():
-            raise BadInputError(f"{file.name or file}: is a folder; {advice}")
+            empty = "" if file.parts else ", as is an empty path"
+            raise BadInputError(f"{file.name or file}: is a folder{empty}; {advice}")
         if not file.exists():
             raise BadInputError(f"{file.name}: file not found; {_near(file) or advice}")
         if file.stat().st_size == 0:

@@ -13,6 +13,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
+from meshwind.core.units import OF_GLTF
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.gltf.accessors import Accessors
 from meshwind.mesh.io.gltf.document import DRACO, MESHOPT, Document, is_harmless, numbers, table, whole
@@ -86,7 +87,8 @@ class _Scene:
             )
         starts = np.cumsum([0] + [len(part.points) for part in self.parts[:-1]])
         faces = [part.faces + start for part, start in zip(self.parts, starts, strict=True)]
-        return FileMesh(np.concatenate([part.points for part in self.parts]), np.concatenate(faces), "m", warnings)
+        points = np.concatenate([part.points for part in self.parts])
+        return FileMesh(points, np.concatenate(faces), "m", warnings, OF_GLTF)
 
     def _warnings(self) -> tuple[str, ...]:
         """What of the file is not in the surface."""

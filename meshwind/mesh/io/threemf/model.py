@@ -47,9 +47,14 @@ class Solid:
 
 @dataclass
 class ModelPart:
-    """What is in a model part; required are the namespaces of the extensions that it requires."""
+    """What is in a model part.
+
+    unit: as the core specification has it where the part names none; required: the namespaces of the extensions that
+    the part requires.
+    """
 
     unit: str = "millimeter"
+    names_unit: bool = False
     required: list[str] = field(default_factory=list)
     objects: dict[str, Solid] = field(default_factory=dict)
     build: list[Use] = field(default_factory=list)
@@ -120,7 +125,7 @@ class _Reader:
             raise ValueError(f"{self.name[:60]} is no model but {own[:40]!r}")
         self.core = space + "}" if space else ""
         self.vertex, self.triangle = self.core + "vertex", self.core + "triangle"
-        self.model.unit = attributes.get("unit", self.model.unit)
+        self.model.unit, self.model.names_unit = attributes.get("unit", self.model.unit), "unit" in attributes
         self.model.required = [
             self.spaces.get(prefix, prefix) for prefix in attributes.get("requiredextensions", "").split()
         ]

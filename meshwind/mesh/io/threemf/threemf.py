@@ -12,6 +12,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
+from meshwind.core.units import BY_FILE, OF_3MF
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.threemf.model import ModelPart, Solid, Use, read_model
 from meshwind.mesh.io.threemf.package import Package, open_archive
@@ -51,8 +52,9 @@ def read_3mf(path: Path) -> FileMesh:
         raise BadInputError(f"{path.name}: nothing in its build is a mesh of the part{found}; export the part's mesh")
     starts = np.cumsum([0] + [len(points) for points, _ in parts[:-1]])
     faces = [triangles + start for (_, triangles), start in zip(parts, starts, strict=True)]
+    points = np.concatenate([points for points, _ in parts])
     return FileMesh(
-        np.concatenate([points for points, _ in parts]), np.concatenate(faces), _UNITS[build.unit], warnings
+        points, np.concatenate(faces), _UNITS[build.unit], warnings, BY_FILE if build.names_unit else OF_3MF
     )
 
 
@@ -67,7 +69,7 @@ class _Build:
         self.unread: Counter[str] = Counter()
         self.not_printed = not_printed(package)
         self.root = package.root()
-        self.unit = self._model(self.root).unit
+        self.unit, self.names_unit = self._model(self.root).unit, self._model(self.root).names_unit
 
     def parts(self) -> _Parts:
         """Meshes of all items of the build."""

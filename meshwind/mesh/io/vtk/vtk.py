@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 from meshwind.core.errors import BadInputError
-from meshwind.core.units import MILLIMETRES
 from meshwind.mesh.io.cells.surface import surface_mesh
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.in_subprocess import DAMAGED, Arrays
@@ -77,12 +76,12 @@ def _surface(cells: Cells, unit: str) -> FileMesh:
 
 
 def _unit(data: Any) -> str:
-    """Unit of length that the points are labelled with, "" if there is none."""
+    """Unit of length that the points are labelled with, as it is spelled there, "" if there is none."""
     from vtkmodules.vtkCommonCore import vtkDataArray
 
     points = data.GetPoints()
     label = None if points is None else points.GetData().GetInformation().Get(vtkDataArray.UNITS_LABEL())
-    return label if label in MILLIMETRES else ""
+    return (label or "").strip()
 
 
 def _counts(data: Any) -> dict[str, int]:
