@@ -75,7 +75,10 @@ def settle(out: Path) -> None:
 
 
 def unwritable(out: Path, error: OSError) -> BadInputError:
-    """The error for a folder that cannot be written."""
+    """The error for a folder that cannot be written; a file in its place or above it is named."""
+    there = next((above for above in (out, *out.parents) if os.path.lexists(above)), out)
+    if there.is_file():
+        return BadInputError(f"cannot write to {out}: {there} is a file; give another folder")
     return BadInputError(f"cannot write to {out}: {error.strerror or error}; give another folder")
 
 

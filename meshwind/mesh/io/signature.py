@@ -1,5 +1,6 @@
 """What a file is by its content, where that is not what its ending says: for the refusal of files that are not read."""
 
+import codecs
 import re
 import zipfile
 from pathlib import Path
@@ -40,7 +41,7 @@ _OTHERS: tuple[tuple["re.Pattern[bytes]", str], ...] = tuple(
         (rb"\x28\xb5\x2f\xfd", "is compressed (zstd) by its content; unpack it first"),
         (rb"7z\xbc\xaf\x27\x1c", "is a 7z archive by its content; unpack it first"),
         (rb"Rar!\x1a\x07", "is a RAR archive by its content; unpack it first"),
-        (rb"(?i)(?:\xef\xbb\xbf)?\s*(?:<!--[\s\S]*?-->\s*)?(?:<\?xml[^>]*>\s*)?<(?:!doctype\s+html|html|head|body)\b",
+        (rb"(?i)\s*(?:<!--[\s\S]*?-->\s*)?(?:<\?xml[^>]*>\s*)?<(?:!doctype\s+html|html|head|body)\b",
          "is a web page, not a mesh; download the file itself"),
         (rb"%PDF-", "is a PDF document by its content; give the mesh itself"),
         (rb"\x89PNG\r\n|\xff\xd8\xff|GIF8|BM....\0\0\0\0", "is a picture by its content; give the mesh itself"),
@@ -52,11 +53,15 @@ _OTHERS: tuple[tuple["re.Pattern[bytes]", str], ...] = tuple(
         (rb"3D Geometry File Format", "is a Rhino file by its content; export its mesh as STL, OBJ or PLY"),
         (rb"#VRML|#X3D|(?:<\?xml[^>]*>\s*)?(?:<!DOCTYPE X3D[^>]*>\s*)?<X3D\b",
          "is a VRML or X3D file by its content; export it as STL, OBJ or PLY"),
-        (rb"(?:\xef\xbb\xbf)?\s*(?:<\?xml[^>]*>\s*)?<COLLADA\b",
+        (rb"\s*(?:<\?xml[^>]*>\s*)?<COLLADA\b",
          "is a COLLADA file by its content; export it as STL, OBJ or PLY"),
         (rb"(?:<\?xml[^>]*>\s*)?<amf\b", "is an AMF file by its content; export it as STL or 3MF"),
         (rb"#usda |PXR-USDC", "is a USD file by its content; export it as STL, OBJ or PLY"),
         (rb"\s*0\s+SECTION\s|AC10\d\d\0", "is a DXF or DWG drawing by its content; export it as STL"),
+        (rb"\s*\(\s*\d+\s*[\"(\d]",
+         "is a mesh of Ansys (Fluent) by its content; write it as STL, VTU or Gmsh's MSH (meshio: file_format='gmsh')"),
+        (rb"\s*MeshVersionFormatted\b", "is a Medit mesh by its content; convert it to STL, VTU or Gmsh's MSH"),
+        (rb"(?i)\s*mesh\b[^\r\n]*\bdimension\b", "is a GiD mesh by its content; export it as STL, VTU or Gmsh's MSH"),
         (rb"\x89HDF\r\n", "is an HDF5 file by its content; convert it to VTU or STL"),
         (rb"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "is a file of a CAD or office program by its content; export it as STL"),
     )
@@ -67,21 +72,21 @@ _OTHERS: tuple[tuple["re.Pattern[bytes]", str], ...] = tuple(
 def foreign(path: Path) -> str:
     """What a file is, and what to do, if its content is of another kind than its ending; "" if that is not known."""
     with path.open("rb") as file:
-        start = file.read(_START)
+        start = file.read(_START).removeprefix(codecs.BOM_UTF8)
     suffix = path.suffix.lower()
     if suffix == ".3mf" and start.startswith(_OF_3MF):
         return ""
     for pattern, words in _OTHERS:
         if pattern.match(start):
             own = (suffix in STEP and words.startswith("is a STEP")) or (suffix in IGES and "IGES" in words)
-            return "" if own else words.replace("{}", path.stem[:80])
+            return "" if own else words.replace("{}", _stem(path))
     if start.startswith(b"PK\x03\x04"):
         return _archive(path)
     if _is_utf16(start):
         return "is text in UTF-16; save it as UTF-8"
     if not start.strip(b"\0"):
         return "begins with nothing but zeros, as after a copy that failed; copy or export it again"
-    kinds = [(name, ending) for name, ending, pattern in _READ if pattern.match(start.removeprefix(b"\xef\xbb\xbf"))]
+    kinds = [(name, ending) for name, ending, pattern in _READ if pattern.match(start)]
     if not kinds and len(start) >= 84 and path.stat().st_size == 84 + 50 * int.from_bytes(start[80:84], "little") > 84:
         kinds = [("STL", ".stl")]
     if not kinds and b"\0" not in start and _OBJ.search(start):
@@ -89,7 +94,7 @@ def foreign(path: Path) -> str:
     if not kinds or suffix in {ending for _, ending in kinds}:
         return ""
     name, ending = kinds[0]
-    return f"is {'an' if name[0] in 'AOS' else 'a'} {name} file by its content; rename it to {path.stem[:80]}{ending}"
+    return f"is {'an' if name[0] in 'AOS' else 'a'} {name} file by its content; rename it to {_stem(path)}{ending}"
 
 
 def _archive(path: Path) -> str:
@@ -100,8 +105,15 @@ def _archive(path: Path) -> str:
     except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError, RuntimeError):
         is_3mf = False
     if is_3mf:
-        return f"is a 3MF file by its content; rename it to {path.stem[:80]}.3mf"
+        return f"is a 3MF file by its content; rename it to {_stem(path)}.3mf"
     return "is a ZIP archive by its content; unpack it first"
+
+
+def _stem(path: Path) -> str:
+    """Name of a file without its ending, and without that of a format before it, as in part.stl.bak."""
+    inner = Path(path.stem)
+    known = {".3mf", *STEP, *IGES, *(ending for _, ending, _ in _READ), ".obj"}
+    return (inner.stem if inner.suffix.lower() in known else path.stem)[:80]
 
 
 def _is_utf16(start: bytes) -> bool:

@@ -85,6 +85,10 @@ def _checked(vertices: ArrayLike, faces: ArrayLike, name: str) -> tuple[Floats, 
 def _check_size(points: Floats, name: str) -> None:
     """Refuse coordinates whose squares and cubes overflow or underflow."""
     size = float(np.abs(points).max())
+    if not np.ptp(points, axis=0).any():
+        raise BadInputError(
+            f"{name}: all its vertices are in one point; export it with more digits, or in a smaller unit"
+        )
     if not 1e-50 < size < 1e50:
         raise BadInputError(f"{name}: coordinates up to {size:g} are out of range; scale the mesh to ordinary units")
     extent = float(np.ptp(points, axis=0).max())

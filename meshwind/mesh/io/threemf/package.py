@@ -13,6 +13,8 @@ from meshwind.core.errors import BadInputError
 
 _OLE = bytes.fromhex("d0cf11e0a1b11ae1")
 """Start of a compound file, in which an encrypted package is kept."""
+_ZIP = b"PK\x03\x04"
+"""Start of a ZIP archive."""
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA)
 _MAX_BYTES = 1 << 30
 """Largest unpacked size of a part."""
@@ -92,14 +94,22 @@ class Package:
 
 
 def open_archive(path: Path) -> zipfile.ZipFile:
-    """The archive in a file.  Raises BadInputError if it is a package that is encrypted as a whole."""
+    """The archive in a file.  Raises BadInputError if it is encrypted as a whole, or cut short."""
     with path.open("rb") as file:
-        if file.read(len(_OLE)) == _OLE:
+        start = file.read(len(_OLE))
+    if start == _OLE:
+        raise BadInputError(
+            f"{path.name}: is encrypted, or is a document of another kind (a compound file, where a 3MF file is a "
+            "ZIP archive); save it without a password"
+        )
+    try:
+        return zipfile.ZipFile(path)
+    except zipfile.BadZipFile as error:
+        if start.startswith(_ZIP):
             raise BadInputError(
-                f"{path.name}: is encrypted, or is a document of another kind (a compound file, where a 3MF file is a "
-                "ZIP archive); save it without a password"
-            )
-    return zipfile.ZipFile(path)
+                f"{path.name}: is cut short or damaged, as the end of its ZIP archive is missing; copy it again"
+            ) from error
+        raise
 
 
 def plain_name(name: str) -> str:
