@@ -21,7 +21,7 @@ MISTAKES = {
     "wind part.ply --paths 1.5": "Invalid value for '--paths': give a whole number",
     "wind part.ply --band-width 5mm": "Invalid value for '--band-width': give a number",
     "wind part.ply --revolutions 0,5": "revolutions is '0,5'; give a number as in 0.5 or 5/12, or auto",
-    "wind part.ply --units inches": "units is 'inches'; give mm, cm, m, um, in, inch, ft",
+    "wind part.ply --units furlongs": "units is 'furlongs'; give mm, cm, m, um, in, ft",
     "wind part.ply --ends loops 0 1": "put a value with spaces in quotes",
     "wind part.ply out": "name the folder for the results by --out",
     "wind part.ply --out": "Option '--out' requires an argument; see `meshwind wind --help`",

@@ -224,7 +224,7 @@ BAD: dict[str, tuple[object, Ints | list[object], str]] = {
     "index": (np.eye(3), np.array([[0, 1, 3]]), "refer to vertices that do not exist; give indices from 0 to 2"),
     "negative": (np.eye(3), np.array([[0, 1, -1]]), "refer to vertices that do not exist; give"),
     "half": (np.eye(3), np.array([[0, 1, 1.5]]), "refer to vertices that do not exist; give"),
-    "one point": (np.ones((3, 3)), FACES, "all are collapsed; check"),
+    "one point": (np.ones((3, 3)), FACES, "all its vertices are in one point"),
     "one line": (np.arange(9).reshape(3, 3), FACES, "no face is left, none has an area; export"),
     "huge": (np.eye(3) * 1e200, FACES, "out of range; scale"),
     "tiny": (np.eye(3) * 1e-200, FACES, "out of range; scale"),

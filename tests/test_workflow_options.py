@@ -46,7 +46,7 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"pins": ""}, "pins is ''; give the path of a CSV file"),
     ({"pins": 3}, "pins is 3; give the path of a CSV file"),
     ({"pins": "pins.csv", "spacing": 1.0}, "give one of both"),
-    ({"units": "milimeter"}, "units is 'milimeter'; give mm, cm, m, um, in, inch, ft, or"),
+    ({"units": "milimeter"}, "units is 'milimeter'; give mm, cm, m, um, in, ft, or"),
     ({"paths": 100000}, "100000 paths per family of 401 particles and 0.5 revolutions would need about 15,028 GB"),
     ({"particles": 10**9}, "would need about"),
 ]
