@@ -35,7 +35,7 @@ OWN = "its own modules"
 WITHIN = {
     "mesh": ["geometry", "walls", "repair", "io", "opening", OWN],
     "mesh.io": [
-        "in_subprocess", "file_mesh", "text", "lines", "cells", "face_lists", "fields",
+        "in_subprocess", "file_mesh", "text", "lines", "unused", "cells", "face_lists", "fields",
         "stl", "ply", "deck", "gltf", "threemf", "msh", "vtk", OWN,
     ],
     "surface": [OWN, "fitting"],

@@ -53,7 +53,7 @@ def test_a_run_leaves_all_its_options(first: Path) -> None:
     assert "# opening: not given" in text
     assert tomllib.loads(text) == {
         "mesh": "../../part.ply", "out": ".", "paths": 3, "revolutions": float(Fraction(5, 12)), "particles": 201,
-        "friction": 0.0, "component": 0, "ends": "auto", "tolerance": 1e-5, "worst-fit": 0.1, "units": "cm",
+        "friction": 0.0, "ends": "auto", "tolerance": 1e-5, "worst-fit": 0.1, "units": "cm",
         "band-width": 20.0, "render": False, "side": "outer", "opening-by": "auto",
     }  # fmt: skip
 

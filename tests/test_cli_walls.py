@@ -67,7 +67,7 @@ def test_a_bottle_is_wound_on_its_inside(tmp_path: Path) -> None:
 
 def test_check_describes_a_walled_part_and_refuses_a_large_handle(tmp_path: Path) -> None:
     done = meshwind("check", saved(pipe(), tmp_path / "pipe.obj"), "--side", "inner")
-    assert done.returncode == 0 and "verdict   can be wound" in done.stdout
+    assert done.returncode == 0 and "verdict   can be opened and wound" in done.stdout
     assert "rim       0 of the inner skin: at (0, 0, " in done.stdout and "wound on its inside" in done.stdout
     done = meshwind("check", saved(tunnelled(blob(), 60.0, 12.0), tmp_path / "handle.obj"))
     assert done.returncode == 2 and "genus 1" in done.stderr and "round at (" in done.stderr

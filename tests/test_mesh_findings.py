@@ -109,7 +109,7 @@ def test_the_command_prints_the_findings_and_writes_nothing(tmp_path: Path) -> N
         "mesh      part.obj: 3 mm long, 2 x 2 mm across; mm assumed, as the file names no known unit; see --units",
         "file      OBJ, 1776 vertices, 3347 faces",
     ]
-    assert lines[-1] == "verdict   can be wound"
+    assert lines[-1] == "verdict   can be opened and wound; how well a surface fits it, only wind tests"
     assert "rim       0: at (0, 0, 0), 6.279 long, 48 vertices, start" in lines
     assert [path.name for path in tmp_path.iterdir()] == ["part.obj"]
     as_json = check(tmp_path / "part.obj", "--ends", "loops 0 2", "--json")

@@ -8,8 +8,9 @@ import pytest
 from broken_meshes import MESHES, branch, double_skin, save_obj
 from mesh_shapes import Part, assert_annulus, ball, cone, joined, moved, pear, rotation, shuffled, tube
 
+from meshwind.cli.check import described
 from meshwind.core.errors import BadInputError
-from meshwind.mesh import Mesh, annulus, mesh_from, read
+from meshwind.mesh import Mesh, annulus, inspect, mesh_from, read
 from meshwind.mesh.geometry.areas_and_volumes import perimeter, volume
 from meshwind.mesh.geometry.topology import loops
 from meshwind.mesh.opening.choose_ends import position_text
@@ -30,16 +31,35 @@ def test_component_is_the_rank_by_area(component: int, radius: float) -> None:
 
 
 def test_a_large_dropped_piece_is_a_warning_and_a_small_one_is_not() -> None:
-    assert mesh_from(*three()).repairs == (
-        "dropped 2 pieces beside the largest (640 faces)",
-        "warning: a dropped piece has 44.4 % of the kept one's area; component 1 chooses it instead",
+    mesh = mesh_from(*three())
+    assert mesh.repairs == ("dropped 2 pieces beside the largest (640 faces)",)
+    assert mesh.warnings == (
+        "3 pieces: the largest is taken; the next one has 44 % of its area, and --component 1 takes that instead",
     )
-    assert mesh_from(*three(), component=2).repairs == (
-        "dropped 2 pieces beside number 2 by area (640 faces)",
-        "warning: a dropped piece has 900 % of the kept one's area; component 0 chooses it instead",
-    )
-    assert len(mesh_from(*joined(pear(), moved(ball(1), np.eye(3), np.full(3, 9.0), 0.3))).repairs) == 1
-    assert "warning: a dropped piece, within its bounds, has 96 %" in mesh_from(*double_skin(pear())).repairs[1]
+    small = mesh_from(*joined(pear(), moved(ball(1), np.eye(3), np.full(3, 9.0), 0.1)))
+    assert len(small.repairs) == 1 and small.warnings == ()
+    assert "the next one, within its bounds, has 96 %" in mesh_from(*double_skin(pear())).warnings[0]
+
+
+@pytest.mark.parametrize("component", [0, 1, 2])
+def test_a_piece_that_the_user_chose_needs_no_warning(component: int, tmp_path: Path) -> None:
+    save_obj(tmp_path / "three.obj", three())
+    assert read(tmp_path / "three.obj", component).warnings == ()
+    assert "pieces" not in " ".join(inspect(tmp_path / "three.obj", component=component).warnings)
+    (warning,) = read(tmp_path / "three.obj").warnings
+    assert warning in inspect(tmp_path / "three.obj").warnings
+    assert mesh_from(*three(), component=2).repairs == ("dropped 2 pieces beside number 2 by area (640 faces)",)
+
+
+def test_check_gives_the_size_of_the_piece_that_is_taken(tmp_path: Path) -> None:
+    save_obj(tmp_path / "three.obj", three())
+    largest = inspect(tmp_path / "three.obj")
+    assert largest.part_size == pytest.approx(read(tmp_path / "three.obj").size) and largest.size[0] > 18.0
+    first, _, third, *_ = described(largest)
+    long = max(largest.part_size)
+    assert first.startswith(f"mesh      three.obj: {long:.4g} mm long") and "of all 3 pieces: 21 x 6 x 6" in third
+    smallest = inspect(tmp_path / "three.obj", component=2)
+    assert smallest.part_size == pytest.approx(np.array(largest.part_size) / 3.0)
 
 
 def test_pieces_of_equal_area_are_in_the_order_of_their_centroids() -> None:
@@ -48,7 +68,7 @@ def test_pieces_of_equal_area_are_in_the_order_of_their_centroids() -> None:
         assert mesh_from(*part).vertices[:, 0].max() < 3 < mesh_from(*part, component=1).vertices[:, 0].min()
 
 
-@pytest.mark.parametrize("component", [3, -1, 1.0, True, "1", None])
+@pytest.mark.parametrize("component", [3, -1, 1.0, True, "1"])
 def test_a_component_that_does_not_exist_is_refused(component: object) -> None:
     with pytest.raises(BadInputError, match=r"the mesh has 3 pieces; give a number from 0 to 2$"):
         mesh_from(*three(), component=component)  # type: ignore[arg-type]

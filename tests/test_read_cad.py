@@ -294,4 +294,4 @@ def test_check_takes_a_step_file(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "meshwind", "check", "part.step"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
-    assert "can be wound" in done.stdout and "120 mm" in done.stdout
+    assert "can be opened and wound" in done.stdout and "120 mm" in done.stdout

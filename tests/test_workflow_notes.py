@@ -125,7 +125,7 @@ def test_words() -> None:
 
 @pytest.mark.parametrize(("vertices", "facets", "words"), [
     (2e-3, 2e-3, ()), (3.1e-3, 2e-3, ("surface and mesh lie up to 0.031 mm (0.31 % of the part)", "sharp")),
-    (2e-4, 2.5e-3, ()), (2e-4, 3.1e-3, ("up to 0.031 mm", "chords", "more vertices on them")),
+    (2e-4, 2.5e-3, ()), (2e-4, 3.1e-3, ("coarse: its facets lie up to 0.031 mm (0.31 %", "give a finer mesh")),
 ])  # fmt: skip
 def test_a_surface_that_follows_facets_is_warned_of_where_it_lies_off_the_mesh(
     fitted: tuple[mw.Surface, mw.Chart], vertices: float, facets: float, words: tuple[str, ...]

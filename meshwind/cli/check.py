@@ -38,7 +38,7 @@ def check(
 ) -> int:
     """Describe MESH, its pieces, rims and faults, and what `wind` would do with it.  Writes nothing.
 
-    Exit status: 0 it has two ends and can be wound; 2 it cannot, and one line says why.
+    Exit status: 0 it can be opened at two ends and wound; 2 it cannot, and one line says why.
     """
     from meshwind.mesh import inspect
 
@@ -70,10 +70,12 @@ def described(found: "Findings") -> list[str]:
         )
         if count
     ]
+    of_part = found.part_size if any(found.part_size) else found.size
+    whole = f"of all {found.piece_count} pieces: " if found.piece_count > 1 else ""
     return [
-        f"mesh      {found.name}: {size(found.size, found.units, found.units_from)}",
+        f"mesh      {found.name}: {size(of_part, found.units, found.units_from)}",
         f"file      {found.format}, {found.vertices} vertices, {found.faces} faces",
-        f"size      {' x '.join(f'{length:.4g}' for length in found.size)}, diagonal {found.diagonal:.4g}",
+        f"size      {whole}{' x '.join(f'{length:.4g}' for length in found.size)}, diagonal {found.diagonal:.4g}",
         *_listed("piece", [_piece(piece, found.component) for piece in found.pieces], found.piece_count),
         f"shape     {', '.join(shape)}",
         *_listed("rim", [_rim(rim, found) for rim in found.rims], len(found.rims)),
@@ -90,7 +92,7 @@ def _verdict(found: "Findings") -> list[str]:
         f"ends      {found.ends}",
         *(f"note      {note}" for note in found.notes),
         f"wound     {found.annulus_vertices} vertices, {found.annulus_faces} faces, rims {lengths} long",
-        "verdict   can be wound",
+        "verdict   can be opened and wound; how well a surface fits it, only wind tests",
     ]
 
 

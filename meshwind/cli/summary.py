@@ -7,6 +7,9 @@ from meshwind.core.units import reported_unit
 from meshwind.results.redesign_report_types import RedesignFigures, RedesignReport, RoundFigures
 from meshwind.results.report_types import Failure, PathsFigures, Report, SurfaceFigures
 
+_MAY_HOLD = " may hold it"
+"""How the part of a reason ends that is a path's own, as `Paths.advice` writes it."""
+
 
 def run_lines(report: Report) -> list[str]:
     """A run's report in a few lines; raises LookupError or TypeError where a figure is missing."""
@@ -84,15 +87,24 @@ def _layup(report: Report, units: str) -> list[str]:
 
 
 def _not_converged(failures: Sequence[Failure]) -> list[str]:
-    """One line per reason, with the number of paths that it applies to."""
-    reasons: dict[str, list[int]] = {}
+    """One line per status, with the number of paths that have it and the first ones' numbers."""
+    kinds: dict[str, list[Failure]] = {}
     for failure in failures:
-        reasons.setdefault(failure["why"], []).append(failure["path"])
+        kinds.setdefault(failure["name"], []).append(failure)
     return [
-        f"warning   {len(paths)} path{'s' * (len(paths) > 1)} not at rest: {why} "
-        f"(path {', '.join(map(str, paths[:8]))}{', ...' * (len(paths) > 8)})"
-        for why, paths in reasons.items()
+        f"warning   {len(alike)} path{'s' * (len(alike) > 1)} not at rest: {_advice(alike)} "
+        f"(path {', '.join(str(each['path']) for each in alike[:8])}{', ...' * (len(alike) > 8)})"
+        for alike in kinds.values()
     ]
+
+
+def _advice(alike: Sequence[Failure]) -> str:
+    """Reason and advice of paths of one status; what may hold a path is its own."""
+    reasons = dict.fromkeys(each["why"] for each in alike)
+    if len(reasons) == 1:
+        return next(iter(reasons))
+    shared = min((why.rpartition("; ")[0] if why.endswith(_MAY_HOLD) else why for why in reasons), key=len)
+    return f"{shared}; report.json says what may hold each"
 
 
 def redesign_lines(report: RedesignReport) -> list[str]:

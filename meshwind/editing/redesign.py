@@ -130,7 +130,7 @@ def redesign(  # noqa: PLR0913
     fairness: float = EditOptions.fairness,
     pressing: float = EditOptions.pressing,
     threshold: float | None = EditOptions.threshold,
-    component: int = Options.component,
+    component: int | None = Options.component,
     ends: str = Options.ends,
     opening: float | None = Options.opening,
     side: str = Options.side,

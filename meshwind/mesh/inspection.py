@@ -61,7 +61,8 @@ class Rim:
 class Findings:
     """What a mesh is, and how it would be wound; lengths in the mesh's units.
 
-    vertices and faces are those of the file, size its extents along x, y and z; crowded_edges have more than two
+    vertices and faces are those of the file, size its extents along x, y and z, part_size those of the chosen piece,
+    which is the largest by default; crowded_edges have more than two
     faces, turned_edges two that face opposite ways; pieces lists the 100 largest.  component is the chosen piece,
     one_sided, closed, genus (None if it is unknown) and rims are its own, or the rims of its skin if it has a wall that
     can be wound; repairs says what is changed
@@ -99,13 +100,14 @@ class Findings:
     units: str = ""
     units_from: str = ""
     warnings: tuple[str, ...] = ()
+    part_size: Point = (0.0, 0.0, 0.0)
 
 
 def inspect(
     mesh: str | PathLike[str] | Mesh,
     ends: str = "auto",
     opening: float | None = None,
-    component: int = 0,
+    component: int | None = None,
     side: str = "outer",
     opening_by: str = "auto",
     units: str | None = None,
@@ -130,14 +132,16 @@ def inspect(
     findings = Findings(
         name, kind, len(vertices), len(faces), _point(extent), float(np.linalg.norm(extent)), crowded, turned,
         len(pieces.areas), _listed(pieces),
-        component, repairs=tuple(notes), units=unit.name, units_from=unit.named_by,
+        component or 0, repairs=tuple(notes), units=unit.name, units_from=unit.named_by,
         warnings=(*held.warnings, *filter(None, (unit.warning, unit.doubt(float(extent.max()))))), notes=held.notes,
     )  # fmt: skip
     try:
-        chosen, _ = pieces.chosen(component, name)
+        chosen = pieces.chosen(component, name).faces
         findings = replace(findings, one_sided=disagreements(chosen) > 0, closed=len(boundary(chosen)) == 0)
         part = chosen_piece(pieces, notes, component, name, (len(vertices), len(faces)))
-        findings = replace(findings, repairs=part.repairs)
+        findings = replace(
+            findings, repairs=part.repairs, part_size=part.size, warnings=(*findings.warnings, *part.warnings)
+        )
         findings = replace(findings, genus=_genus(part), rims=_rims(part, None))
         found = annulus(part, ends, opening, side, opening_by)
     except BadInputError as error:

@@ -72,7 +72,8 @@ def _held(out: Path, overwrite: bool) -> list[str]:
     if held and not overwrite:
         what = ", ".join(held[:2]) + ", ..." * (len(held) > 2)
         raise BadInputError(
-            f"{out} holds results already ({what}); give another folder, or --overwrite to replace them"
+            f"{out} holds results already ({what}); give another folder, or overwrite=True (--overwrite) to replace "
+            "them"
         )
     return held
 

@@ -167,7 +167,7 @@ def wind(  # noqa: PLR0913
     paths: int = Options.paths,
     revolutions: float | str = Options.revolutions,
     friction: float | str = Options.friction,
-    component: int = Options.component,
+    component: int | None = Options.component,
     ends: str = Options.ends,
     opening: float | None = Options.opening,
     side: str = Options.side,
@@ -202,8 +202,9 @@ def wind(  # noqa: PLR0913
         Turns of a path from end to end; "auto" picks the value with stable paths and least bridging.
     friction : float or str, default 0
         Coefficient of friction between fibre and part, or "field:NAME" for a scalar of the mesh file.
-    component : int, default 0
-        Piece of the mesh file to take, by decreasing area; 0 is the largest.
+    component : int, optional
+        Piece of the mesh file to take, by decreasing area; 0 is the largest.  By default the largest, with a warning
+        if another one is large.
     ends : str, default "auto"
         Where the ends are: "auto", "x", "y", "z", two points "x,y,z x,y,z", or two open rims "loops 0 1"; see
         `annulus`.

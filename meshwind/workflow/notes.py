@@ -11,6 +11,7 @@ from meshwind.layup.layup import Layup
 from meshwind.mesh import Annulus, Mesh
 from meshwind.mesh.opening.branches import BRANCHES, CUT
 from meshwind.mesh.opening.choose_ends import position_text
+from meshwind.mesh.opening.flat_ends import has_flat_ends
 from meshwind.path.lengths import lengths, unresolved_share
 from meshwind.path.paths import EDGE, Paths, Status, converged_or_all
 from meshwind.planning.alternatives import FRICTION, WIDER
@@ -39,12 +40,14 @@ _PROTRUSIONS = "protrusions such as fingers, ears and branches are squeezed by t
 _FINER = "give a finer or smoother mesh"
 _LEGS = f"{BRANCHES}; {CUT}"
 _COARSE = "its edges there are too sharp for the mesh; give a finer mesh, or round them"
-_CHORDS = (
-    "its facets there are chords of the smooth surface through their corners; where the part itself is flat, give a "
-    "mesh with more vertices on them"
+_CAPS = (
+    "its flat ends meet the flank at sharp edges; leave the flat ends off the mesh, or open them up to the edge by "
+    "--opening"
 )
 _HELD = 0.2
-"""Vertices that are off the surface by less than this share of what the facets are off by lie on it."""
+"""Vertices that are off the surface by less than this share of what the facets are off by lie on it ..."""
+_ON_PART = 5e-3
+"""... and by less than this share of the diagonal."""
 
 
 @dataclass(frozen=True)
@@ -152,7 +155,8 @@ def about_fit(surface: Surface, chart: Chart, tolerance: float, worst_fit: float
     if error.relative_max > min(UNRESOLVED, worst_fit):
         text = _unresolved(surface, chart, error, units)
         if error.relative_max > worst_fit:
-            raise BadInputError(f"{text}, or raise worst_fit (--worst-fit), now {worst_fit:g}")
+            told = "".join(f"; the file: {each}" for each in chart.annulus.mesh.warnings[:1])
+            raise BadInputError(f"{text}, or raise worst_fit (--worst-fit), now {worst_fit:g}{told}")
         return (Note(text, True, FIT_PICTURE),)
     if error.data != "vertices":
         return _followed(surface, chart, error, units)
@@ -172,21 +176,18 @@ def _followed(surface: Surface, chart: Chart, error: FitError, units: str) -> tu
     notes = list[Note]()
     if error.data == "facets":
         scatter = quantity(error.noise, units, 2)
+        creased = f", for {_CAPS}" if has_flat_ends(chart.annulus) else ""
         notes.append(
             Note(
                 f"the vertices lie {scatter} off a smooth surface (root mean square), as in a decimated or "
-                "creased mesh: the surface follows the facets"
+                f"creased mesh: the surface follows the facets{creased}"
             )
         )
     else:
         text = "the vertices lie too far apart to hold a surface alone: it follows curved facets between them"
         notes.append(Note(text))
     if max(error.max / APART, error.to_mesh_rms / APART_RMS) > error.diagonal:
-        text = (
-            f"surface and mesh lie up to {quantity(error.max, units, 2)} "
-            f"({100.0 * error.relative_max:.2g} % of the part) apart {_places(surface, chart)}; {_cause(chart, error)}"
-        )
-        notes.append(Note(text, True, FIT_PICTURE))
+        notes.append(Note(_apart(surface, chart, error, units), True, FIT_PICTURE))
     return tuple(notes)
 
 
@@ -199,19 +200,34 @@ def _missed(error: FitError, missed: float, tolerance: float, units: str) -> str
 
 
 def _unresolved(surface: Surface, chart: Chart, error: FitError, units: str) -> str:
-    return (
-        f"the surface does not resolve the part: it lies up to {quantity(error.max, units, 2)} "
-        f"({100.0 * error.relative_max:.2g} % of the part) off the mesh {_places(surface, chart)}; "
-        f"{_cause(chart, error)}"
-    )
+    text = _apart(surface, chart, error, units)
+    return text if _is_coarse(chart, error) else f"the surface does not resolve the part: {text}"
 
 
-def _cause(chart: Chart, error: FitError) -> str:
+def _apart(surface: Surface, chart: Chart, error: FitError, units: str) -> str:
+    """How far and where surface and mesh lie apart, why, and what helps."""
+    length = f"{quantity(error.max, units, 2)} ({100.0 * error.relative_max:.2g} % of the part)"
+    places = _places(surface, chart)
+    if _is_coarse(chart, error):
+        return (
+            f"the mesh is coarse: its facets lie up to {length} off the smooth surface through their corners, {places};"
+            " where the part is curved there, the surface is the truer one; where it is flat, give a finer mesh"
+        )
+    return f"surface and mesh lie up to {length} apart {places}; {_cause(chart)}"
+
+
+def _is_coarse(chart: Chart, error: FitError) -> bool:
+    """Whether the surface keeps to the vertices, and only the flat facets between them lie off it."""
+    on_part = min(_HELD * error.to_mesh_max, _ON_PART * error.diagonal)
+    return error.to_surface_max < on_part and not _branches(chart)
+
+
+def _cause(chart: Chart) -> str:
     """Why a surface lies far off the mesh, and what helps."""
     if _branches(chart):
         return _LEGS
-    if error.to_surface_max < _HELD * error.to_mesh_max:
-        return _CHORDS
+    if has_flat_ends(chart.annulus):
+        return _CAPS
     squeezed = float(np.quantile(chart.stretch, 0.99)) > SQUEEZED
     return _PROTRUSIONS if squeezed else _COARSE
 

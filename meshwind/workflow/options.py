@@ -67,8 +67,11 @@ class Options:
             read=str,
         ),
     )
-    component: int = field(
-        default=0, metadata=option("Piece of the mesh file to take, by decreasing area; 0 is the largest", PART)
+    component: int | None = field(
+        default=None,
+        metadata=option(
+            "Piece of the mesh file to take, by decreasing area; 0 is the largest", PART, otherwise="the largest"
+        ),
     )
     ends: str = field(
         default=AUTO,
@@ -158,7 +161,8 @@ class Options:
             set_(self, "revolutions", _number(self.revolutions, "revolutions", 0.0))
         _check_resolution(self.revolutions, self.particles or _MOST_CHOSEN)
         set_(self, "friction", _friction(self.friction))
-        set_(self, "component", _whole(self.component, "component", 0))
+        if self.component is not None:
+            set_(self, "component", _whole(self.component, "component", 0))
         parse_ends(self.ends)
         _check_word(self.side, "side", SIDES)
         _check_word(self.opening_by, "opening_by", OPENED_BY)

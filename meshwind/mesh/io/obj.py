@@ -17,6 +17,7 @@ from meshwind.mesh.io.face_lists import Lists, face_blocks
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.lines import JOINED, Lines, NotANumber, Rows, without_comments
 from meshwind.mesh.io.text import own_unit, text_of
+from meshwind.mesh.io.unused import words_on_unused
 
 _FREE_FORM = ("surf", "curv", "curv2", "bzp", "bsp", "cdp", "cdc")
 """Statements that make free-form surfaces and curves; the last four are those of older files."""
@@ -51,7 +52,15 @@ def read_obj(path: Path) -> FileMesh:
         np.concatenate([each.values for each in faces] or [np.zeros(0, dtype=np.int64)]),
     )
     blocks, more = face_blocks(joined, len(points))
-    return surface_mesh(points, blocks, own_unit(content), warnings + more)
+    cut = words_on_unused(_unused(lines, joined, len(points)), len(points), ("vertices", "face"))
+    return surface_mesh(points, blocks, own_unit(content), warnings + more + cut)
+
+
+def _unused(lines: Lines, faces: Lists, count: int) -> int:
+    """Vertices that are in no face, without those that lines and points may have."""
+    others = lines.begin_with(b"l") | lines.begin_with(b"p")
+    used = np.count_nonzero(np.bincount(faces.values, minlength=count))
+    return count - int(used) - int(lines.rows(others, 1).sizes.sum())
 
 
 def _left_out(name: str, lines: Lines, vertex: Bools, face: Bools) -> tuple[str, ...]:

@@ -97,7 +97,7 @@ RuntimeWarning comes from a cast, if the caller turns warnings into errors.
 """
 
 
-def read(mesh: str | PathLike[str] | Any, component: int = 0, units: str | None = None) -> Mesh:
+def read(mesh: str | PathLike[str] | Any, component: int | None = None, units: str | None = None) -> Mesh:
     """Read a triangle mesh from a file, or take it from another library, and repair it.
 
     STL, PLY, OBJ, OFF, GLB, GLTF, 3MF, VTK, VTU, VTP, MSH and INP files are read, and STEP and IGES files
@@ -107,8 +107,9 @@ def read(mesh: str | PathLike[str] | Any, component: int = 0, units: str | None 
     ----------
     mesh : str, PathLike, trimesh.Trimesh, pyvista.PolyData, meshio.Mesh or tuple of two arrays
         File to read, or a mesh in memory: one of trimesh, PyVista or meshio, or its vertices (n, 3) and faces (m, 3).
-    component : int, default 0
-        Which piece to keep, by its rank of area: 0 is the largest.
+    component : int, optional
+        Which piece to keep, by its rank of area: 0 is the largest.  By default the largest, with a warning if another
+        one is large.
     units : str, optional
         Unit of the mesh, see `wind`.  By default the one that the file names, if it names one.
 
@@ -133,7 +134,7 @@ def read(mesh: str | PathLike[str] | Any, component: int = 0, units: str | None 
     name = Path(mesh).name if isinstance(mesh, str | PathLike) else "mesh"
     unit = Unit.of(units, held.unit)
     repaired = mesh_from(held.vertices, held.faces, name, component)
-    warnings = (*held.warnings, unit.warning) if unit.warning else held.warnings
+    warnings = (*held.warnings, *filter(None, [unit.warning]), *repaired.warnings)
     return replace(repaired, units=unit.name, units_from=unit.named_by, warnings=warnings, notes=held.notes)
 
 

@@ -147,6 +147,10 @@ def _assembled(mesh: Mesh, surface: CurvedFacets, pair: list[End], words: list[s
         )
     if not areas(surface.vertices, surface.faces).min() > 0:
         raise BadInputError(f"{mesh.name}: trimming left a face without area; remesh the part or choose other ends")
+    if not surface.trusted.any():
+        raise BadInputError(
+            f"{mesh.name}: no vertex is left between the openings; choose a smaller opening, or give a finer mesh"
+        )
     start = int(np.argmin([_offset(surface.vertices[rim], pair) for rim in rims]))
     first, second = rims[start], rims[1 - start]
     # along the orientation of the faces the surface is on the left: u increases at the start and decreases at the end

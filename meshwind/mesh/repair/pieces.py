@@ -11,10 +11,19 @@ from meshwind.mesh.geometry.topology import patches
 
 _STEPS = 1e9
 """Areas and positions are rounded to this many steps, so that round-off does not decide the order of pieces."""
-_LARGE = 0.2
-"""Area over that of the chosen piece above which a dropped piece is worth a warning."""
+_LARGE = 0.05
+"""Area over that of the largest piece above which a dropped piece is worth a warning: no screw, no crumb of a scan."""
 _MANY_PIECES, _SMALL_SHARE = 20, 0.05
 """With more pieces than this, of which the largest has less than this share of the area, a mesh is not a surface."""
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """The piece that is kept: its faces (m, 3), notes on what was dropped, and warnings."""
+
+    faces: Ints
+    notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -44,25 +53,26 @@ class Pieces:
         rank[order] = np.arange(len(order))
         return Pieces(vertices, faces, rank[label], size[order].astype(np.float64))
 
-    def chosen(self, component: int, name: str) -> tuple[Ints, list[str]]:
-        """Faces of the piece of this rank, and notes on the others."""
+    def chosen(self, component: int | None, name: str) -> "Chosen":
+        """The piece of this rank; None takes the largest, with a warning if another one is large."""
         count = len(self.areas)
+        given, component = component is not None, 0 if component is None else component
         self._check(component, name)
         kept = self.faces[self.rank == component]
         if count == 1:
-            return kept, []
+            return Chosen(kept)
         which = "the largest" if component == 0 else f"number {component} by area"
         dropped = f"dropped {count - 1} {'piece' if count == 2 else 'pieces'} beside {which}"
-        notes = [f"{dropped} ({len(self.faces) - len(kept)} faces)"]
-        other = 1 if component == 0 else 0
-        share = self.areas[other] / max(self.areas[component], np.finfo(float).tiny)
-        if share > _LARGE:
-            inside = ", within its bounds," if self._within(kept, self.faces[self.rank == other]) else ""
-            notes.append(
-                f"warning: a dropped piece{inside} has {100 * share:.3g} % of the kept one's area;"
-                f" component {other} chooses it instead"
-            )
-        return kept, notes
+        notes = (f"{dropped} ({len(self.faces) - len(kept)} faces)",)
+        share = self.areas[1] / max(self.areas[0], np.finfo(float).tiny)
+        if given or share <= _LARGE:
+            return Chosen(kept, notes)
+        inside = ", within its bounds," if self._within(kept, self.faces[self.rank == 1]) else ""
+        warning = (
+            f"{count} pieces: the largest is taken; the next one{inside} has {100.0 * share:.2g} % of its area, and "
+            "--component 1 takes that instead"
+        )
+        return Chosen(kept, notes, (warning,))
 
     def _check(self, component: int, name: str) -> None:
         count = len(self.areas)

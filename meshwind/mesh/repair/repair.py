@@ -19,11 +19,12 @@ _LEAST_EXTENT = 1e-8
 """Least extent over the distance from the origin: below it, coordinates have lost half of their digits."""
 
 
-def mesh_from(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh", component: int = 0) -> Mesh:
+def mesh_from(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh", component: int | None = None) -> Mesh:
     """Make a repaired mesh from vertices (n, 3), in any unit, and triangles (m, 3) of indices from 0.
 
     Vertices are welded, degenerate and repeated faces dropped, cracks closed, and the rest is made manifold and
-    oriented outwards.  Of several pieces one is kept: `component` is its rank by area, 0 the largest.  The result's
+    oriented outwards.  Of several pieces one is kept: `component` is its rank by area, 0 the largest,
+    which None takes too, but with a warning if another one is large.  The result's
     `repairs` lists these changes, and faults that were found but not repaired.  Raises BadInputError if no surface is
     left.
     """
@@ -48,10 +49,10 @@ def made_manifold(vertices: ArrayLike, faces: ArrayLike, name: str) -> tuple[Pie
     return Pieces.of(points, triangles), notes
 
 
-def chosen_piece(pieces: Pieces, notes: list[str], component: int, name: str, read: tuple[int, int]) -> Mesh:
+def chosen_piece(pieces: Pieces, notes: list[str], component: int | None, name: str, read: tuple[int, int]) -> Mesh:
     """Second half of the repair: the mesh of one piece; `read` counts the vertices and faces of the file."""
-    triangles, words = pieces.chosen(component, name)
-    notes = notes + words
+    chosen = pieces.chosen(component, name)
+    triangles, notes = chosen.faces, [*notes, *chosen.notes]
     manifold.check_orientable(triangles, name)
     triangles = _remove_slivers(pieces.vertices, triangles, notes, name)
     points, triangles = _referenced(pieces.vertices, triangles)
@@ -60,7 +61,7 @@ def chosen_piece(pieces: Pieces, notes: list[str], component: int, name: str, re
         notes.append("turned all faces outward")
     points, triangles = _close_handles(points, triangles, notes)
     notes += overlaps(points, triangles)
-    return Mesh(frozen(points), frozen(triangles), name, tuple(notes), *read)
+    return Mesh(frozen(points), frozen(triangles), name, tuple(notes), *read, warnings=chosen.warnings)
 
 
 def _checked(vertices: ArrayLike, faces: ArrayLike, name: str) -> tuple[Floats, Ints]:

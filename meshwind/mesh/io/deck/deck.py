@@ -24,6 +24,7 @@ from meshwind.mesh.io.deck.places import STILL, Place, cartesian, instance_place
 from meshwind.mesh.io.deck.words import words_on_elements, words_on_parts
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.text import own_unit, text_of
+from meshwind.mesh.io.unused import words_on_unused
 
 _ENDS = ("END PART", "END INSTANCE", "END ASSEMBLY", "ASSEMBLY")
 _ANALYTICAL = ("REVOLUTION", "CYLINDER", "SEGMENTS")
@@ -128,6 +129,8 @@ class _Deck:
         pieces = self._pieces(placed)
         told = [*self.words, *words_on_elements([part for part, _ in placed], self.file)]
         told += words_on_parts(self.parts, set(names))
+        if not any(part.others for part, _ in placed):
+            told += words_on_unused(*_unused(pieces), ("nodes", "element"))
         starts = np.cumsum([0] + [len(piece.points) for piece in pieces])
         tables: dict[str, list[Ints]] = {}
         for piece, start in zip(pieces, starts[:-1], strict=True):
@@ -166,6 +169,16 @@ class _Deck:
                                     "export one of them alone")  # fmt: skip
             pieces.append(Numbered(place.moved(piece.points), piece.cells))
         return pieces
+
+
+def _unused(pieces: list[Numbered]) -> tuple[int, int]:
+    """Nodes that are in no element, and all."""
+    total = sum(len(piece.points) for piece in pieces)
+    used = 0
+    for piece in pieces:
+        nodes = np.concatenate([rows.ravel() for _, rows in piece.cells] or [np.zeros(0, dtype=np.int64)])
+        used += int(np.count_nonzero(np.bincount(nodes, minlength=len(piece.points))))
+    return total - used, total
 
 
 def _cell_block(kind: str, rows: Ints) -> CellBlock:
