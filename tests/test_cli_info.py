@@ -24,8 +24,7 @@ def test_a_mesh() -> None:
     assert done.returncode == 0
     lines = done.stdout.splitlines()
     assert lines[:2] == [
-        "mesh      tank.ply: 240 mm long, 120 x 120 mm across; "
-        "mm assumed, as the file names no known unit; see --units",
+        "mesh      tank.ply: 240 mm long, 120 x 120 mm across; mm assumed; see --units",
         "file      PLY, 5000 vertices, 9996 faces",
     ]
     assert lines[2].startswith("size      120 x 120 x 240, diagonal")

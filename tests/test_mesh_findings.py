@@ -106,7 +106,7 @@ def test_the_command_prints_the_findings_and_writes_nothing(tmp_path: Path) -> N
     assert (done.returncode, done.stderr) == (0, "")
     lines = done.stdout.splitlines()
     assert lines[:2] == [
-        "mesh      part.obj: 3 mm long, 2 x 2 mm across; mm assumed, as the file names no known unit; see --units",
+        "mesh      part.obj: 3 mm long, 2 x 2 mm across; mm assumed; see --units",
         "file      OBJ, 1776 vertices, 3347 faces",
     ]
     assert lines[-1] == "verdict   can be opened and wound; how well a surface fits it, only wind tests"

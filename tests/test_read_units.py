@@ -99,7 +99,7 @@ def test_who_named_the_unit_is_said(tmp_path: Path) -> None:
     for path, words in (
         (packed(tmp_path, ""), "; mm, the default of 3MF"),
         (tmp_path / "part.glb", "; m, as glTF always is"),
-        (tmp_path / "part.stl", "; mm assumed, as the file names no known unit; see --units"),
+        (tmp_path / "part.stl", "; mm assumed; see --units"),
     ):
         found = mw.mesh.inspect(path)
         assert size(found.size, found.units, found.units_from).endswith(words)

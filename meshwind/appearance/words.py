@@ -8,7 +8,7 @@ from meshwind.core.units import BY_DEFAULT, BY_FILE, GIVEN, UNKNOWN, millimetres
 _NAMED = {
     GIVEN: " as given",
     BY_FILE: " as the file says",
-    BY_DEFAULT: " assumed, as the file names no known unit; see --units",
+    BY_DEFAULT: " assumed; see --units",
 }
 """Who named the unit."""
 
