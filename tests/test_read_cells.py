@@ -318,10 +318,13 @@ def test_a_large_side_on_several_smaller_ones_is_inner(below: str, first: int) -
     rows = [np.column_stack([np.cos(turn), np.sin(turn), np.full(6, z)]) for z in (0.0, 1.0, 2.0)]
     sides = [[6 + k, 6 + (k + 1) % 6, 12 + (k + 1) % 6, 12 + k] for k in range(6)]
     ends = [[start + (k + first) % 6 for k in range(6)][::step] for start, step in ((6, -1), (12, 1))]
-    parts = {"wedges": [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5)], "hexahedra": [(0, 1, 2, 3), (0, 3, 4, 5)],
-             "mixed": [(1, 2, 3), (1, 3, 4), (0, 1, 4, 5)]}[below]  # fmt: skip
+    every: dict[str, list[tuple[int, ...]]] = {
+        "wedges": [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5)],
+        "hexahedra": [(0, 1, 2, 3), (0, 3, 4, 5)],
+        "mixed": [(1, 2, 3), (1, 3, 4), (0, 1, 4, 5)],
+    }
     blocks = [polyhedra([[*sides, *ends]])]
-    for part in parts:
+    for part in every[below]:
         kind = "wedge" if len(part) == 3 else "hexahedron"
         blocks.append(block(kind, [[*part, *(6 + k for k in part)]]))
     mesh = surface_mesh(np.concatenate(rows), blocks)
