@@ -198,6 +198,15 @@ def test_slivers_at_the_boundary_go() -> None:
         assert areas(mesh.vertices, mesh.faces).sum() == pytest.approx(areas(*cone()).sum(), rel=1e-12)
 
 
+def test_what_hangs_on_a_sliver_goes_with_it() -> None:
+    """Dropped at the boundary, it leaves two fans at its apex."""
+    vertices = np.array([(0, 0, 0), (1, 0, 0), (2, 0, 0), (0.5, 1, 0), (1.5, 1, 0), (2.5, 1, 0.5)], dtype=float)
+    mesh = mesh_from(vertices, [[0, 1, 3], [1, 2, 4], [2, 5, 4], [0, 2, 1]])
+    assert_sound(mesh)
+    assert mesh.repairs[:2] == ("flipped or dropped 1 face without height", "dropped 1 face that hung on these")
+    assert (len(mesh.faces), len(mesh.vertices), len(loops(mesh.faces))) == (2, 4, 1)
+
+
 def test_order_of_the_input_does_not_matter() -> None:
     part = joined(pear(), moved(ball(1), np.eye(3), np.array([9.0, 0, 0]), 0.5))
     first, second = mesh_from(*part), mesh_from(*shuffled(part))

@@ -50,7 +50,7 @@ def test_a_part_that_single_precision_does_not_resolve_is_refused(suffix: str, t
         read(path)
     assert str(caught.value) == (
         f"part{suffix}: lies 5.4e+06 from the origin, where single precision resolves steps of 0.5 of a part 2.4 long; "
-        "move the part to the origin and export it again, or in double precision (OBJ, PLY, VTU)"
+        "move the part to the origin and export it again, or in double precision (OBJ, VTU, PLY of doubles)"
     )
 
 

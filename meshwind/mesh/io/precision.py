@@ -29,7 +29,7 @@ class _Steps:
 
     size: float
     limit: str = "single precision resolves steps of"
-    instead: str = "in double precision (OBJ, PLY, VTU)"
+    instead: str = "in double precision (OBJ, VTU, PLY of doubles)"
 
 
 def resolved(name: str, held: FileMesh) -> FileMesh:

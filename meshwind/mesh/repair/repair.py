@@ -54,8 +54,7 @@ def chosen_piece(pieces: Pieces, notes: list[str], component: int | None, name: 
     chosen = pieces.chosen(component, name)
     triangles, notes = chosen.faces, [*notes, *chosen.notes]
     manifold.check_orientable(triangles, name)
-    triangles = _remove_slivers(pieces.vertices, triangles, notes, name)
-    points, triangles = _referenced(pieces.vertices, triangles)
+    points, triangles = _referenced(*_remove_slivers(pieces.vertices, triangles, notes, name))
     if volume(points, triangles) < 0:
         triangles = triangles[:, ::-1]
         notes.append("turned all faces outward")
@@ -164,11 +163,16 @@ def _close_handles(vertices: Floats, faces: Ints, notes: list[str]) -> tuple[Flo
     return points, triangles
 
 
-def _remove_slivers(vertices: Floats, faces: Ints, notes: list[str], name: str) -> Ints:
-    """Remove faces without height."""
+def _remove_slivers(vertices: Floats, faces: Ints, notes: list[str], name: str) -> tuple[Floats, Ints]:
+    """Remove faces without height, and what hangs on them by a vertex only."""
     diagonal = float(np.linalg.norm(np.ptp(_referenced(vertices, faces)[0], axis=0)))
     mended, count = without_slivers(vertices, faces, diagonal)
     _note(notes, count, "flipped or dropped {} without height", "face", "faces")
     if len(mended) == 0:
         raise BadInputError(f"{name}: no face is left, none has an area; export the part's surface as a triangle mesh")
-    return mended
+    if len(mended) < len(faces):
+        vertices, mended = manifold.separated(vertices, mended)
+        left = mended[Pieces.of(vertices, mended).rank == 0]
+        _note(notes, len(mended) - len(left), "dropped {} that hung on these")
+        mended = left
+    return vertices, mended

@@ -20,7 +20,7 @@ def heights(vertices: Floats, faces: Ints) -> Floats:
 def without_slivers(vertices: Floats, faces: Ints, diagonal: float) -> tuple[Ints, int]:
     """Flip or, at the boundary, drop faces without height; also returns their number.
 
-    Faces must be oriented and manifold, and remain so.
+    Faces must be oriented and manifold, and remain so, but for vertices where a dropped face leaves two fans.
     """
     flat = heights(vertices, faces) < FLAT * diagonal
     count = int(flat.sum())
