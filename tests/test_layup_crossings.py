@@ -4,7 +4,7 @@ from time import perf_counter
 
 import numpy as np
 import pytest
-from layup_shapes import HEIGHT, bridged, cylinder, drawn, helices, straight_uv
+from layup_shapes import HEIGHT, bridged, cylinder, drawn, helices, straight_uv, wound
 
 from meshwind.core.cast import Floats
 from meshwind.layup.crossings import cell_sides, counts, crossings, own_crossings
@@ -70,6 +70,9 @@ def test_positions_along_the_paths_lead_back_to_the_crossing() -> None:
 
 def test_zero_revolutions_never_cross() -> None:
     assert len(crossings(helices(8, 0.0, 31, CYLINDER))) == 0
+    solved = wound(shapes.cylinder(1.0, 3.0, (64, 8)), 12, 0.0, 201)  # families on each other but for round-off
+    assert np.array_equal(np.sort(solved.family), np.repeat([-1, 1], 12))
+    assert len(crossings(solved)) == 0 and len(own_crossings(solved)) == 0
 
 
 @pytest.mark.parametrize("offset", [0.0, 1e-13, 0.5, 0.123])

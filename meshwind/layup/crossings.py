@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.core.vectors import TINY
 from meshwind.layup.curve_meetings import curve_meetings
 from meshwind.layup.meetings import Meetings, meet
 from meshwind.path.lengths import lengths
@@ -47,11 +48,11 @@ class Crossings:
 def crossings(paths: Paths, among: Bools | None = None) -> Crossings:
     """Find all crossings of the two families, among all paths or those where `among` (p,) holds.
 
-    Points on a rim that paths share as ends are not crossings.
+    Points on a rim that paths share as ends are not crossings, nor are those of stretches where paths coincide.
     """
     compared = _mask(paths, among)
     met = meet(paths, compared & (paths.family > 0), compared & (paths.family < 0))
-    met = met.chosen(~_at_shared_end(paths, met))
+    met = met.chosen(~(_at_shared_end(paths, met) | _coincide(paths, met)))
     strands = [_Strand.at(paths, met.a, met.t_a), _Strand.at(paths, met.b, met.t_b)]
     on_surface = strands[0].on_surface & strands[1].on_surface
     curve = curve_meetings(paths, met)
@@ -76,7 +77,7 @@ def own_crossings(paths: Paths, among: Bools | None = None) -> Ints:
     for family in (1, -1):
         mine = compared & (paths.family == family)
         met = meet(paths, mine, mine)
-        inner = ~_at_shared_end(paths, met)
+        inner = ~(_at_shared_end(paths, met) | _coincide(paths, met))
         apart = (met.a < met.b) | ((met.a == met.b) & (met.t_b - met.t_a > _NEXT))
         pairs.append(np.stack([met.a, met.b], axis=1)[apart & inner])
     return np.concatenate(pairs)
@@ -131,6 +132,21 @@ def _at_shared_end(paths: Paths, met: Meetings) -> Bools:
     reach = [_between(paths.uv, path, t) - paths.uv[path, end] for path, t, end in ends]
     near = np.abs(np.concatenate(reach, axis=1)).max(axis=1) < _AT_RIM
     return np.asarray(near & (end_a == end_b) & (np.abs(apart).max(axis=1) <= SHARED))
+
+
+def _coincide(paths: Paths, met: Meetings) -> Bools:
+    """Whether each meeting is of segments that lie on each other but for round-off, as on paths without a turn."""
+    n = paths.uv.shape[1]
+    far = np.zeros(len(met.a))
+    at_a, at_b = (np.minimum(t.astype(np.int64), n - 2) for t in (met.t_a, met.t_b))
+    for a, k, b, j in ((met.a, at_a, met.b, at_b), (met.b, at_b, met.a, at_a)):
+        way = paths.uv[a, k + 1] - paths.uv[a, k]
+        for end in (j, j + 1):
+            gap = paths.uv[b, end] - paths.uv[a, k]
+            gap[:, 0] -= np.round(gap[:, 0])
+            side = np.abs(way[:, 0] * gap[:, 1] - way[:, 1] * gap[:, 0])
+            far = np.maximum(far, side / np.maximum(np.linalg.norm(way, axis=1), TINY))
+    return np.asarray(far <= SHARED)
 
 
 def _between(values: Floats, path: Ints, t: Floats) -> Floats:
