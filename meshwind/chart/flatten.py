@@ -12,6 +12,7 @@ from meshwind.chart.chart import Chart, signed_areas
 from meshwind.chart.reparametrise import canonical_u, even_speed
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
+from meshwind.mesh.geometry.edge_graph import edge_graph
 from meshwind.mesh.geometry.mesh import Annulus
 from meshwind.mesh.geometry.topology import edges
 
@@ -91,12 +92,7 @@ def flatten(annulus: Annulus) -> Chart:
 
 def _seam(annulus: Annulus) -> Ints:
     """Vertices of a shortest edge path from the start rim to the end rim that touches each rim once."""
-    ends, n = edges(annulus.faces).ends, len(annulus.vertices)
-    length = np.linalg.norm(annulus.vertices[ends[:, 0]] - annulus.vertices[ends[:, 1]], axis=1)
-    both = np.concatenate([ends, ends[:, ::-1]])
-    # rows sorted by column, so that the same one of equally short paths is found each time
-    graph = sparse.csr_array((np.tile(length, 2), (both[:, 0], both[:, 1])), shape=(n, n))
-    graph.sort_indices()
+    graph = edge_graph(annulus.vertices, annulus.faces)
     distance, previous, _ = dijkstra(graph, indices=annulus.rims[0], return_predecessors=True, min_only=True)
     path = [int(annulus.rims[1][np.argmin(distance[annulus.rims[1]])])]
     while previous[path[-1]] >= 0:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.lists import spread
 from meshwind.core.vectors import unit
 from meshwind.path.paths import Paths, converged_or_all
 from meshwind.surface.evaluate import SU, SV
@@ -84,7 +85,7 @@ def _passages(paths: Paths, nv: int) -> _Passages:
     high = np.minimum(np.floor(np.maximum(y0, y1)), nv - 1.0).astype(np.int64)
     many = np.maximum(high - low + 1, 0)
     k = np.repeat(np.arange(len(many)), many)
-    row = low[k] + np.arange(len(k)) - np.repeat(np.cumsum(many) - many, many)
+    row = spread(low, many)
     rise = y1[k] - y0[k]
     share = np.divide(row - y0[k], rise, out=np.zeros(len(k)), where=rise != 0.0)
     order = np.argsort(row, kind="stable")

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.core.lists import spread
 from meshwind.path.kernels.touchdown import touchdowns
 from meshwind.path.paths import Paths
 
@@ -129,15 +130,14 @@ def tolerated(paths: Paths) -> Floats:
     limit = np.zeros(paths.gap.shape)
     size = spans.stop - spans.start
     row = np.repeat(spans.path, size)
-    step = np.arange(len(row)) - np.repeat(np.cumsum(size) - size, size)
-    column = np.repeat(spans.start, size) + step
+    column = spread(spans.start, size)
     below = surface.threshold_at(paths.uv[row, column])
     if surface.threshold is None and surface.uncertainty is not None:
         before, after = (
             np.repeat(surface.uncertainty_at(paths.uv[spans.path, np.clip(end, 0, paths.gap.shape[1] - 1)]), size)
             for end in (spans.start - 1, spans.stop)
         )
-        share = (step + 1) / np.repeat(size + 1, size)
+        share = (column - np.repeat(spans.start, size) + 1) / np.repeat(size + 1, size)
         below = below + (1.0 - share) * before + share * after
     limit[row, column] = below
     return limit

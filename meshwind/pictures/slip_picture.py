@@ -6,6 +6,7 @@ import numpy as np
 
 from meshwind.appearance.looks import colour_map
 from meshwind.core.cast import Bools, Floats
+from meshwind.core.lists import spread
 from meshwind.pictures import bodies, canvas
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import SlipScene
@@ -57,7 +58,7 @@ def runs(points: Floats, shares: Floats, wanted: Bools) -> Any:
         return None
     sizes = last - first + 1
     row = np.repeat(path, sizes)
-    column = np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes - first, sizes)
+    column = spread(first, sizes)
     lines = bodies.polylines(points[row, column], sizes)
     lines.point_data["share"] = shares[row, column]
     return lines

@@ -163,9 +163,7 @@ def about_fit(surface: Surface, chart: Chart, tolerance: float, worst_fit: float
     missed = error.to_surface_max / error.diagonal
     if missed <= tolerance:
         return ()
-    text = _missed(error, missed, tolerance, units)
-    if _branches(chart):
-        text = text.replace(_FINER, _LEGS)
+    text = _missed(error, missed, tolerance, units, _LEGS if _branches(chart) else _FINER)
     if missed <= max(MISSED * tolerance, SHOWS):
         return (Note(text),)
     return (Note(f"{text}; surface and mesh lie furthest apart {_places(surface, chart)}", True, FIT_PICTURE),)
@@ -191,10 +189,10 @@ def _followed(surface: Surface, chart: Chart, error: FitError, units: str) -> tu
     return tuple(notes)
 
 
-def _missed(error: FitError, missed: float, tolerance: float, units: str) -> str:
+def _missed(error: FitError, missed: float, tolerance: float, units: str, instead: str) -> str:
     return (
         f"the tolerance of {ratio(tolerance)} is missed: vertices lie up to {ratio(missed)} of the part "
-        f"({quantity(error.to_surface_max, units, 2)}) off the surface; {_FINER}, or accept it "
+        f"({quantity(error.to_surface_max, units, 2)}) off the surface; {instead}, or accept it "
         f"with --tolerance {power(missed)}"
     )
 

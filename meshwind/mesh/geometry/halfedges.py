@@ -53,18 +53,21 @@ def edge_table(faces: Ints, size: int) -> tuple[Ints, Ints, Ints, Ints]:
     return ends[:edge].copy(), of_half, faces_at[:edge].copy(), halves[:edge].copy()
 
 
+@njit(nogil=True, inline="always", cache=True)
+def root(parent: Ints, node: int) -> int:
+    """Root of the tree that a node is in, by the parents (n,) of nodes; halves the way there."""
+    while parent[node] != node:
+        parent[node] = parent[parent[node]]
+        node = parent[node]
+    return node
+
+
 @njit(nogil=True, cache=True)
 def linked(count: int, first: Ints, second: Ints) -> Ints:
     """Label (count,) of the component of each node under the links first-second, in the order of first nodes."""
     parent = np.arange(count)
     for k in range(len(first)):
-        a, b = first[k], second[k]
-        while parent[a] != a:
-            parent[a] = parent[parent[a]]
-            a = parent[a]
-        while parent[b] != b:
-            parent[b] = parent[parent[b]]
-            b = parent[b]
+        a, b = root(parent, first[k]), root(parent, second[k])
         # the lower node is the root, so that one pass in ascending order labels all
         if a < b:
             parent[b] = a

@@ -4,6 +4,7 @@ import numpy as np
 from numba import njit
 
 from meshwind.core.cast import Ints
+from meshwind.mesh.geometry.halfedges import root
 
 
 @njit(nogil=True, cache=True)
@@ -24,13 +25,7 @@ def saddles(order: Ints, above: Ints, starts: Ints, neighbours: Ints) -> Ints:
         for j in range(starts[here], starts[here + 1]):
             if place[neighbours[j]] > k:
                 continue
-            a, b = here, neighbours[j]
-            while parent[a] != a:
-                parent[a] = parent[parent[a]]
-                a = parent[a]
-            while parent[b] != b:
-                parent[b] = parent[parent[b]]
-                b = parent[b]
+            a, b = root(parent, here), root(parent, neighbours[j])
             if a == b:
                 continue
             # the higher one is the root, so that each root is its peak

@@ -12,12 +12,13 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
+from meshwind.core.lists import spread
 from meshwind.mesh.io.cells.surface import surface_mesh
 from meshwind.mesh.io.face_lists import Lists, face_blocks
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.lines import Lines, NotANumber, without_comments
 from meshwind.mesh.io.ply.header import Element, Property
-from meshwind.mesh.io.ply.rows import Binary, BrokenRow, CutShort, Step, spread, walk
+from meshwind.mesh.io.ply.rows import Binary, BrokenRow, CutShort, Step, walk
 from meshwind.mesh.io.ply.text import list_length
 from meshwind.mesh.io.text import own_unit, plain_text
 
@@ -185,7 +186,7 @@ class _Data:
             wrong = np.union1d(wrong, np.flatnonzero(more > _MAX_COLOUR))
             if not len(wrong) and more.min(initial=0.0) >= 0.0:
                 length = corners.astype(np.int64)
-                return Lists(length, numbers[spread(first + 1, length, 1)]), count
+                return Lists(length, numbers[spread(first + 1, length)]), count
             wrong = np.union1d(wrong, np.flatnonzero(more < 0.0))
             if len(filled) == count:
                 face = int(wrong[0])
@@ -203,7 +204,7 @@ class _Data:
         except BrokenRow:
             raise self._cut_short() from None
         used = int(np.searchsorted(np.cumsum(sizes), walked.end)) + 1
-        return Lists(walked.sizes[0], numbers[spread(walked.begins[0], walked.sizes[0], 1)]), used
+        return Lists(walked.sizes[0], numbers[spread(walked.begins[0], walked.sizes[0])]), used
 
 
 def _binary(name: str, content: bytes, keyword: "re.Match[bytes]") -> FileMesh:

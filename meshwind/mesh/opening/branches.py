@@ -3,14 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import sparse
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import KDTree
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.mesh.geometry.areas_and_volumes import areas, loop_centroid, perimeter
+from meshwind.mesh.geometry.edge_graph import edge_graph
 from meshwind.mesh.geometry.mesh import Annulus
-from meshwind.mesh.geometry.topology import edges
 from meshwind.mesh.opening.choose_ends import position_text
 from meshwind.mesh.opening.legs import Leg, legs
 
@@ -63,11 +62,11 @@ class OpenRims:
     def of(vertices: Floats, faces: Ints, spare: list[Ints], ends: list[Ints], by_number: bool) -> "OpenRims":
         """Find the wide ones among the loops that are to be filled; `ends` are those that are kept."""
         shorter = min((perimeter(vertices, loop) for loop in ends), default=np.inf)
-        lengths = [(loop, perimeter(vertices, loop)) for loop in spare]
+        loops = [loop for loop in spare if perimeter(vertices, loop) >= _WIDE * shorter]
+        tubes = _on_tubes(vertices, faces, loops)
         wide = tuple(
-            WideRim(vertices[loop], length, loop_centroid(vertices, loop), _is_leg(vertices, faces, loop))
-            for loop, length in lengths
-            if length >= _WIDE * shorter
+            WideRim(vertices[loop], perimeter(vertices, loop), loop_centroid(vertices, loop), tube)
+            for loop, tube in zip(loops, tubes, strict=True)
         )
         return OpenRims(wide, shorter, by_number)
 
@@ -84,13 +83,11 @@ def branch_warnings(opened: Annulus, rims: OpenRims) -> tuple[str, ...]:
     """What to know of the legs of a part that is opened at its ends, and of its wide rims that are filled, in words."""
     found, mean = legs(opened)
     wide = [leg for leg in found if leg.girth >= _WIDE * min(rims.shorter, mean)]
-    at_tips = [any(_holds(leg, opened, rim) for leg in wide) for rim in rims.wide]
-    ends = [_Place(rim.centre, rim.length) for rim, tip in zip(rims.wide, at_tips, strict=True) if rim.tube or tip]
-    holes = [
-        _Place(rim.centre, rim.length) for rim, tip in zip(rims.wide, at_tips, strict=True) if not (rim.tube or tip)
-    ]
-    closed = [leg for leg in wide if not any(_holds(leg, opened, rim) for rim in rims.wide)]
-    tips = [_Place(leg.tip, leg.girth) for leg in closed]
+    held = [[_holds(leg, opened, rim) for rim in rims.wide] for leg in wide]
+    ends, holes = list[_Place](), list[_Place]()
+    for rim, of_legs in zip(rims.wide, np.array(held, dtype=bool).reshape(len(wide), len(rims.wide)).T, strict=True):
+        (ends if rim.tube or of_legs.any() else holes).append(_Place(rim.centre, rim.length))
+    tips = [_Place(leg.tip, leg.girth) for leg, at in zip(wide, held, strict=True) if not any(at)]
     diagonal = float(np.linalg.norm(np.ptp(opened.vertices, axis=0)))
     words = []
     if ends or tips:
@@ -134,13 +131,16 @@ def _holds(leg: Leg, opened: Annulus, rim: WideRim) -> bool:
     return bool((away == 0.0).mean() > _MOSTLY)
 
 
-def _is_leg(vertices: Floats, faces: Ints, loop: Ints) -> bool:
-    """Whether the surface beside a rim goes on as a tube: if so it has a cylinder's area, and more if it spreads."""
-    length = perimeter(vertices, loop)
-    reach = _REACH * length / (2.0 * np.pi)
-    ends = edges(faces).ends
-    step = np.linalg.norm(vertices[ends[:, 0]] - vertices[ends[:, 1]], axis=1)
-    graph = sparse.csr_array((step, (ends[:, 0], ends[:, 1])), shape=(len(vertices), len(vertices)))
-    away = dijkstra(graph, directed=False, indices=loop, min_only=True, limit=2.0 * reach)
-    near = away[faces].mean(axis=1) <= reach
-    return float(areas(vertices, faces)[near].sum()) < _LEG * reach * length
+def _on_tubes(vertices: Floats, faces: Ints, loops: list[Ints]) -> list[bool]:
+    """Whether the surface beside each rim goes on as a tube: if so it has a cylinder's area, and more if it spreads."""
+    if not loops:
+        return []
+    graph, area = edge_graph(vertices, faces), areas(vertices, faces)
+    found = []
+    for loop in loops:
+        length = perimeter(vertices, loop)
+        reach = _REACH * length / (2.0 * np.pi)
+        away = dijkstra(graph, indices=loop, min_only=True, limit=2.0 * reach)
+        near = away[faces].mean(axis=1) <= reach
+        found.append(float(area[near].sum()) < _LEG * reach * length)
+    return found

@@ -8,9 +8,9 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.mesh.geometry.areas_and_volumes import areas
+from meshwind.mesh.geometry.edge_graph import edge_graph
 from meshwind.mesh.geometry.mesh import Annulus
 from meshwind.mesh.geometry.prominence import saddles
-from meshwind.mesh.geometry.topology import edges
 
 _LONG = 1.2
 """Length of a leg over its radius from which on it is one.  Heads of hammers have 1.5, condyles and faces below 0.9."""
@@ -46,7 +46,7 @@ def legs(annulus: Annulus) -> tuple[list[Leg], float]:
     other rim as well: it has a prominence over the saddle behind it, where the ways past the leg meet again.  A bump
     has none, as the way over its top is the shorter one.
     """
-    surface = _Surface(annulus.vertices, annulus.faces, _steps(annulus))
+    surface = _Surface(annulus.vertices, annulus.faces, edge_graph(annulus.vertices, annulus.faces))
     first, second = (_tips(surface, *rims) for rims in (annulus.rims, annulus.rims[::-1]))
     found = list[Leg]()
     for leg in first[0]:
@@ -67,14 +67,6 @@ def _length(leg: Leg) -> float:
 
 def _overlap(leg: Leg, other: Leg) -> bool:
     return bool((leg.vertices & other.vertices).any())
-
-
-def _steps(annulus: Annulus) -> sparse.csr_array:
-    ends = edges(annulus.faces).ends
-    length = np.linalg.norm(annulus.vertices[ends[:, 0]] - annulus.vertices[ends[:, 1]], axis=1)
-    count = len(annulus.vertices)
-    both = np.concatenate([ends, ends[:, ::-1]])
-    return sparse.csr_array((np.tile(length, 2), (both[:, 0], both[:, 1])), shape=(count, count))
 
 
 def _tips(surface: _Surface, start: Ints, end: Ints) -> tuple[list[Leg], float]:

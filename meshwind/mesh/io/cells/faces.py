@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.core.cast import Bools, Ints
+from meshwind.core.lists import spread
 from meshwind.mesh.io.cells.kinds import POLYGONS, SECOND_ORDER_POLYGON, STRIP, Faces, faces_of, polygon_of
 
 
@@ -140,7 +141,7 @@ def _check(nodes: Ints, points: int) -> None:
 def _strips(sizes: Ints, nodes: Ints) -> Ints:
     """Triangles of strips: each node after the second makes one with the two before it, of alternating sense."""
     count = np.maximum(sizes - 2, 0)
-    step = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
-    at = np.repeat(np.cumsum(sizes) - sizes, count) + step
-    odd = step % 2
+    begins = np.cumsum(sizes) - sizes
+    at = spread(begins, count)
+    odd = (at - np.repeat(begins, count)) % 2
     return np.column_stack([nodes[at + odd], nodes[at + 1 - odd], nodes[at + 2]])

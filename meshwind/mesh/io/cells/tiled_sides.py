@@ -7,6 +7,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from meshwind.core.cast import Bools, Ints
+from meshwind.core.lists import spread
 from meshwind.mesh.io.cells.faces import FaceList
 
 _LARGE = 4
@@ -69,8 +70,7 @@ def _covered(sides: FaceList, large: Ints, small: Ints) -> Ints:
     first = np.cumsum(sides.sizes) - sides.sizes
     for polygon, face in ((polygons, polygons), (large, small)):
         size = sides.sizes[face]
-        step = np.arange(size.sum()) - np.repeat(np.cumsum(size) - size, size)
-        at = np.repeat(first[face], size) + step
+        at = spread(first[face], size)
         owner.append(np.repeat(polygon, size))
         low.append(np.minimum(sides.corners[at], after[at]))
         high.append(np.maximum(sides.corners[at], after[at]))

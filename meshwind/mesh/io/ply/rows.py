@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from meshwind.core.cast import Ints
+from meshwind.core.lists import spread
 from meshwind.mesh.io.face_lists import Lists
 from meshwind.mesh.io.ply.header import Element, Property
 
@@ -111,12 +112,6 @@ def _placed(steps: Sequence[Step], starts: Ints, ends: Ints, lengths: Ints, end:
             begins.append(place)
             place = place + step.width
     return Walk(begins, sizes, starts, end)
-
-
-def spread(begins: Ints, sizes: Ints, width: int) -> Ints:
-    """Positions of all numbers of lists that begin at some positions."""
-    step = np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes, sizes)
-    return np.repeat(begins, sizes) + step * width
 
 
 class Binary:

@@ -7,10 +7,11 @@ import numpy as np
 
 from meshwind.core.cast import Ints
 from meshwind.core.errors import BadInputError
+from meshwind.core.lists import spread
 from meshwind.mesh.io.face_lists import Lists
 from meshwind.mesh.io.lines import Lines, NotANumber
 from meshwind.mesh.io.ply.header import Element
-from meshwind.mesh.io.ply.rows import Columns, CutShort, Step, Table, spread, walk
+from meshwind.mesh.io.ply.rows import Columns, CutShort, Step, Table, walk
 
 
 class Text:
@@ -62,7 +63,7 @@ class Text:
         walked = walk(self._listed, element.rows, steps, at)
         columns: Columns = {}
         for p, begins, sizes in zip(element.properties, walked.begins, walked.sizes, strict=True):
-            values = self.values[spread(begins, sizes, 1)]
+            values = self.values[spread(begins, sizes)]
             columns.setdefault(p.name, Lists(sizes, values) if p.length_kind else values)
         return Table(columns, walked.starts, walked.end)
 

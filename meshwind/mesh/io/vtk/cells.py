@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.core.lists import spread
 from meshwind.mesh.io.cells.kinds import SIDES_OF_POLYHEDRA, SOLIDS, base_of
 from meshwind.mesh.io.cells.surface import CellBlock
 
@@ -180,8 +181,7 @@ def _polyhedra(grid: Any, shown: Bools) -> tuple[Ints, Ints, Ints]:
         raise ValueError("its polyhedra are damaged")
     start = (np.cumsum(sizes) - sizes)[which]
     taken = sizes[which]
-    step = np.arange(taken.sum()) - np.repeat(np.cumsum(taken) - taken, taken)
-    return taken, nodes[np.repeat(start, taken) + step], counts[shown]
+    return taken, nodes[spread(start, taken)], counts[shown]
 
 
 def _ghosts(data: Any, flags: int = _NOT_SHOWN) -> Bools | None:
