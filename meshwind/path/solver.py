@@ -38,6 +38,7 @@ class Solver:
     iterations: int
     final: bool = True
     equal_tension: bool = False
+    pace: float = 0.0
 
     @property
     def _limits(self) -> Limits:
@@ -89,7 +90,7 @@ class Solver:
         if self.friction.none and not self.equal_tension:
             parallel_for(relax_all, part.paths, 1, body, self._limits, resume, self.final, part)
         else:
-            rough = RoughBody(body, self.friction.table)
+            rough = RoughBody(body, self.friction.table, self.pace)
             parallel_for(relax_all_with_friction, part.paths, 1, rough, self._limits, resume, self.final, part)
         if before is not None and (rerun := part.status == NEEDS_TREE).any():
             for name in ("X", "uv", "touching", "anchor", "mode"):
