@@ -7,6 +7,7 @@ import numpy as np
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.threads import parallel_for
 from meshwind.path.kernels.refine import refine_all
+from meshwind.path.kernels.starting_curve import sample_all
 
 
 class Batch(NamedTuple):
@@ -74,6 +75,15 @@ class Batch(NamedTuple):
         fine.counters[:] = self.counters
         parallel_for(refine_all, self.paths, 64, self, fine)
         return fine
+
+    def curves_sampled(self) -> "Batch":
+        """The same with as many points on the starting curves as there are particles."""
+        last, points = self.starts.shape[1] - 1, self.particles
+        if last == points - 1:
+            return self
+        starts = np.empty((self.paths, points, 2))
+        parallel_for(sample_all, self.paths, 64, self.starts, starts)
+        return self._replace(starts=starts, anchor=self.anchor * ((points - 1) / last))
 
 
 _ALONG_PATH = ("starts", "X", "uv", "normal", "touching", "gap", "required", "anchor", "mode")

@@ -39,7 +39,7 @@ def solve_nested(
     if particles is None:
         return choose(solver, curves, accuracy)
     holds = np.zeros(len(curves)), np.zeros(len(curves))
-    batch = fresh(curves, particles)
+    batch = fresh(curves if solver.friction.none else resampled(curves, particles), particles)
     rest = np.arange(len(curves))
     if solver.friction.none:
         solver.solve_simple(batch)
@@ -49,7 +49,7 @@ def solve_nested(
     levels = np.array([halvings(curve, particles) for curve in curves[rest]], np.int64)
     for level in np.unique(levels):
         index = rest[levels == level]
-        work, found = solve_from_level(solver, batch.rows(index), int(level))
+        work, found = solve_from_level(solver, batch.rows(index)._replace(starts=curves[index]), int(level))
         batch.put(index, work)
         for which, each in zip(holds, found, strict=True):
             which[index] = each
@@ -62,11 +62,16 @@ def solve_from_level(solver: Solver, batch: Batch, level: int) -> tuple[Batch, t
     work = fresh(batch.starts, ((n - 1) >> level) + 1)
     work.counters[:] = batch.counters
     first = solver.coarse if level else solver
-    first.relax(work, resume=False)
-    holds = rescue(first, work)
+    if solver.friction.none:
+        first.relax(work, resume=False)
+        holds = rescue(first, work)
+    else:
+        rest = first.slide(work)
+        holds = rescue(first, work)
+        work = work._replace(starts=rest)
     for k in range(level - 1, -1, -1):
         work = ascend(solver.coarse if k else solver, work, ((n - 1) >> k) + 1)
-    return work, holds
+    return (work if solver.friction.none else work.curves_sampled()), holds
 
 
 def even_out(solver: Solver, batch: Batch) -> Batch:
@@ -138,7 +143,8 @@ def ascend(solver: Solver, batch: Batch, particles: int) -> Batch:
         anew = fresh(fine.starts[lost], particles)
         anew.counters[:] = fine.counters[lost]
         solver.relax(anew, resume=False)
-        search(solver, anew)
+        if solver.friction.none:
+            search(solver, anew)
         fine.put(lost, anew)
     return fine
 
@@ -151,7 +157,7 @@ def failing(batch: Batch) -> Bools:
 def rescue(solver: Solver, batch: Batch) -> tuple[Floats, Floats]:
     """Look for the equilibria that a direct start missed, and for what would hold the paths that have none."""
     coefficients = np.zeros(batch.paths)
-    turns = search(solver, batch)
+    turns = search(solver, batch) if solver.friction.none else np.zeros(batch.paths)
     index = np.flatnonzero(failing(batch))
     for mu in TRIES:
         rest = index[coefficients[index] == 0.0]
@@ -159,7 +165,7 @@ def rescue(solver: Solver, batch: Batch) -> tuple[Floats, Floats]:
             continue
         rougher = replace(solver, friction=uniform(mu))
         probe = fresh(batch.starts[rest], batch.particles)
-        rougher.relax(probe, resume=False)
+        rougher.slide(probe)
         batch.counters[rest] += probe.counters
         coefficients[rest[~failing(probe)]] = mu
     return turns, coefficients

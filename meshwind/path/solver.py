@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshwind.core.cast import Ints
+from meshwind.core.cast import Floats, Ints
 from meshwind.core.threads import parallel_for
 from meshwind.path.batch import Batch, fresh
 from meshwind.path.friction import Friction
@@ -13,6 +13,7 @@ from meshwind.path.kernels.coulomb import RoughBody
 from meshwind.path.kernels.lay import solve_without_friction
 from meshwind.path.kernels.relax import relax_all
 from meshwind.path.kernels.relax_with_friction import relax_all_with_friction
+from meshwind.path.kernels.slide import slide_all
 from meshwind.path.kernels.state import NEEDS_TREE, Limits
 from meshwind.surface.surface import Surface
 from meshwind.surface.tree import Body
@@ -38,7 +39,6 @@ class Solver:
     iterations: int
     final: bool = True
     equal_tension: bool = False
-    pace: float = 0.0
 
     @property
     def _limits(self) -> Limits:
@@ -79,6 +79,27 @@ class Solver:
         lifted = low[batch.status[low] == NEEDS_TREE]
         self._relax(batch, np.sort(np.concatenate([np.flatnonzero(aloft), lifted])), resume, tree=True)
 
+    def slide(self, batch: Batch) -> Floats:
+        """Let a batch slide under friction from its starting curves to rest; returns the curves (p, n, 2) it rests on.
+
+        Those are what friction holds it to from then on.
+        """
+        rest = np.empty_like(batch.uv)
+        surface = self.surface.centred
+        index = np.arange(batch.paths)
+        for body in (surface.body_without_tree, surface.body) if "tree" not in vars(surface) else (surface.body,):
+            part = fresh(batch.starts[index], batch.particles)
+            part.counters[:] = batch.counters[index]
+            lain = np.empty_like(part.uv)
+            rough = RoughBody(body, self.friction.table, 0.0)
+            parallel_for(slide_all, part.paths, 1, rough, self._limits, part, lain)
+            batch.put(index, part)
+            rest[index] = lain
+            index = index[part.status == NEEDS_TREE]
+            if not len(index):
+                break
+        return rest
+
     def _relax(self, batch: Batch, index: Ints, resume: bool, tree: bool) -> None:
         """Relax some of the paths; those that turn out to need a tree, and have none, are left as they were."""
         if not len(index):
@@ -90,7 +111,7 @@ class Solver:
         if self.friction.none and not self.equal_tension:
             parallel_for(relax_all, part.paths, 1, body, self._limits, resume, self.final, part)
         else:
-            rough = RoughBody(body, self.friction.table, self.pace)
+            rough = RoughBody(body, self.friction.table, 0.0)
             parallel_for(relax_all_with_friction, part.paths, 1, rough, self._limits, resume, self.final, part)
         if before is not None and (rerun := part.status == NEEDS_TREE).any():
             for name in ("X", "uv", "touching", "anchor", "mode"):

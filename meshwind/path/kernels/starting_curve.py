@@ -25,6 +25,16 @@ def curve_at(curve, s):
     return u, v, du, dv
 
 
+@njit(nogil=True, cache=True)
+def sample_all(first, last, curves, out):
+    """Write points of curves first to last, evenly by their samples, into out (p, n, 2)."""
+    n = out.shape[1]
+    for p in range(first, last):
+        scale = (curves.shape[1] - 1.0) / (n - 1.0)
+        for i in range(n):
+            out[p, i, 0], out[p, i, 1], _, _ = curve_at(curves[p], scale * i)
+
+
 @njit(inline="always", cache=True)
 def catmull_rom(curve, k, m, a, x):
     """Coordinate a, and its derivative, at share x from sample k of m to the next."""
