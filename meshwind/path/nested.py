@@ -66,9 +66,9 @@ def solve_from_level(solver: Solver, batch: Batch, level: int) -> tuple[Batch, t
         first.relax(work, resume=False)
         holds = rescue(first, work)
     else:
-        rest = first.slide(work)
+        slid = first.slide(work)
         holds = rescue(first, work)
-        work = work._replace(starts=rest)
+        work = slid
     for k in range(level - 1, -1, -1):
         work = ascend(solver.coarse if k else solver, work, ((n - 1) >> k) + 1)
     return (work if solver.friction.none else work.curves_sampled()), holds

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshwind.core.cast import Floats, Ints
+from meshwind.core.cast import Ints
 from meshwind.core.threads import parallel_for
 from meshwind.path.batch import Batch, fresh
 from meshwind.path.friction import Friction
@@ -79,26 +79,30 @@ class Solver:
         lifted = low[batch.status[low] == NEEDS_TREE]
         self._relax(batch, np.sort(np.concatenate([np.flatnonzero(aloft), lifted])), resume, tree=True)
 
-    def slide(self, batch: Batch) -> Floats:
-        """Let a batch slide under friction from its starting curves to rest; returns the curves (p, n, 2) it rests on.
+    def slide(self, batch: Batch) -> Batch:
+        """The batch at rest after it has slid, under friction, from its starting curves.
 
-        Those are what friction holds it to from then on.
+        Its starting curves are then those that friction holds it to from then on.
         """
-        rest = np.empty_like(batch.uv)
         surface = self.surface.centred
+        held, own = np.empty_like(batch.uv), np.zeros(batch.paths, np.bool_)
         index = np.arange(batch.paths)
-        for body in (surface.body_without_tree, surface.body) if "tree" not in vars(surface) else (surface.body,):
+        for body in (surface.body,) if "tree" in vars(surface) else (surface.body_without_tree, surface.body):
             part = fresh(batch.starts[index], batch.particles)
             part.counters[:] = batch.counters[index]
-            lain = np.empty_like(part.uv)
+            curves, same = np.zeros_like(part.uv), np.zeros(part.paths, np.bool_)
             rough = RoughBody(body, self.friction.table, 0.0)
-            parallel_for(slide_all, part.paths, 1, rough, self._limits, part, lain)
+            parallel_for(slide_all, part.paths, 1, rough, self._limits, part, curves, same)
             batch.put(index, part)
-            rest[index] = lain
+            held[index], own[index] = curves, same
             index = index[part.status == NEEDS_TREE]
             if not len(index):
                 break
-        return rest
+        if own.all():
+            return batch
+        known = batch.curves_sampled()
+        held[own] = known.starts[own]
+        return known._replace(starts=held, anchor=np.where(own[:, None], known.anchor, batch.anchor))
 
     def _relax(self, batch: Batch, index: Ints, resume: bool, tree: bool) -> None:
         """Relax some of the paths; those that turn out to need a tree, and have none, are left as they were."""
