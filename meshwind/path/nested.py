@@ -65,13 +65,23 @@ def solve_from_level(solver: Solver, batch: Batch, level: int) -> tuple[Batch, t
     if solver.friction.none:
         first.relax(work, resume=False)
         holds = rescue(first, work)
-    else:
-        slid = first.slide(work)
-        holds = rescue(first, work)
-        work = slid
+        return climb(solver, work, n, level), holds
+    held, own = first.slide(work)
+    holds = rescue(first, work)
+    done = fresh(work.starts, n).curves_sampled()
+    for which, curves in ((own, work.starts), (~own, held)):
+        index = np.flatnonzero(which)
+        if len(index):
+            part = climb(solver, work.rows(index)._replace(starts=curves[index]), n, level)
+            done.put(index, part.curves_sampled())
+    return done, holds
+
+
+def climb(solver: Solver, batch: Batch, particles: int, level: int) -> Batch:
+    """The batch, from the answer with the particles halved `level` times, with all of them."""
     for k in range(level - 1, -1, -1):
-        work = ascend(solver.coarse if k else solver, work, ((n - 1) >> k) + 1)
-    return (work if solver.friction.none else work.curves_sampled()), holds
+        batch = ascend(solver.coarse if k else solver, batch, ((particles - 1) >> k) + 1)
+    return batch
 
 
 def even_out(solver: Solver, batch: Batch) -> Batch:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshwind.core.cast import Ints
+from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.threads import parallel_for
 from meshwind.path.batch import Batch, fresh
 from meshwind.path.friction import Friction
@@ -79,10 +79,11 @@ class Solver:
         lifted = low[batch.status[low] == NEEDS_TREE]
         self._relax(batch, np.sort(np.concatenate([np.flatnonzero(aloft), lifted])), resume, tree=True)
 
-    def slide(self, batch: Batch) -> Batch:
-        """The batch at rest after it has slid, under friction, from its starting curves.
+    def slide(self, batch: Batch) -> tuple[Floats, Bools]:
+        """Let a batch slide under friction from its starting curves to rest, in place.
 
-        Its starting curves are then those that friction holds it to from then on.
+        Returns the curves (p, n, 2) that friction holds the paths to from then on, with a sample for each particle, and
+        for which (p,) that is the starting curve itself; anchors are in samples of that curve.
         """
         surface = self.surface.centred
         held, own = np.empty_like(batch.uv), np.zeros(batch.paths, np.bool_)
@@ -98,11 +99,7 @@ class Solver:
             index = index[part.status == NEEDS_TREE]
             if not len(index):
                 break
-        if own.all():
-            return batch
-        known = batch.curves_sampled()
-        held[own] = known.starts[own]
-        return known._replace(starts=held, anchor=np.where(own[:, None], known.anchor, batch.anchor))
+        return held, own
 
     def _relax(self, batch: Batch, index: Ints, resume: bool, tree: bool) -> None:
         """Relax some of the paths; those that turn out to need a tree, and have none, are left as they were."""
