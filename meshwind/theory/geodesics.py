@@ -92,9 +92,18 @@ with which the springs press it on the surface::
 
 Departure in meshwind: only `meshwind.methods` uses (4.19).  It is not Coulomb's law, because the implicit step has
 spread every force over the neighbours before it is scaled, so that particles stick too early or too late and the state
-at rest need not meet (3.12); and it resists motion along the fibre as well, against the constant tension of (3.4).  The
-solver instead finds the state that meets (3.12) at every particle: a touching particle is stuck, and stays on the
-starting curve, or slips, and then friction of the size mu N acts across the fibre against the slip.
+at rest need not meet (3.12); and it resists motion along the fibre as well, against the constant tension of (3.4).
+
+The solver lets the fibre slide instead.  Overdamped and of constant tension, it moves across itself at the rate ::
+
+    w = sign(kg) max(|kg| - mu kn, 0)
+
+where it touches, until it is at rest, and (3.12) holds at every particle.  Where it comes to rest depends on its way
+there: a particle that has slid one way may be drawn back when the rest of the fibre has straightened, or be held where
+it stopped.  Each step in time is implicit: the fibre is brought to equilibrium with friction that acts from where it
+lay before, and with a force d / t against a slip d in a step of length t.  Within it a touching particle is stuck, and
+stays where it lay, or slips, and then friction of the size mu N acts across the fibre against the slip.  Waves die out
+in a time of their length squared, so the steps grow by a constant factor.
 `meshwind.path.kernels.coulomb` states the equations that it solves.
 
 Figures
