@@ -190,7 +190,7 @@ def line_search(rough, fibre, trial, work, count, start, direction, counters):
             continue
         then, length = energy(trial.state.X)
         price = merit_after(
-            then, work.system.x, step, fibre.grip, trial.grip.mode, inner, work.balance, rough.pace, count
+            then, work.system.x, step, fibre.grip, trial.grip.mode, inner[:count], work.balance, rough.pace
         )
         # below round-off the merit cannot judge a step, and Newton's is right
         blind = slope <= BLIND_SLOPE * start.energy and price <= start.merit * (1.0 + BLIND_RISE)
@@ -214,9 +214,9 @@ def merit(now, grip, inner, balance, pace, count):
 
 
 @njit(cache=True)
-def merit_after(then, move, step, grip, trial_mode, inner, balance, pace, count):
+def merit_after(then, move, step, grip, trial_mode, inner, balance, pace):
     """The merit after a step, E being `then`, with N and the excess F . t - R_t as they were before it."""
-    for c in range(count):
+    for c in range(len(inner)):
         i = inner[c]
         then += step * move[c, 0] * balance.excess[i]
         if slips(grip.mode[i]) and trial_mode[i] != STUCK:

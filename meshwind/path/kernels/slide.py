@@ -13,7 +13,7 @@ from meshwind.core.vectors import TINY
 from meshwind.path.kernels.coulomb import STUCK, Fibre, Grip, RoughBody
 from meshwind.path.kernels.grip import attach_to_curve, hold_where_it_lies
 from meshwind.path.kernels.relax_with_friction import relax_with_friction
-from meshwind.path.kernels.state import NEEDS_TREE, STALLED, blank, copy, energy, state_of
+from meshwind.path.kernels.state import NEEDS_TREE, STALLED, Limits, blank, copy, energy, state_of
 
 FIRST, GROWTH = 1e-3, 1.6
 """Length of the first increment, in units of the fibre's length squared over its tension's mobility, and the factor
@@ -22,11 +22,15 @@ LATE = 0.1
 """Time from which on a fibre that moves little is at rest: its longest wave dies out in this time."""
 AT_REST = 2e-6
 """Largest move within an increment, over the fibre's length, of a fibre at rest."""
+FIRM = 2.0
+"""Friction that all but holds the fibre to its starting curve while it lifts off hollows."""
 SAME = 3e-4
 """Distance, over the length, up to which friction from an earlier curve leads to the same place of rest."""
-MOST = 60
+ROUNDS, BALANCE = 16, 1e-6
+"""Maximum number of iterations of an increment before a shorter one is tried, and the unbalanced force it leaves."""
+MOST = 120
 """Maximum number of increments."""
-SHORTER, SHORTEST = 0.25, 1e-6
+SHORTER, SHORTEST = 0.3, 1e-7
 """Factor of an increment that fails, and the shortest that is tried."""
 
 
@@ -45,7 +49,7 @@ def slide_all(first, last, rough, limits, batch, held, own):
         state, grip = state_of(batch, p, frames), Grip(batch.anchor[p], offset, batch.mode[p])
         attach_to_curve(rough.body.spline, Fibre(state, grip, start), counters)
         residual, status, steps = slide(rough, limits, state, grip, start, lain, counters)
-        own[p] = False
+        own[p], held[p] = False, lain[steps]
         if status not in (NEEDS_TREE, STALLED):
             residual, status, k = settle(rough, limits, state, grip, start, lain, steps, counters)
             own[p] = k == 0
@@ -62,6 +66,7 @@ def slide(rough, limits, state, grip, start, lain, counters):
     n = len(state.X)
     before = blank(n)
     curve = start
+    rough_limits = Limits(limits.pull_off, max(limits.tolerance, BALANCE), ROUNDS)
     time, steps = FIRST, 0
     lain[0] = state.uv
     residual, status = np.inf, STALLED
@@ -69,7 +74,7 @@ def slide(rough, limits, state, grip, start, lain, counters):
         copy(state, before)
         pace = 1.0 / (time * (n - 1) ** 2)
         now = RoughBody(rough.body, rough.friction, pace)
-        residual, status = relax_with_friction(now, limits, Fibre(state, grip, curve), counters)
+        residual, status = relax_with_friction(now, rough_limits, Fibre(state, grip, curve), counters)
         if status == NEEDS_TREE:
             break
         if status == STALLED:
@@ -77,6 +82,17 @@ def slide(rough, limits, state, grip, start, lain, counters):
             time *= SHORTER
             if time < SHORTEST:
                 break
+            if steps == 0:  # hollows are bridged in no time: first of all, on a curve that friction holds
+                grip.mode[:] = np.int8(STUCK)
+                grip.offset[:] = 0.0
+                for i in range(n):
+                    grip.anchor[i] = (len(curve) - 1.0) * i / (n - 1.0)
+                firm = RoughBody(rough.body, np.full((1, 1), FIRM), 0.0)
+                residual, status = relax_with_friction(firm, limits, Fibre(state, grip, curve), counters)
+                if status == NEEDS_TREE:
+                    break
+                steps += 1
+                lain[steps] = state.uv
         else:
             steps += 1
             lain[steps] = state.uv

@@ -1,0 +1,141 @@
+"""Where a fibre comes to rest under friction: against an explicit slide in time that shares no code with the solver."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+import meshwind as mw
+from meshwind.core.cast import Floats
+from meshwind.path import Paths
+
+DATA = Path(__file__).parents[1] / "data"
+Shape = Callable[[Floats, Floats], Floats]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A smooth shape, where the fibre starts and ends, the wave of its starting curve in v, and the friction."""
+
+    shape: Shape
+    ends: tuple[tuple[float, float], tuple[float, float]]
+    wave: float
+    mu: float
+
+    def start(self, count: int) -> Floats:
+        t = np.linspace(0.0, 1.0, count)
+        (a, b), (c, d) = self.ends
+        return np.column_stack([a + t * (c - a), b + t * (d - b) + self.wave * np.sin(3.0 * np.pi * t)])
+
+
+def torus(u: Floats, v: Floats) -> Floats:
+    t = 2.0 * np.pi * u
+    ring = 3.0 + np.cos(t)
+    return np.stack([ring * np.cos(1.4 * v), ring * np.sin(1.4 * v), -np.sin(t)], axis=-1)
+
+
+def ellipsoid(u: Floats, v: Floats) -> Floats:
+    t, p = 2.0 * np.pi * u, 0.6 + 2.0 * v
+    return np.stack([1.3 * np.sin(p) * np.cos(t), 0.8 * np.sin(p) * np.sin(t), -1.6 * np.cos(p)], axis=-1)
+
+
+def barrel(u: Floats, v: Floats) -> Floats:
+    t, r = 2.0 * np.pi * u, 1.0 - 0.3 * (2.0 * v - 1.0) ** 2
+    return np.stack([r * np.cos(t), r * np.sin(t), 2.5 * v], axis=-1)
+
+
+def cone(u: Floats, v: Floats) -> Floats:
+    t, r = 2.0 * np.pi * u, 1.0 - 0.6 * v
+    return np.stack([r * np.cos(t), r * np.sin(t), 2.0 * v], axis=-1)
+
+
+CASES = {
+    "torus": Case(torus, ((-0.2, 0.1), (0.22, 0.9)), 0.1, 0.1),
+    "ellipsoid": Case(ellipsoid, ((0.0, 0.1), (0.4, 0.75)), 0.0, 0.08),
+    "barrel": Case(barrel, ((0.0, 0.15), (0.6, 0.85)), 0.1, 0.06),
+    "cone": Case(cone, ((0.0, 0.1), (0.55, 0.25)), 0.0, 0.15),
+}
+
+
+def evenly(uv: Floats, points: Floats) -> Floats:
+    """The places of as many particles, evenly by length."""
+    far = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    goal = np.linspace(0.0, far[-1], len(uv))
+    return np.column_stack([np.interp(goal, far, uv[:, k]) for k in range(2)])
+
+
+@cache
+def slid(name: str, count: int = 61) -> Floats:
+    """Particles (n, 3) at rest: each moves across the fibre at the rate |kg| - mu kn, by short explicit steps."""
+    case = CASES[name]
+    uv = case.start(801)
+    uv = uv[np.searchsorted(np.linspace(0, 1, 801), np.linspace(0, 1, count))]
+    uv = evenly(evenly(uv, case.shape(*uv.T)), case.shape(*evenly(uv, case.shape(*uv.T)).T))
+    step, eps = 0.0, 1e-5
+    for turn in range(40_000):
+        points = case.shape(*uv.T)
+        chord = np.diff(points, axis=0)
+        size = np.linalg.norm(chord, axis=1)
+        step = step or 0.3 * float(size.mean()) ** 2
+        u, v = uv[1:-1].T
+        su = (case.shape(u + eps, v) - case.shape(u - eps, v)) / (2.0 * eps)
+        sv = (case.shape(u, v + eps) - case.shape(u, v - eps)) / (2.0 * eps)
+        normal = np.cross(su, sv)
+        normal /= np.linalg.norm(normal, axis=1)[:, None]
+        along = chord[1:] + chord[:-1]
+        across = np.cross(normal, along)
+        across /= np.linalg.norm(across, axis=1)[:, None]
+        turned = (chord[1:] / size[1:, None] - chord[:-1] / size[:-1, None]) / (0.5 * (size[1:] + size[:-1]))[:, None]
+        side, press = (turned * across).sum(axis=1), np.maximum(-(turned * normal).sum(axis=1), 0.0)
+        rate = np.sign(side) * np.maximum(np.abs(side) - case.mu * press, 0.0)
+        if turn % 200 == 199 and np.abs(rate).max() < 3e-4 * press.max():
+            break
+        move = step * rate[:, None] * across
+        e, f, g = (su * su).sum(axis=1), (su * sv).sum(axis=1), (sv * sv).sum(axis=1)
+        a, b = (su * move).sum(axis=1), (sv * move).sum(axis=1)
+        uv[1:-1] += np.column_stack([g * a - f * b, e * b - f * a]) / (e * g - f * f)[:, None]
+        if turn % 50 == 49:
+            uv = evenly(uv, case.shape(*uv.T))
+    return case.shape(*uv.T)
+
+
+def wound(name: str, particles: int) -> Paths:
+    case = CASES[name]
+    surface = mw.shapes.parametric(case.shape, (192, 128))
+    return mw.solve(surface, *([end] for end in case.ends), particles=particles, friction=case.mu,
+                    initial=case.start(401)[None])  # fmt: skip
+
+
+def apart(points: Floats, line: Floats) -> float:
+    """Largest distance of points from a polyline, over its length."""
+    share = np.linspace(0.0, 1.0, 11)[:, None, None]
+    dense = (line[:-1] + share * np.diff(line, axis=0)).reshape(-1, 3)
+    return float(cKDTree(dense).query(points)[0].max() / np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_fibre_rests_where_it_comes_to_rest_in_time(name: str) -> None:
+    paths = wound(name, 201)
+    assert paths.status[0] == mw.Status.CONVERGED and np.nanmax(paths.slip) <= CASES[name].mu * (1.0 + 1e-3)
+    assert apart(slid(name), paths.points[0]) <= 2e-3
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_it_rests_there_with_any_number_of_particles(name: str) -> None:
+    fine = wound(name, 1601)
+    for particles in (101, 193, 401, 769):
+        assert apart(wound(name, particles).points[0], fine.points[0]) <= 3e-4
+
+
+@pytest.mark.parametrize(("part", "turns", "mu"), [("vase.stl", 0.55, 0.2), ("bottle.obj", 0.3, 0.4)])
+def test_parts_have_one_answer(part: str, turns: float, mu: float) -> None:
+    surface = mw.fit(mw.flatten(mw.annulus(mw.read(DATA / part))), tolerance=1e-4)
+    ends = mw.families(surface, 3, turns)
+    found = [mw.solve(surface, ends.start, ends.end, particles=n, friction=mu) for n in (401, 101, 193, 769)]
+    for other in found[1:]:
+        assert np.array_equal(other.status, found[0].status) and (other.status == 0).all()
+        assert max(apart(*both) for both in zip(other.points, found[0].points, strict=True)) <= 1e-3
