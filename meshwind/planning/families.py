@@ -3,20 +3,15 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import TINY
 from meshwind.path.solve import check_count
-from meshwind.surface.evaluate import SU
 from meshwind.surface.grid import mean_speeds
+from meshwind.surface.rims import rim_parameters
 from meshwind.surface.surface import Surface
 
-_SAMPLES = 16
-"""Samples of the rim's speed per span: its length and points on it are then exact to round-off's square root."""
-_NEWTON_STEPS = 4
-"""Newton's steps on a smooth growing function from a start good to 1e-4: convergence is quadratic."""
 _SPEED_SAMPLES = 32
 """Points each way over which the mean speeds of the parameters are taken."""
 _STEEPEST = np.radians(80.0)
@@ -118,21 +113,3 @@ def square_revolutions(surface: Surface) -> float:
     """Revolutions of a winding at 45 degrees on average, so that the two families cross square: the best angle."""
     around, along = mean_speeds(surface, _SPEED_SAMPLES)
     return along / max(around, TINY)
-
-
-def rim_parameters(surface: Surface, v: float, share: Floats) -> Floats:
-    """The u on the rim v at shares (n,) of its length, both unwrapped, without a mean shift against each other."""
-    u = np.linspace(0.0, 1.0, _SAMPLES * surface.spans[0] + 1)
-    speed = np.linalg.norm(surface.frames(np.stack([u, np.full_like(u, v)], axis=1))[:, SU], axis=1)
-    speed[-1] = speed[0]
-    length = CubicSpline(u, speed, bc_type="periodic").antiderivative()
-    passed = length(u) / length(1.0)
-    ahead = CubicSpline(u, passed - u, bc_type="periodic")
-    shift = float(ahead.integrate(0.0, 1.0))
-    wanted = np.asarray(share) + shift
-    whole = np.floor(wanted)
-    rest = wanted - whole
-    at = np.interp(rest, passed, u)
-    for _ in range(_NEWTON_STEPS):
-        at -= (at + ahead(at) - rest) / (1.0 + ahead(at, 1))
-    return np.asarray(whole + at)

@@ -16,7 +16,7 @@ from meshwind.core.vectors import TINY
 from meshwind.path import Paths, Status, solve
 from meshwind.path.friction import Friction
 from meshwind.path.neighbours import apart
-from meshwind.planning.families import rim_parameters
+from meshwind.surface.rims import rim_parameters
 from meshwind.surface.surface import Surface
 
 _MAX_ROUNDS = 24
