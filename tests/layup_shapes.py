@@ -69,8 +69,6 @@ def drawn(surface: Surface, uv: Floats, family: ArrayLike) -> Paths:
         residual=frozen(np.zeros(p)),
         friction=0.0,
         counters=Counters(0, 0, 0, 0),
-        holding_turns=frozen(np.zeros(p)),
-        holding_friction=frozen(np.zeros(p)),
     )
 
 
@@ -114,8 +112,6 @@ def bridged(count: int = 16, revolutions: float = 0.25, particles: int = 201) ->
         on.residual,
         0.0,
         on.counters,
-        on.holding_turns,
-        on.holding_friction,
     )
 
 

@@ -7,9 +7,6 @@ from meshwind.core.units import reported_unit
 from meshwind.results.redesign_report_types import RedesignFigures, RedesignReport, RoundFigures
 from meshwind.results.report_types import Failure, PathsFigures, Report, SurfaceFigures
 
-_MAY_HOLD = " may hold it"
-"""How the part of a reason ends that is a path's own, as `Paths.advice` writes it."""
-
 
 def run_lines(report: Report) -> list[str]:
     """A run's report in a few lines; raises LookupError or TypeError where a figure is missing."""
@@ -21,7 +18,7 @@ def run_lines(report: Report) -> list[str]:
         *_surface(report["surface"], part["diagonal"], units),
         *_paths(report["paths"], units),
         *_layup(report, units),
-        *_not_converged(report["paths"]["not_converged"]),
+        *_not_converged(report["paths"]["not_converged"], report["paths"]["advice"]["text"]),
         *(f"repair    {act}" for act in part["repairs"]),
         *(note_line(note) for note in report["notes"]),
         "seconds   " + ", ".join(f"{stage} {value:.2f}" for stage, value in report["seconds"].items()),
@@ -86,25 +83,17 @@ def _layup(report: Report, units: str) -> list[str]:
     return lines
 
 
-def _not_converged(failures: Sequence[Failure]) -> list[str]:
-    """One line per status, with the number of paths that have it and the first ones' numbers."""
+def _not_converged(failures: Sequence[Failure], holds: str) -> list[str]:
+    """One line per status, with the number of paths that have it and the first ones' numbers; and what holds all."""
     kinds: dict[str, list[Failure]] = {}
     for failure in failures:
         kinds.setdefault(failure["name"], []).append(failure)
-    return [
-        f"warning   {len(alike)} path{'s' * (len(alike) > 1)} not at rest: {_advice(alike)} "
-        f"(path {', '.join(str(each['path']) for each in alike[:8])}{', ...' * (len(alike) > 8)})"
-        for alike in kinds.values()
-    ]
-
-
-def _advice(alike: Sequence[Failure]) -> str:
-    """Reason and advice of paths of one status; what may hold a path is its own."""
-    reasons = dict.fromkeys(each["why"] for each in alike)
-    if len(reasons) == 1:
-        return next(iter(reasons))
-    shared = min((why.rpartition("; ")[0] if why.endswith(_MAY_HOLD) else why for why in reasons), key=len)
-    return f"{shared}; report.json says what may hold each"
+    lines = []
+    for alike in kinds.values():
+        why = alike[0]["meaning"] if holds else alike[0]["why"]
+        numbers = ", ".join(str(each["path"]) for each in alike[:8]) + ", ..." * (len(alike) > 8)
+        lines.append(f"warning   {len(alike)} path{'s' * (len(alike) > 1)} not at rest: {why} (path {numbers})")
+    return [*lines, f"advice    {holds}"] if holds else lines
 
 
 def redesign_lines(report: RedesignReport) -> list[str]:

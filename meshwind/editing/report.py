@@ -1,6 +1,7 @@
 """The report of a redesign."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -90,10 +91,11 @@ def _round(stage: int, number: int, each: Round) -> RoundFigures:
 
 
 def _proof(proof: Proof) -> WoundFigures:
+    paths = replace(proof.paths, asked=None)  # other revolutions would lead to another edit: none are advised
     return {
         "control_points": list(proof.surface.control_points.shape[:2]),
         "converged": int((proof.paths.status == Status.CONVERGED).sum()),
-        "not_converged": failures(proof.paths),
+        "not_converged": failures(paths),
         "bridged": proof.bridged,
         "max_gap": proof.gap,
         "threshold": proof.threshold,

@@ -18,8 +18,6 @@ from meshwind.path.solver import Solver
 REST, CUT = int(Status.CONVERGED), int(Status.TOO_COARSE)
 MOST = 6401
 """Particles of the highest level where their number is left open."""
-TRIES = (0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0)
-"""Coefficients of friction that are tried on a path that slides off."""
 RAMP = (6.0, 4.0, 3.0, 2.2, 1.7, 1.4, 1.2, 1.08, 1.0)
 """Factors of friction through which a path is lowered that does not settle directly."""
 RISES = 8
@@ -28,53 +26,42 @@ SHARES = 8
 """Steps in which the turn of a path that slides off is built up."""
 
 
-def solve_nested(
-    solver: Solver, curves: Floats, particles: int | None, accuracy: float
-) -> tuple[Batch, tuple[Floats, Floats]]:
-    """Bring paths to rest from their starting curves (p, k, 2), with `particles` or as many as `accuracy` needs.
-
-    Returns the batch, and for the paths that do not hold the change of u, and the friction, that would hold them (0
-    where none does).
-    """
+def solve_nested(solver: Solver, curves: Floats, particles: int | None, accuracy: float) -> Batch:
+    """Bring paths to rest from their starting curves (p, k, 2), with `particles` or as many as `accuracy` needs."""
     if particles is None:
         return choose(solver, curves, accuracy)
-    holds = np.zeros(len(curves)), np.zeros(len(curves))
     batch = fresh(curves if solver.friction.none else resampled(curves, particles), particles)
     rest = np.arange(len(curves))
     if solver.friction.none:
         solver.solve_simple(batch)
         rest = np.flatnonzero(failing(batch))
         if not len(rest) and not (batch.status == CUT).any():
-            return batch, holds
+            return batch
     levels = np.array([halvings(curve, particles) for curve in curves[rest]], np.int64)
     for level in np.unique(levels):
         index = rest[levels == level]
-        work, found = solve_from_level(solver, batch.rows(index)._replace(starts=curves[index]), int(level))
-        batch.put(index, work)
-        for which, each in zip(holds, found, strict=True):
-            which[index] = each
-    return even_out(solver, batch), holds
+        batch.put(index, solve_from_level(solver, batch.rows(index)._replace(starts=curves[index]), int(level)))
+    return even_out(solver, batch)
 
 
-def solve_from_level(solver: Solver, batch: Batch, level: int) -> tuple[Batch, tuple[Floats, Floats]]:
-    """Solve a batch anew, at first with its particles halved `level` times; returns what `solve_nested` does."""
+def solve_from_level(solver: Solver, batch: Batch, level: int) -> Batch:
+    """Solve a batch anew, at first with its particles halved `level` times."""
     n = batch.particles
     work = fresh(batch.starts, ((n - 1) >> level) + 1)
     work.counters[:] = batch.counters
     first = solver.coarse if level else solver
     if solver.friction.none:
         first.relax(work, resume=False)
-        holds = rescue(first, work)
-        return climb(solver, work, n, level), holds
+        search(first, work)
+        return climb(solver, work, n, level)
     held, own = first.slide(work)
-    holds = rescue(first, work)
     done = fresh(work.starts, n).curves_sampled()
     for which, curves in ((own, work.starts), (~own, held)):
         index = np.flatnonzero(which)
         if len(index):
             part = climb(solver, work.rows(index)._replace(starts=curves[index]), n, level)
             done.put(index, part.curves_sampled())
-    return done, holds
+    return done
 
 
 def climb(solver: Solver, batch: Batch, particles: int, level: int) -> Batch:
@@ -104,9 +91,9 @@ def even_out(solver: Solver, batch: Batch) -> Batch:
     return batch
 
 
-def choose(solver: Solver, curves: Floats, accuracy: float) -> tuple[Batch, tuple[Floats, Floats]]:
+def choose(solver: Solver, curves: Floats, accuracy: float) -> Batch:
     """As `solve_nested`, with particles doubled until the estimated relative error of lengths is below `accuracy`."""
-    batch, holds = solve_nested(solver, curves, int(fewest(curves).max()) + 1, accuracy)
+    batch = solve_nested(solver, curves, int(fewest(curves).max()) + 1, accuracy)
     length = lengths(batch)
     while batch.particles < MOST:
         batch = even_out(solver, ascend(solver, batch, 2 * batch.particles - 1))
@@ -119,7 +106,7 @@ def choose(solver: Solver, curves: Floats, accuracy: float) -> tuple[Batch, tupl
         # second order: a third of the last change is what is left
         if np.all(np.abs(length - before)[done] <= 3.0 * accuracy * length[done]):
             break
-    return batch, holds
+    return batch
 
 
 def fewest(curves: Floats) -> Ints:
@@ -164,39 +151,19 @@ def failing(batch: Batch) -> Bools:
     return np.asarray((batch.status != REST) & (batch.status != CUT))
 
 
-def rescue(solver: Solver, batch: Batch) -> tuple[Floats, Floats]:
-    """Look for the equilibria that a direct start missed, and for what would hold the paths that have none."""
-    coefficients = np.zeros(batch.paths)
-    turns = search(solver, batch) if solver.friction.none else np.zeros(batch.paths)
-    index = np.flatnonzero(failing(batch))
-    for mu in TRIES:
-        rest = index[coefficients[index] == 0.0]
-        if mu <= solver.friction.largest or not len(rest):
-            continue
-        rougher = replace(solver, friction=uniform(mu))
-        probe = fresh(batch.starts[rest], batch.particles)
-        rougher.slide(probe)
-        batch.counters[rest] += probe.counters
-        coefficients[rest[~failing(probe)]] = mu
-    return turns, coefficients
-
-
-def search(solver: Solver, batch: Batch) -> Floats:
-    """Try the paths that are not at rest in other ways, in place; returns the change of u that holds, 0 if unknown."""
-    turns = np.zeros(batch.paths)
+def search(solver: Solver, batch: Batch) -> None:
+    """Look for equilibria that a direct start missed: try the paths that are not at rest in other ways, in place."""
     others = (wind_up, wind_back) if solver.friction.none else (from_smooth, from_rough)
     for start in (from_few, from_back, *others):
         index = np.flatnonzero(failing(batch))
         if len(index):
-            work, held = start(solver, batch.rows(index))
-            turns[index] = np.maximum(turns[index], held)
+            work = start(solver, batch.rows(index))
             batch.counters[index] = work.counters
             done = np.flatnonzero(~failing(work))
             batch.put(index[done], work.rows(done))
-    return turns
 
 
-def from_few(solver: Solver, part: Batch) -> tuple[Batch, Floats]:
+def from_few(solver: Solver, part: Batch) -> Batch:
     """Try again from the answer with half the particles, to which small dents are nothing."""
     n = part.particles
     few = fresh(part.starts, (n - 1) // 2 + 1)
@@ -208,10 +175,10 @@ def from_few(solver: Solver, part: Batch) -> tuple[Batch, Floats]:
     solver.relax(taut, resume=True)
     work.status[:] = few.status
     work.put(found, taut)
-    return work, np.zeros(few.paths)
+    return work
 
 
-def from_smooth(solver: Solver, part: Batch) -> tuple[Batch, Floats]:
+def from_smooth(solver: Solver, part: Batch) -> Batch:
     """Try again from where the fibres would rest without friction: at once, and then by raising it step by step."""
     n = part.particles
     smooth = fresh(part.starts, n)
@@ -234,30 +201,29 @@ def from_smooth(solver: Solver, part: Batch) -> tuple[Batch, Floats]:
             replace(solver, friction=Friction(table), final=k == steps and solver.final).relax(work, resume=True)
         best.put(left, work)
         left = left[failing(work)]
-    return best, np.zeros(best.paths)
+    return best
 
 
-def from_back(solver: Solver, part: Batch) -> tuple[Batch, Floats]:
+def from_back(solver: Solver, part: Batch) -> Batch:
     """Try again with start and end exchanged: what a search meets first can decide where it ends."""
     work = part.reversed()
     solver.relax(work, resume=False)
-    return work.reversed(), np.zeros(work.paths)
+    return work.reversed()
 
 
-def from_rough(solver: Solver, part: Batch) -> tuple[Batch, Floats]:
+def from_rough(solver: Solver, part: Batch) -> Batch:
     """Try again from higher friction, lowered step by step, so that few particles let go at a time."""
     work = fresh(part.starts, part.particles)
     work.counters[:] = part.counters
     for k, factor in enumerate(RAMP):
         replace(solver, friction=Friction(solver.friction.table * factor)).relax(work, resume=k > 0)
-    return work, np.zeros(work.paths)
+    return work
 
 
-def wind_up(solver: Solver, part: Batch) -> tuple[Batch, Floats]:
+def wind_up(solver: Solver, part: Batch) -> Batch:
     """Build up the paths' turn in steps, each from the answer of the one before, as far as they hold.
 
-    Returns the batch at full turn, in which those that do not hold have no CONVERGED status, and the largest turn
-    that held.
+    Those that do not hold at full turn have no CONVERGED status.
     """
     n = part.particles
     count = part.paths
@@ -297,10 +263,9 @@ def wind_up(solver: Solver, part: Batch) -> tuple[Batch, Floats]:
         goal = np.minimum(share + step, 1.0)
     best.status[share < 1.0] = part.status[share < 1.0]
     best.counters[:] = work.counters
-    return best, share * np.abs(turn)
+    return best
 
 
-def wind_back(solver: Solver, part: Batch) -> tuple[Batch, Floats]:
+def wind_back(solver: Solver, part: Batch) -> Batch:
     """As `wind_up`, with the start turning and the end held: on a part that is not round the way there differs."""
-    work, held = wind_up(solver, part.reversed())
-    return work.reversed(), held
+    return wind_up(solver, part.reversed()).reversed()

@@ -1,6 +1,5 @@
 """Taut paths, each with its certificate."""
 
-import math
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
@@ -8,6 +7,8 @@ from typing import Any
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.path.advice import Advice, advise
+from meshwind.path.asked import Asked
 from meshwind.path.kernels.status import Status as Status
 from meshwind.path.length import fibre_lengths
 from meshwind.surface.surface import Surface
@@ -57,10 +58,8 @@ class Paths:
         Largest coefficient of friction on the surface.
     counters : Counters
         Surface evaluations, foot points, block solves and iterations of the whole batch.
-    holding_turns : ndarray of float, shape (p,)
-        For a path that is not in equilibrium: revolutions at which it would be, 0 where none were found.
-    holding_friction : ndarray of float, shape (p,)
-        For a path that is not in equilibrium: friction with which it would be, 0 where none was found.
+    asked : Asked or None
+        What `solve` was asked for, from which advice is tried; None for paths from elsewhere.
 
     Examples
     --------
@@ -86,8 +85,7 @@ class Paths:
     residual: Floats
     friction: float
     counters: Counters
-    holding_turns: Floats
-    holding_friction: Floats
+    asked: Asked | None = None
 
     def __len__(self) -> int:
         return len(self.points)
@@ -124,7 +122,8 @@ class Paths:
         3
         """
         kept: dict[str, Any] = {name: frozen(getattr(self, name)[chosen]) for name in self._arrays}
-        return replace(self, **kept)
+        asked = self.asked.rows(chosen) if self.asked is not None and len(self.asked) == len(self) else None
+        return replace(self, asked=asked, **kept)
 
     def joined(self, other: "Paths") -> "Paths":
         """Join two batches on one surface.
@@ -153,7 +152,8 @@ class Paths:
         }
         a, b = self.counters, other.counters
         total = Counters(*(getattr(a, field.name) + getattr(b, field.name) for field in fields(Counters)))
-        return replace(self, friction=max(self.friction, other.friction), counters=total, **both)
+        asked = None if self.asked is None else self.asked.joined(other.asked)
+        return replace(self, friction=max(self.friction, other.friction), counters=total, asked=asked, **both)
 
     @property
     def _arrays(self) -> list[str]:
@@ -168,11 +168,37 @@ class Paths:
         """
         return sharpest_turn(self.normal, self.on_surface)
 
-    def advice(self, path: int) -> str:
-        """Say what became of a path and, where it is not in equilibrium, what may help.
+    @cached_property
+    def holding(self) -> Advice:
+        """What holds all paths, where some are not in equilibrium: numbers that were tried with all of them.
 
-        The revolutions and the friction that are named held the path when it was tried with them, on a part with a
-        rough surface with fewer particles than its own: wind it again to see.
+        It is looked for when it is first asked for, which takes as long as winding the paths a few times.
+        """
+        if self.asked is None:
+            return Advice(len(self))
+        same = len(self.asked) == len(self)  # without the paths that were added to those asked for
+        status = self.status if same else np.full(len(self.asked), Status.STALLED)
+        return advise(self.surface, self.asked, status)
+
+    @property
+    def holding_turns(self) -> Floats:
+        """Revolutions (p,) that hold all paths, for those not in equilibrium; 0 for others, or where none are known."""
+        return self._of_failing("revolutions")
+
+    @property
+    def holding_friction(self) -> Floats:
+        """Friction (p,) that holds all paths, for those not in equilibrium; 0 for others, or where none is known."""
+        return self._of_failing("friction")
+
+    def _of_failing(self, name: str) -> Floats:
+        failing = self.status != Status.CONVERGED
+        return frozen(np.where(failing, getattr(self.holding, name) if failing.any() else 0.0, 0.0))
+
+    def advice(self, path: int) -> str:
+        """Say what became of a path and, where it is not in equilibrium, what holds all paths.
+
+        Every number that is named was tried with all paths, with everything else as it was asked for; where none was
+        found, or nothing is known of what was asked for, the line says what may help.
 
         Parameters
         ----------
@@ -192,20 +218,9 @@ class Paths:
         'taut equilibrium'
         """
         status = Status(int(self.status[path]))
-        ways = []
-        if status in (Status.CONVERGED, Status.TOO_COARSE):
+        if status == Status.CONVERGED or not self.holding.text:
             return status.advice
-        if self.holding_turns[path] > 0.0:
-            ways.append(f"{_below(self.holding_turns[path])} revolutions")
-        if self.holding_friction[path] > 0.0:
-            ways.append(f"friction {self.holding_friction[path]:g}")
-        return status.advice + (f"; {' or '.join(ways)} may hold it" if ways else "")
-
-
-def _below(turns: float) -> str:
-    """Revolutions to two digits, rounded down: more might not hold."""
-    step = 10.0 ** (math.floor(math.log10(turns)) - 1)
-    return f"{step * math.floor(turns / step + 1e-9):.2g}"
+        return f"{status.meaning}; {self.holding.text}"
 
 
 def converged_or_all(status: Ints, among: Bools | None = None) -> Bools:

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from meshwind.core.cast import Floats, floats, frozen, ints
 from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
+from meshwind.path.asked import Asked, Options
 from meshwind.path.batch import Batch
 from meshwind.path.friction import Friction, friction_of
 from meshwind.path.nested import solve_nested
@@ -150,14 +151,16 @@ def solve(  # noqa: PLR0913
     count = len(curves)
     sense = np.where(last[:, 0] >= first[:, 0], 1, -1) if family is None else ints(family, "family", count)
     solver = Solver(surface, friction_of(surface, friction), bridging, tolerance, iterations)
-    batch, holds = solve_nested(solver, curves, particles, accuracy)
-    return as_paths(solver, batch, sense, holds)
+    batch = solve_nested(solver, curves, particles, accuracy)
+    options = Options(solver.friction, particles, bridging, accuracy, tolerance, iterations)
+    given = None if initial is None else frozen(curves.copy())
+    asked = Asked(solve, frozen(first.copy()), frozen(last.copy()), frozen(sense.copy()), given, options)
+    return as_paths(solver, batch, sense, asked)
 
 
-def as_paths(solver: Solver, batch: Batch, sense: ArrayLike, holds: tuple[Floats, Floats] | None = None) -> Paths:
-    """The public form of a solved batch."""
+def as_paths(solver: Solver, batch: Batch, sense: ArrayLike, asked: Asked | None = None) -> Paths:
+    """The public form of a solved batch, with what was asked for where that is known."""
     total = batch.counters.sum(axis=0)
-    turns, coefficients = holds if holds is not None else (np.zeros(batch.paths), np.zeros(batch.paths))
     return Paths(
         surface=solver.surface,
         points=frozen(batch.X + solver.surface.middle),
@@ -171,6 +174,5 @@ def as_paths(solver: Solver, batch: Batch, sense: ArrayLike, holds: tuple[Floats
         residual=frozen(batch.residual),
         friction=solver.friction.largest,
         counters=Counters(*(int(total[k]) for k in range(4))),
-        holding_turns=frozen(turns),
-        holding_friction=frozen(coefficients),
+        asked=asked,
     )

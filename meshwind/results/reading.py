@@ -40,7 +40,7 @@ class Results:
     """Results of a run in `folder`: its paths on their fitted surface, and its report.
 
     The files lack some fields of `paths`: `residual` is the report's largest for paths at rest and infinite for
-    others, `holding_turns` and `holding_friction` are 0.
+    others, and nothing is known of what was asked for, so that their advice names no numbers.
     """
 
     folder: Path
@@ -227,7 +227,6 @@ def _paths(path: Path, surface: Surface, report: Report) -> Paths:
     status = lines.cell_data[schema.STATUS].astype(np.int64)
     worst = _under(report, "paths", "max_residual")
     residual = np.where(status == Status.CONVERGED, np.inf if worst is None else float(worst), np.inf)
-    nothing = frozen(np.zeros(len(sizes)))
     return Paths(
         surface=surface,
         points=frozen(lines.points.reshape(len(sizes), -1, 3)),
@@ -241,8 +240,6 @@ def _paths(path: Path, surface: Surface, report: Report) -> Paths:
         residual=frozen(residual),
         friction=float(_under(report, "winding", "friction") or 0.0),
         counters=_counters(report),
-        holding_turns=nothing,
-        holding_friction=nothing,
     )
 
 

@@ -28,6 +28,7 @@ from meshwind.results.layup_figures import (
     windability_figures,
 )
 from meshwind.results.report_types import (
+    AdviceFigures,
     Distances,
     Failure,
     FitFigures,
@@ -167,6 +168,7 @@ def _paths(paths: Paths) -> PathsFigures:
     return {
         "converged": figures.converged,
         "not_converged": failures(paths),
+        "advice": _advice(paths),
         "figures_over": figures.over,
         "length_total": figures.fibre_length,
         "bridged_fraction": figures.bridged_share,
@@ -185,13 +187,31 @@ def _paths(paths: Paths) -> PathsFigures:
 
 
 def failures(paths: Paths) -> list[Failure]:
-    """Paths that did not converge, each with the reason and what may hold it."""
+    """Paths that did not converge, each with the reason and what holds all of them."""
     return [_failure(paths, int(k)) for k in np.flatnonzero(paths.status != Status.CONVERGED)]
 
 
 def _failure(paths: Paths, path: int) -> Failure:
     status = Status(int(paths.status[path]))
-    return {"path": path, "status": int(status), "name": status.name.lower(), "why": paths.advice(path)}
+    return {
+        "path": path,
+        "status": int(status),
+        "name": status.name.lower(),
+        "meaning": status.meaning,
+        "why": paths.advice(path),
+    }
+
+
+def _advice(paths: Paths) -> AdviceFigures:
+    held = paths.holding
+    return {
+        "text": held.text,
+        "revolutions": held.revolutions or None,
+        "turns": held.turns or None,
+        "friction": held.friction or None,
+        "rougher": held.rougher or None,
+        "particles": held.particles or None,
+    }
 
 
 def _model(paths: Paths) -> ModelFigures:

@@ -88,12 +88,28 @@ class WindingFigures(TypedDict):
 
 
 class Failure(TypedDict):
-    """A path that did not converge: number, status, name of the status, and reason with what may hold the path."""
+    """A path that did not converge: number, status, its name and meaning, and the meaning with what holds all paths."""
 
     path: int
     status: int
     name: str
+    meaning: str
     why: str
+
+
+class AdviceFigures(TypedDict):
+    """What holds all paths, tried with all of them; None where none was found, or none was needed.
+
+    text: all of it in a sentence, "" for nothing; turns: share of each path's own turn; rougher: factor of the
+    friction; particles: with which all come to rest.
+    """
+
+    text: str
+    revolutions: float | None
+    turns: float | None
+    friction: float | None
+    rougher: float | None
+    particles: int | None
 
 
 class UnresolvedFigures(TypedDict):
@@ -113,6 +129,7 @@ class PathsFigures(TypedDict):
 
     converged: int
     not_converged: list[Failure]
+    advice: AdviceFigures
     figures_over: str
     length_total: float
     bridged_fraction: float

@@ -41,20 +41,31 @@ class Status(IntEnum):
     TOO_COARSE = 6
 
     @property
+    def meaning(self) -> str:
+        """What the status means, in one line."""
+        return _MEANING[self]
+
+    @property
     def advice(self) -> str:
-        """What the status means and what to do about it, in one line."""
-        return _ADVICE[self]
+        """What the status means and what may help, in one line; `Paths.advice` names what was tried."""
+        return f"{_MEANING[self]}: {_MAY_HELP[self]}" if self in _MAY_HELP else _MEANING[self]
 
 
-_ADVICE = {
+_MEANING = {
     Status.CONVERGED: "taut equilibrium",
-    Status.SLID_OFF_START: "the fibre slides off the start rim (v=0): use fewer revolutions, or a wider opening there",
-    Status.SLID_OFF_END: "the fibre slides off the end rim (v=1): use fewer revolutions, or a wider opening there",
+    Status.SLID_OFF_START: "the fibre slides off the start rim (v=0)",
+    Status.SLID_OFF_END: "the fibre slides off the end rim (v=1)",
     Status.UNSTABLE: "no stable path: the fibre is balanced on a ridge and falls off it (a conjugate point, or "
-    "windings too long for the bulge): use fewer revolutions",
-    Status.LEFT_CHART: "the fibre slides off an open edge of the surface (u=0 or u=1): move the ends away from it",
-    Status.TOO_COARSE: "the fibre turns over an edge that is too sharp for the distance of its particles: "
-    "use more particles (--particles)",
-    Status.STALLED: "the solver stopped before the fibre was at rest: use fewer revolutions, or a smoother surface "
-    "(--tolerance 1e-3)",
+    "windings too long for the bulge)",
+    Status.LEFT_CHART: "the fibre slides off an open edge of the surface (u=0 or u=1)",
+    Status.TOO_COARSE: "the fibre turns over an edge that is too sharp for the distance of its particles",
+    Status.STALLED: "the solver stopped before the fibre was at rest",
+}
+_MAY_HELP = {
+    Status.SLID_OFF_START: "fewer revolutions, more friction, or a wider opening there may hold it",
+    Status.SLID_OFF_END: "fewer revolutions, more friction, or a wider opening there may hold it",
+    Status.UNSTABLE: "fewer revolutions or more friction may hold it",
+    Status.LEFT_CHART: "ends further away from it, or more friction, may hold it",
+    Status.TOO_COARSE: "more particles (--particles) or a rounder edge may resolve it",
+    Status.STALLED: "fewer revolutions, more particles, or a smoother surface (--tolerance 1e-3) may bring it to rest",
 }

@@ -1,0 +1,142 @@
+"""The number nearest to the one asked for with which all paths hold: found by trials, and tried as it is printed."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from meshwind.core.cast import Bools, Ints
+
+DIGITS = 3
+"""Digits of a number in an advice: a step of them is at most 1 %."""
+CLOSE = 0.01
+"""Relative distance of numbers that hold and that do not, at which the search ends."""
+BEYOND = 0.02
+"""So much beyond the number found at least one path should fail."""
+_LOOKED_AT = 8, 2
+"""Paths that are tried at first with every number, those that failed last in front; and the first of these."""
+_LEAST = 0.05
+"""The first number that is tried above 0."""
+_STEP = 0.01
+"""Relative step back from a number that holds the paths looked at, and not another one; it is doubled each time."""
+
+Attempt = Callable[[float, Ints], Bools]
+"""Which of the paths of the given numbers hold, with a number changed."""
+
+
+@dataclass(frozen=True)
+class Way:
+    """Which way to look: from a number with which paths fail, down to `last` or up to it."""
+
+    asked: float
+    last: float
+    first_step: float
+
+    @property
+    def down(self) -> bool:
+        """Whether smaller numbers hold."""
+        return self.last < self.asked
+
+    def rounded(self, number: float) -> float:
+        """The number as it is printed, to the safe side."""
+        unit = 10.0 ** (math.floor(math.log10(number)) - DIGITS + 1)
+        steps = number / unit
+        whole = math.floor(steps + 1e-9) if self.down else math.ceil(steps - 1e-9)
+        return float(f"{whole * unit:.{DIGITS}g}")
+
+    def back(self, number: float, step: float) -> float:
+        """A number a relative step nearer to `last`; `last` itself is not passed."""
+        if self.down:
+            return self.rounded(max(number * (1.0 - step), self.last))
+        return min(self.rounded(number * (1.0 + step)) if number > 0.0 else _LEAST, self.last)
+
+    def beyond(self, number: float) -> float:
+        """A number a little nearer to the one asked for."""
+        return number * (1.0 + BEYOND if self.down else 1.0 - BEYOND)
+
+    def nearer(self, one: float, other: float) -> bool:
+        """Whether `one` is nearer to the number asked for than `other`, or beyond it."""
+        return one > other if self.down else one < other
+
+
+@dataclass
+class Search:
+    """A search for the number with which all of `count` paths hold, in no more than `budget` solves of a path.
+
+    order: numbers of the paths, in the order in which they are tried.  together: whether how a path is solved depends
+    on the others, so that all have to be tried at once in the end.
+    """
+
+    attempt: Attempt
+    way: Way
+    order: Ints
+    budget: int
+    together: bool = False
+    failed: list[float] = field(default_factory=list)
+
+    def run(self) -> float:
+        """The number nearest to the one asked for that holds all paths; 0 where none was found.
+
+        Paths that failed last are tried first, and the others only with a number that holds these.
+        """
+        way = self.way
+        good, bad, step = 0.0, way.asked, way.first_step
+        while self.budget > 0:
+            if good == 0.0:
+                number = way.back(bad, step)
+                step *= 1.0 if step >= 0.5 else 2.0
+                if bad == way.last or number == bad:
+                    return 0.0
+            else:
+                number = way.rounded(0.5 * (good + bad))
+                if abs(bad - good) <= CLOSE * good or number in (good, bad):
+                    number = self._beyond(good)
+                    if number == 0.0:
+                        if self._all_hold(good):
+                            return good
+                        good, bad, step = 0.0, good, _STEP
+                        continue
+                    good, bad = number, self._next_failed(number)
+                    continue
+            if self._hold(number, self.order[: _LOOKED_AT[0]]):
+                good = number
+            else:
+                bad = number
+        return 0.0
+
+    def _beyond(self, good: float) -> float:
+        """A number further on that holds the paths looked at, although one in between did not; 0 for none."""
+        tried = self.way.beyond(good)
+        if not self.way.nearer(self.way.asked, tried) or not self._hold(tried, self.order[: _LOOKED_AT[0]]):
+            return 0.0
+        number = self.way.rounded(tried)
+        return number if self.way.nearer(number, good) and self._hold(number, self.order[: _LOOKED_AT[0]]) else 0.0
+
+    def _next_failed(self, number: float) -> float:
+        """The nearest number beyond one that holds, with which some path failed."""
+        beyond = [each for each in (*self.failed, self.way.asked) if self.way.nearer(each, number)]
+        return min(beyond) if self.way.down else max(beyond)
+
+    def _all_hold(self, number: float) -> bool:
+        """Whether all paths hold with a number that holds those looked at."""
+        if self.together:
+            return self._try(number, self.order)
+        rest = self.order[_LOOKED_AT[0] :]
+        return all(self._try(number, rest[k : k + _LOOKED_AT[0]]) for k in range(0, len(rest), _LOOKED_AT[0]))
+
+    def _hold(self, number: float, paths: Ints) -> bool:
+        """Whether the paths looked at hold: those that failed last first."""
+        first = _LOOKED_AT[1]
+        return self._try(number, paths[:first]) and self._try(number, paths[first:])
+
+    def _try(self, number: float, paths: Ints) -> bool:
+        """Whether some paths hold; those that do not go to the front of the order."""
+        if not len(paths):
+            return True
+        self.budget -= len(paths)
+        lost = paths[~self.attempt(number, paths)]
+        if len(lost):
+            self.order = np.concatenate([lost, self.order[~np.isin(self.order, lost)]])
+            self.failed.append(number)
+        return not len(lost)
