@@ -84,7 +84,7 @@ class Advice:
 def advise(surface: Surface, asked: Asked, status: Ints) -> Advice:
     """Find what holds all paths that were asked for, by trials; status (p,): how they ended, as `Status`.
 
-    A number costs 96 solves of a path and 6 more for each path at most; where it takes more, none is named.
+    A search costs about 96 solves of a path, and 6 more for each path, at most.
     """
     rest, coarse = status == Status.CONVERGED, status == Status.TOO_COARSE
     if rest.all() or not len(asked):
@@ -117,10 +117,12 @@ class _Runs:
         asked = turned.revolutions or 1.0
 
         def attempt(number: float, paths: Ints) -> Bools:
-            return np.logical_and.reduce([self._hold(self.asked.options, paths, end) for end in turned.ends(number)])
+            return self._hold(self.asked.options, paths, turned.ends(number))
 
-        way = Way(asked, _FEWEST * asked, _FIRST[0])
-        return self._search(attempt, way)
+        def also(number: float, paths: Ints) -> Bools:
+            return self._hold(self.asked.options, paths, turned.ends_by_u(number))
+
+        return self._search(attempt, Way(asked, _FEWEST * asked, _FIRST[0]), also if turned.by_length else None)
 
     def rougher(self) -> float:
         """The least friction, or the least factor of it, that holds all paths; 0 for none."""
@@ -148,9 +150,9 @@ class _Runs:
                 return particles
         return 0
 
-    def _search(self, attempt: Attempt, way: Way) -> float:
+    def _search(self, attempt: Attempt, way: Way, also: Attempt | None = None) -> float:
         budget = _BUDGET[0] + _BUDGET[1] * len(self.order)
-        return Search(attempt, way, self.order, budget, self.asked.options.particles is None).run()
+        return Search(attempt, way, self.order, budget, also, self.asked.options.particles is None).run()
 
     def _hold(self, options: Options, paths: Ints, end: Floats | None = None) -> Bools:
         """Which of some paths come to rest with other options or other ends."""

@@ -18,6 +18,8 @@ _LOOKED_AT = 8, 2
 """Paths that are tried at first with every number, those that failed last in front; and the first of these."""
 _LEAST = 0.05
 """The first number that is tried above 0."""
+_CAUTION = 0.05
+"""Relative step back from a number that is yet to be tried with all paths, where the budget is used up."""
 _STEP = 0.01
 """Relative step back from a number that holds the paths looked at, and not another one; it is doubled each time."""
 
@@ -64,14 +66,16 @@ class Way:
 class Search:
     """A search for the number with which all of `count` paths hold, in no more than `budget` solves of a path.
 
-    order: numbers of the paths, in the order in which they are tried.  together: whether how a path is solved depends
-    on the others, so that all have to be tried at once in the end.
+    order: numbers of the paths, in the order in which they are tried.  also: another reading of a number, in which all
+    paths have to hold as well.  together: whether how a path is solved depends on the others, so that all have to be
+    tried at once in the end.
     """
 
     attempt: Attempt
     way: Way
     order: Ints
     budget: int
+    also: Attempt | None = None
     together: bool = False
     failed: list[float] = field(default_factory=list)
 
@@ -93,7 +97,7 @@ class Search:
                 if abs(bad - good) <= CLOSE * good or number in (good, bad):
                     number = self._beyond(good)
                     if number == 0.0:
-                        if self._all_hold(good):
+                        if self._all_hold(good, self.order if self.together else self.order[_LOOKED_AT[0] :]):
                             return good
                         good, bad, step = 0.0, good, _STEP
                         continue
@@ -103,7 +107,8 @@ class Search:
                 good = number
             else:
                 bad = number
-        return 0.0
+        number = way.back(good or bad, _CAUTION)
+        return number if self._all_hold(number, self.order) else 0.0
 
     def _beyond(self, good: float) -> float:
         """A number further on that holds the paths looked at, although one in between did not; 0 for none."""
@@ -118,24 +123,28 @@ class Search:
         beyond = [each for each in (*self.failed, self.way.asked) if self.way.nearer(each, number)]
         return min(beyond) if self.way.down else max(beyond)
 
-    def _all_hold(self, number: float) -> bool:
-        """Whether all paths hold with a number that holds those looked at."""
-        if self.together:
-            return self._try(number, self.order)
-        rest = self.order[_LOOKED_AT[0] :]
-        return all(self._try(number, rest[k : k + _LOOKED_AT[0]]) for k in range(0, len(rest), _LOOKED_AT[0]))
+    def _all_hold(self, number: float, rest: Ints) -> bool:
+        """Whether all paths hold with a number, of which the rest is yet to be tried."""
+        every = self.order
+        many = max(len(every), 1) if self.together else _LOOKED_AT[0]
+        tries = [(self.attempt, rest)] + ([(self.also, every)] if self.also is not None else [])
+        return all(
+            self._try(number, paths[k : k + many], attempt)
+            for attempt, paths in tries
+            for k in range(0, len(paths), many)
+        )
 
     def _hold(self, number: float, paths: Ints) -> bool:
         """Whether the paths looked at hold: those that failed last first."""
         first = _LOOKED_AT[1]
         return self._try(number, paths[:first]) and self._try(number, paths[first:])
 
-    def _try(self, number: float, paths: Ints) -> bool:
+    def _try(self, number: float, paths: Ints, attempt: Attempt | None = None) -> bool:
         """Whether some paths hold; those that do not go to the front of the order."""
         if not len(paths):
             return True
         self.budget -= len(paths)
-        lost = paths[~self.attempt(number, paths)]
+        lost = paths[~(attempt or self.attempt)(number, paths)]
         if len(lost):
             self.order = np.concatenate([lost, self.order[~np.isin(self.order, lost)]])
             self.failed.append(number)

@@ -1,12 +1,13 @@
 """How a user turns the ends of paths: by another number of revolutions, or each by a share of its own turn."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from meshwind.core.cast import Floats
 from meshwind.path.asked import Asked
-from meshwind.surface.rims import rim
+from meshwind.surface.rims import Rim, rim
 from meshwind.surface.surface import Surface
 
 _ALIKE = 1e-9
@@ -26,20 +27,25 @@ class Turning:
     revolutions: float
     by_length: bool
 
-    def ends(self, turn: float) -> list[Floats]:
-        """Ends (p, 2) with another number of revolutions or, where turns differ, with so much of each path's own.
-
-        Where ends are spread by arc length, both as `families` sets them and with u changed by just that number.
-        """
+    def ends(self, turn: float) -> Floats:
+        """Ends (p, 2) with another number of revolutions or, where turns differ, with so much of each path's own."""
         start, end = self.asked.start, self.asked.end
-        if self.revolutions == 0.0:
-            return [_with_u(end, start[:, 0] + turn * (end[:, 0] - start[:, 0]))]
-        sense = np.sign(end[:, 0] - start[:, 0])
-        found = [_with_u(end, start[:, 0] + sense * turn)]
         if self.by_length:
-            share = rim(self.surface, 0.0).shares(start[:, 0])
-            found.append(_with_u(end, rim(self.surface, 1.0).parameters(share + sense * turn)))
-        return found
+            share = self.rims[0].shares(start[:, 0])
+            return _with_u(end, self.rims[1].parameters(share + np.sign(end[:, 0] - start[:, 0]) * turn))
+        if self.revolutions > 0.0:
+            return self.ends_by_u(turn)
+        return _with_u(end, start[:, 0] + turn * (end[:, 0] - start[:, 0]))
+
+    def ends_by_u(self, turn: float) -> Floats:
+        """Ends (p, 2) with u changed by just the number of revolutions."""
+        start, end = self.asked.start, self.asked.end
+        return _with_u(end, start[:, 0] + np.sign(end[:, 0] - start[:, 0]) * turn)
+
+    @cached_property
+    def rims(self) -> tuple[Rim, Rim]:
+        """The rims at both ends."""
+        return rim(self.surface, 0.0), rim(self.surface, 1.0)
 
 
 def turning(surface: Surface, asked: Asked) -> Turning | None:
