@@ -107,7 +107,7 @@ def test_trials_find_clairauts_bound_by_themselves() -> None:
     net = barrel().control_points * [1.0 + 1e-5, 1.0, 1.0]
     found = feasible_revolutions(Surface(net), most=1.0, paths=4)
     assert found.by == "trials"
-    assert found.high == pytest.approx(barrel_bound(), rel=3e-3)
+    assert 0.975 * barrel_bound() < found.high < barrel_bound()
     assert found.slides
 
 
@@ -154,7 +154,7 @@ def test_square_winding_is_at_45_degrees() -> None:
 
 def test_choice_on_a_barrel_is_square_and_inside_the_bound() -> None:
     chosen = choose_revolutions(barrel(), paths=6, further=False)
-    assert np.array(chosen.common) == pytest.approx(np.array([[0.0, barrel_bound()]]))
+    assert np.array(chosen.common) == pytest.approx(np.array([[0.0, barrel_bound()]]), rel=1e-3)
     assert chosen.common_share == pytest.approx(1.0)
     assert 0.0 < chosen.choice < barrel_bound()
     assert abs(chosen.choice - chosen.square) < 1.0 / 12.0

@@ -62,7 +62,7 @@ def _bound(axes: Any, chosen: Revolutions, last: float) -> None:
     how = "Clairaut's bound" if found.by == "Clairaut" else "bound, by trials"
     where = {"both": "both ends", "start": "the start", "end": "the end"}.get(found.slides, "a rim")
     axes.axvspan(
-        found.high, last, color=_SLIDES, alpha=0.8, zorder=0, label=f"slides off {where} ({how} {found.high:.3g})"
+        found.high, last, color=_SLIDES, alpha=0.8, zorder=0, label=f"may slide off {where} ({how} {found.high:.3g})"
     )
     axes.axvline(found.high, color=_INK, linewidth=1.2)
     gains = (

@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from meshwind.core.cast import Floats
-from meshwind.path.friction import Friction, friction_of
-from meshwind.planning.feasible import Feasible, feasible_revolutions
+from meshwind.path.friction import friction_of
+from meshwind.planning.feasible import Feasible, coarse_interval
 from meshwind.planning.trials import trial
+from meshwind.planning.windings import Windings
 from meshwind.surface.evaluate import SU
 from meshwind.surface.grid import rings
 from meshwind.surface.interpolate import interpolate
@@ -16,40 +17,39 @@ from meshwind.surface.surface import Surface
 FRICTION, WIDER = 0.2, 1.5
 """The alternatives: this coefficient of friction (a wet fibre's), and openings so many times as wide."""
 _FEW = 3
-"""Paths per family in these windings: with friction they cost more, and the figures serve as hints."""
+"""Paths per family in the coarse windings of these."""
 _MAX_GAIN = 3.0
 """Times the bound up to which numbers of revolutions are tried with friction."""
 _STEP = 0.1
 """Step between these numbers, over the bound."""
-_ACCURACY = 0.02
-"""Accuracy of the bound with wider openings, over the bound without."""
 _RINGS, _AROUND = 201, 48
 """Rings by which the place of a wider opening is found, and points on each."""
 _SHORTEST = 0.05
 """Least length of a cut-back surface in v: a shorter one is no part any more."""
 
 
-def alternatives(
-    surface: Surface, feasible: Feasible, most: float, friction: float | Friction = 0.0
-) -> tuple[float, float]:
-    """Largest feasible revolutions with more friction, and with wider openings; 0 where they gain nothing."""
-    rougher = max(FRICTION, 2.0 * friction_of(surface, friction).largest)
-    with_friction = _with_friction(surface, rougher, feasible.high, min(most, _MAX_GAIN * feasible.high))
+def alternatives(windings: Windings, feasible: Feasible, most: float) -> tuple[float, float]:
+    """Feasible revolutions with more friction, and about those with wider openings; 0 where they gain nothing.
+
+    Those with friction are tried as asked; those with wider openings by few, coarse paths on the surface cut back.
+    """
+    surface = windings.surface
+    with_friction = 0.0
+    if friction_of(surface, windings.friction).largest < FRICTION:
+        rougher = replace(windings, friction=FRICTION)
+        with_friction = _with_friction(rougher, feasible.high, min(most, _MAX_GAIN * feasible.high))
     wider = with_wider_openings(surface, WIDER, feasible.slides or "both")
-    high = 0.0
-    if wider is not None:
-        high = feasible_revolutions(wider, friction, most, _FEW, _ACCURACY * feasible.high).high
+    high = 0.0 if wider is None else coarse_interval(wider, windings.friction, most, _FEW).high
     return with_friction, high if high > feasible.high else 0.0
 
 
-def _with_friction(surface: Surface, friction: float, high: float, most: float) -> float:
-    """Largest feasible revolutions with friction, to a step; 0 where the first step is not feasible."""
-    best = 0.0
-    for turns in np.arange((1.0 + _STEP) * high, most, _STEP * high):
-        if not trial(surface, float(turns), friction, _FEW).feasible:
+def _with_friction(rougher: Windings, high: float, most: float) -> float:
+    """Largest feasible revolutions with friction, as found from the first step that fails; 0 where there are none."""
+    for turns in np.arange((1.0 + _STEP) * high, most + _STEP * high, _STEP * high):
+        if not trial(rougher.surface, float(turns), rougher.friction, _FEW).feasible:
             break
-        best = float(turns)
-    return best
+    best = rougher.limit(float(turns), high, high)
+    return best if best > high else 0.0
 
 
 def with_wider_openings(surface: Surface, wider: float, ends: str = "both") -> Surface | None:

@@ -1,36 +1,46 @@
 """Feasible revolutions: the interval of the number of revolutions in which no fibre slides off an end.
 
-On a shape of revolution on which the fibre presses everywhere the interval is Clairaut's bound.  Elsewhere windings
-with more and more revolutions are tried, and the ends of the interval are found by bisection.
+On a shape of revolution on which the fibre presses everywhere the interval ends at Clairaut's bound.  Elsewhere more
+and more revolutions are tried with few, coarse paths; the ends of the interval are then found with all paths.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from meshwind.core.defaults import PARTICLES
 from meshwind.path.friction import Friction, friction_of
 from meshwind.planning.clairaut import profile
 from meshwind.planning.families import hoop_revolutions
 from meshwind.planning.trials import PATHS, Trial, trial
+from meshwind.planning.windings import Windings, spread
 from meshwind.surface.surface import Surface
 
-Wind = Callable[[float], Trial]
-"""Winds by a number of revolutions."""
 NUMBERS = 24
 """Numbers of revolutions that are tried before the bisection."""
 _MAX_FAILURES = 3
 """Windings in a row that are not feasible, after which no larger number is tried."""
 _SAME_RIM = 1e-3
 """Relative difference of the rims' radii up to which fibres slide off both ends at once."""
+ALLOWANCE = 0.01
+"""Share of the interval by which its ends are moved inward, for starts between those that were tried."""
+_STEPS = (2e-4, 1e-3, 4e-3, 1.6e-2)
+"""Relative steps back from Clairaut's bound, of which the first is taken with which the particles hold."""
+_NEAR = 0.98
+"""Share of a number that does not hold that is tried next."""
+_WITHIN, _MAX_GAPS = 8, 4
+"""Numbers within the interval that are tried, and times that it is cut at one that does not hold, or moved inward."""
+_COARSE = 16
+"""Most paths per family in coarse windings."""
 
 
 @dataclass(frozen=True)
 class Feasible:
     """The interval [low, high] of feasible revolutions, high <= low where there is none.
 
-    high is infinite where no number slides off; by: how the interval was found, "Clairaut" or "trials"; slides: the end
-    where fibres slide off past it, "start", "end", "both" or ""; trials: the windings that were tried.
+    It is an inner one: all in it hold.  high is infinite where no number slides off; by: how the interval was found,
+    "Clairaut" or "trials"; slides: the end where fibres slide off past it, "start", "end", "both" or ""; trials: the
+    coarse windings that were tried.
     """
 
     low: float
@@ -50,55 +60,82 @@ def feasible_revolutions(
     friction: float | Friction = 0.0,
     most: float | None = None,
     paths: int = PATHS,
-    accuracy: float = 1e-3,
+    particles: int | None = PARTICLES,
 ) -> Feasible:
-    """Find the interval up to `most` revolutions (by default those of a hoop), its ends to an absolute accuracy.
+    """Find an interval up to `most` revolutions (by default those of a hoop) within which every path holds.
 
-    paths: number per family, where windings have to be tried.
+    paths, particles: those for which it is meant.  The interval is an inner one: its ends are tried as `solve` lays
+    the paths, with starts between those asked for, and moved inward by an allowance for all others.
     """
     most = hoop_revolutions(surface) if most is None else most
+    windings = spread(surface, friction, paths, particles)
     shape = profile(surface) if friction_of(surface, friction).none else None
     if shape is not None:
         bound, narrow = shape.bound(), min(shape.rims)
         if shape.presses(narrow) and np.isfinite(bound):
             ends = tuple(rim <= narrow * (1.0 + _SAME_RIM) for rim in shape.rims)
-            return Feasible(0.0, bound, "Clairaut", _ends(*ends), ())
-    return _by_trials(lambda turns: trial(surface, turns, friction, paths), most, accuracy)
+            held = next((number for step in _STEPS if windings.holds(number := bound * (1.0 - step))), None)
+            if held is not None:
+                return Feasible(0.0, held, "Clairaut", _ends(*ends), ())
+    return _verified(windings, coarse_interval(surface, friction, most, min(paths, _COARSE)), most)
 
 
-def _by_trials(wind: Wind, most: float, accuracy: float) -> Feasible:
-    """The longest run of feasible windings among even numbers of revolutions, its ends refined by bisection."""
-    tried: list[Trial] = [wind(0.0)]
+def coarse_interval(surface: Surface, friction: float | Friction, most: float, paths: int) -> Feasible:
+    """The interval as few coarse paths have it, its ends to a step of the numbers that are tried."""
+    tried: list[Trial] = [trial(surface, 0.0, friction, paths)]
     failures = 0
     for turns in np.linspace(most / NUMBERS, most, NUMBERS):
-        tried.append(wind(float(turns)))
+        tried.append(trial(surface, float(turns), friction, paths))
         failures = 0 if tried[-1].feasible else failures + 1
         if failures == _MAX_FAILURES:
             break
     first, last = _longest_run([each.feasible for each in tried])
     if last < first:
         return Feasible(0.0, 0.0, "trials", _slid_off(tried), tuple(tried))
-    below = _bisect(wind, tried[first], tried[first - 1], accuracy) if first > 0 else []
-    low = below[-1].revolutions if below else 0.0
-    if last + 1 == len(tried):
-        return Feasible(low, float("inf"), "trials", "", _sorted([*tried, *below]))
-    above = _bisect(wind, tried[last], tried[last + 1], accuracy)
-    slides = _slid_off([each for each in (*above, tried[last + 1]) if not each.feasible])
-    return Feasible(low, above[-1].revolutions, "trials", slides, _sorted([*tried, *below, *above]))
+    slides = _slid_off(tried[last + 1 :])
+    high = float("inf") if last + 1 == len(tried) else tried[last].revolutions
+    return Feasible(tried[first].revolutions, high, "trials", slides, tuple(tried))
 
 
-def _sorted(tried: list[Trial]) -> tuple[Trial, ...]:
-    return tuple(sorted(set(tried), key=lambda each: each.revolutions))
+def _verified(windings: Windings, coarse: Feasible, most: float) -> Feasible:
+    """The interval with its ends found, and numbers within it tried, as `solve` lays the paths."""
+    if not coarse.any:
+        return coarse
+    numbers = [each.revolutions for each in coarse.trials]
+    low, high = coarse.low, coarse.high
+    if low > 0.0:
+        low = windings.limit(max(n for n in numbers if n < low), low, min(high, most)) or np.inf
+    if np.isfinite(high):
+        high = windings.limit(min(n for n in numbers if n > high), high, min(low, high))
+    elif not windings.holds(most):
+        high = windings.limit(most, _NEAR * most, min(low, most))
+    if not high > low:
+        return replace(coarse, low=0.0, high=0.0)
+    low, high = _without_gaps(windings, low, high, most)
+    return replace(coarse, low=low, high=high)
 
 
-def _bisect(wind: Wind, feasible: Trial, failed: Trial, accuracy: float) -> list[Trial]:
-    """The windings tried between a feasible one and one that is not; the last is feasible, next to one that is not."""
-    tried = []
-    while abs(failed.revolutions - feasible.revolutions) > accuracy:
-        middle = wind(0.5 * (feasible.revolutions + failed.revolutions))
-        tried.append(middle)
-        feasible, failed = (middle, failed) if middle.feasible else (feasible, middle)
-    return [*tried, feasible]
+def _without_gaps(windings: Windings, low: float, high: float, most: float) -> tuple[float, float]:
+    """The larger part of an interval in which numbers hold that are spread over it, and its ends after an allowance."""
+    for _ in range(_MAX_GAPS):
+        top = min(high, most)
+        inside = np.linspace(low, top, _WITHIN + 2)[1:-1]
+        gap = next((float(number) for number in inside[::-1] if not windings.holds(float(number))), None)
+        if gap is not None:
+            upper = top - gap > gap - low
+            low, high = (
+                (windings.limit(gap, gap / _NEAR, top), high) if upper else (low, windings.limit(gap, _NEAR * gap, low))
+            )
+            if not high > low:
+                return 0.0, 0.0
+            continue
+        span = top - low
+        inner_low = low + ALLOWANCE * span if low > 0.0 else 0.0
+        inner_high = top - ALLOWANCE * span if np.isfinite(high) else high
+        if all(windings.holds(end) for end in (inner_low, inner_high) if 0.0 < end < np.inf):
+            return inner_low, inner_high
+        low, high = inner_low, inner_high
+    return 0.0, 0.0
 
 
 def _longest_run(flags: list[bool]) -> tuple[int, int]:

@@ -1,5 +1,6 @@
 """The choice of the number of revolutions: one that is feasible, bridges least, and presses on most of the surface."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,12 +9,14 @@ from meshwind.core.cast import Floats
 from meshwind.core.defaults import PARTICLES, STEPS_PER_TURN
 from meshwind.core.errors import BadInputError
 from meshwind.path.friction import Friction
+from meshwind.path.limit import Way
 from meshwind.path.solve import check_count
 from meshwind.planning.alternatives import alternatives
 from meshwind.planning.families import hoop_revolutions, square_revolutions
-from meshwind.planning.feasible import Feasible, Wind, feasible_revolutions
+from meshwind.planning.feasible import Feasible, feasible_revolutions
 from meshwind.planning.pressing import Intervals, Pressing, pressing
 from meshwind.planning.trials import PATHS, Trial, full_trial, trial
+from meshwind.planning.windings import spread
 from meshwind.surface.surface import Surface
 
 CANDIDATES = 32
@@ -28,12 +31,16 @@ _APART = 0.04
 """Candidates this close, relative, to one that was wound at full resolution are passed over."""
 _ACCURACY = 0.02
 """Relative accuracy of the best number, where all bridge."""
-_FEASIBLE_ACCURACY = 2e-3
-"""Accuracy of the feasible interval, in revolutions."""
 _TRIED = 16
 """Most paths per family in coarse windings."""
+_UP, _DOWN = Way(0.0, np.inf, 1.0), Way(np.inf, 0.0, 1.0)
+"""Ways in which bounds are rounded for print: into the interval."""
 _ROUND_OFF = 1e-9
 """Difference of numbers of revolutions that is round-off."""
+
+
+Wind = Callable[[float], Trial]
+"""Winds by a number of revolutions."""
 
 
 @dataclass(frozen=True)
@@ -66,8 +73,12 @@ class Revolutions:
     @property
     def why(self) -> str:
         """The reason for the choice, in a line."""
-        high = self.feasible.high
-        bound = "no number slides off" if not np.isfinite(high) else f"more than {high:.3g} slide off"
+        low, high = self.feasible.low, self.feasible.high
+        ends = f"from {_UP.rounded(low):.3g} " if low > 0.0 else ""
+        if np.isfinite(high):
+            bound = f"{ends}up to {_DOWN.rounded(high):.3g} no fibres slide off"
+        else:
+            bound = f"{ends}up to {self.trials[-1].revolutions:.3g} no number was found to slide off"
         if not self.feasible.any:
             return f"{self.choice:.3g} revolutions: none keeps every fibre on the part; most fibres hold at this number"
         share = self.chosen.bridged_share
@@ -132,7 +143,7 @@ def choose_revolutions(
     elif not 0.0 < most < np.inf:
         raise BadInputError(f"most is {most}; give a largest number of revolutions above 0")
     tried = min(paths, _TRIED)
-    feasible = feasible_revolutions(surface, friction, most, tried, _FEASIBLE_ACCURACY)
+    feasible = feasible_revolutions(surface, friction, most, paths, particles)
     square = square_revolutions(surface)
     pressed = pressing(surface)
     top = min(feasible.high, most)
@@ -145,7 +156,7 @@ def choose_revolutions(
     chosen = _least_bridging(checked or [each for each in trials if each.revolutions > 0.0])
     gains = 0.0, 0.0
     if further and feasible.any and np.isfinite(feasible.high):
-        gains = alternatives(surface, feasible, most, friction)
+        gains = alternatives(spread(surface, friction, paths, particles), feasible, most)
     trials.sort(key=lambda each: each.revolutions)
     return Revolutions(chosen, pressed, common, share, feasible, tuple(trials), square, *gains)
 

@@ -14,7 +14,7 @@ from meshwind.mesh.opening.choose_ends import position_text
 from meshwind.mesh.opening.flat_ends import has_flat_ends
 from meshwind.path.lengths import lengths, unresolved_share
 from meshwind.path.paths import EDGE, Paths, Status, converged_or_all
-from meshwind.planning.alternatives import FRICTION, WIDER
+from meshwind.planning.alternatives import FRICTION
 from meshwind.planning.revolutions import Revolutions
 from meshwind.planning.spacing import Spaced
 from meshwind.results.schema import FIT_PICTURE, REVOLUTIONS_PICTURE
@@ -119,7 +119,7 @@ def about_choice(chosen: Revolutions | None) -> tuple[Note, ...]:
     if chosen.with_friction > 0.0:
         more.append(f"friction {FRICTION:g} would allow {_number(chosen.with_friction)}")
     if chosen.with_opening > 0.0:
-        more.append(f"openings {WIDER:g} times as wide {_number(chosen.with_opening)}")
+        more.append("wider openings may allow more")
     allowed = f"; {', '.join(more)}" if more else ""
     return (
         Note(f"chose {chosen.why}{allowed}; see {REVOLUTIONS_PICTURE}", not chosen.feasible.any, REVOLUTIONS_PICTURE),
