@@ -18,8 +18,8 @@ _LOOKED_AT = 8, 2
 """Paths that are tried at first with every number, those that failed last in front; and the first of these."""
 _LEAST = 0.05
 """The first number that is tried above 0."""
-_CAUTION = 0.05
-"""Relative step back from a number that is yet to be tried with all paths, where the budget is used up."""
+_CAUTION = 0.05, 0.15, 0.3
+"""Relative steps back from the last number, that are tried with all paths where the budget is used up."""
 _STEP = 0.01
 """Relative step back from a number that holds the paths looked at, and not another one; it is doubled each time."""
 
@@ -107,8 +107,8 @@ class Search:
                 good = number
             else:
                 bad = number
-        number = way.back(good or bad, _CAUTION)
-        return number if self._all_hold(number, self.order) else 0.0
+        further = (way.back(good or bad, step) for step in _CAUTION)
+        return next((number for number in further if self._all_hold(number, self.order)), 0.0)
 
     def _beyond(self, good: float) -> float:
         """A number further on that holds the paths looked at, although one in between did not; 0 for none."""
