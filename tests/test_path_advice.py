@@ -15,6 +15,7 @@ from meshwind.path import Status, solve
 from meshwind.path.limit import BEYOND, Search, Way
 from meshwind.path.paths import Paths
 from meshwind.planning.families import families
+from meshwind.planning.spacing import space_out
 from meshwind.surface import shapes
 from meshwind.surface.surface import Surface
 
@@ -126,6 +127,16 @@ def test_what_cannot_be_done_to_the_letter_is_not_advised() -> None:
     unknown = replace(drawn, asked=None)
     assert unknown.advice(0) == Status(int(drawn.status[0])).advice
     assert not unknown.holding_turns.any() and not unknown.holding_friction.any()
+
+
+def test_paths_that_were_added_to_keep_a_spacing_leave_the_advice_to_those_asked_for() -> None:
+    """On the barrel all paths of both families slide off, or none; one that holds is asked for beside them."""
+    start, end = np.array([(0.0, 0.0), (0.5, 0.0), (0.0, 0.0)]), np.array([(0.5, 1.0), (1.0, 1.0), (-0.8, 1.0)])
+    few = solve(barrel(), start, end, particles=51)
+    spaced = space_out(few, 0.5, 1.0).paths
+    assert len(spaced) > len(few)
+    assert spaced.holding == few.holding
+    assert spaced.subset(spaced.status == Status.CONVERGED).holding.text == ""
 
 
 def test_parts_of_a_batch_and_batches_together_are_advised_by_what_they_were_asked() -> None:

@@ -29,7 +29,8 @@ class Options:
 class Asked:
     """What `solve` was asked for: ends (p, 2), family (p,), starting curves (p, k, 2) where they were given.
 
-    solve: the function itself, which comes after the record in the order of imports.
+    solve: the function itself, which comes after the record in the order of imports.  turns: whether whoever asked can
+    turn the ends.
     """
 
     solve: Callable[..., "Paths"]
@@ -38,6 +39,7 @@ class Asked:
     family: Ints
     initial: Floats | None
     options: Options
+    turns: bool = True
 
     def __len__(self) -> int:
         return len(self.start)

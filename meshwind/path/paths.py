@@ -174,10 +174,10 @@ class Paths:
 
         It is looked for when it is first asked for, which takes as long as winding the paths a few times.
         """
-        if self.asked is None:
+        if self.asked is None or (self.status == Status.CONVERGED).all():
             return Advice(len(self))
-        same = len(self.asked) == len(self)  # without the paths that were added to those asked for
-        status = self.status if same else np.full(len(self.asked), Status.STALLED)
+        same = len(self.asked) == len(self)  # otherwise some were added to those asked for, of which it speaks
+        status = self.status if same else np.full(len(self.asked), Status.UNSTABLE)
         return advise(self.surface, self.asked, status)
 
     @property

@@ -49,8 +49,8 @@ class Turning:
 
 
 def turning(surface: Surface, asked: Asked) -> Turning | None:
-    """How the ends turn; None where curves were given, which say how a path turns, or where no path turns."""
-    if asked.initial is not None or not len(asked):
+    """How the ends turn; None where they cannot be turned, as with curves given, or where no path turns."""
+    if asked.initial is not None or not asked.turns or not len(asked):
         return None
     start, end = asked.start, asked.end
     turn = np.abs(end[:, 0] - start[:, 0])

@@ -5,7 +5,7 @@ neighbours' curves.  On a part with a boss, fibres rest on either side of it but
 the gap stays.  Such a parting is found by bisection, and reported rather than filled.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -169,8 +169,9 @@ def space_out(paths: Paths, revolutions: float, spacing: float, friction: float 
     ring = _thinned(ring, spacing)
     pairs = ring.pairs()
     parted = ring.parted(pairs.first, pairs.step)
+    spaced = replace(ring.paths, asked=paths.asked)  # those added are at rest, and are found anew in another run
     return Spaced(
-        ring.paths, frozen(ring.share), spacing, max(counts),
+        spaced, frozen(ring.share), spacing, max(counts),
         frozen(np.stack([pairs.first, pairs.second], axis=1)[parted]),
         float(pairs.gap[~parted].max(initial=0.0)), float(pairs.gap[parted].max(initial=0.0)),
     )  # fmt: skip

@@ -1,6 +1,6 @@
 """Wind a fitted part and assess what was laid."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from meshwind.chart import Chart
@@ -10,7 +10,7 @@ from meshwind.mesh import Mesh
 from meshwind.path import Paths, solve
 from meshwind.path.friction import Friction, friction_from
 from meshwind.planning.families import Families, families
-from meshwind.planning.pins import read_pins
+from meshwind.planning.pins import PARAMETRIC, pin_table, read_pins
 from meshwind.planning.revolutions import Revolutions, choose_revolutions
 from meshwind.planning.spacing import Spaced, space_out
 from meshwind.surface import Surface
@@ -77,7 +77,10 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock) -> Windi
 def lay(surface: Surface, options: Options, revolutions: float, friction: float | Friction = 0.0) -> Paths:
     """Lay the paths between their ends: the user's pins, or points spread evenly over the rims."""
     ends = _ends(surface, options, revolutions)
-    return solve(surface, ends.start, ends.end, family=ends.family, particles=options.particles, friction=friction)
+    laid = solve(surface, ends.start, ends.end, family=ends.family, particles=options.particles, friction=friction)
+    if laid.asked is None or options.pins is None or pin_table(options.pins).has(PARAMETRIC):
+        return laid
+    return replace(laid, asked=replace(laid.asked, turns=False))  # pins in space stay where they are
 
 
 def _ends(surface: Surface, options: Options, revolutions: float) -> Families:
