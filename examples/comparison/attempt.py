@@ -12,7 +12,7 @@ from meshwind.core.cast import Floats
 from meshwind.methods.driver import run
 from meshwind.methods.motion import Ending, Method, Motion
 from meshwind.path.drag import drag
-from meshwind.path.length import fibre_lengths
+from meshwind.path.length import Laid, measured
 from meshwind.path.paths import Counters, Status
 from meshwind.path.solve import solve
 
@@ -93,7 +93,8 @@ def _theirs(method: Method, problem: Problem, particles: int, curve: Floats | No
             break
     length = found.length
     if by_rule and found.status != Ending.DIVERGED:
-        length = float(fibre_lengths(surface, found.points[None], found.uv[None], found.on_surface[None])[0])
+        laid = Laid(found.points, found.uv, found.on_surface, np.abs(found.gap), surface.normals(found.uv))
+        length = float(measured(surface, Laid(*(each[None] for each in laid))).length[0])
     counters = Counters(*(int(k) for k in counts))
     return _attempt(ENDINGS[found.status], length, counters, float(np.abs(found.gap).max()), found.points)
 

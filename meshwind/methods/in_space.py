@@ -80,7 +80,7 @@ def run_in_space(body, rules, physics, strand, history, tally):
         for i in range(n):
             pressed[i] = touching[i] and not loose[i]
         link(pressed, before, after)
-        off_balance = max(unbalanced(X, normal, before, after), sag(X, after))
+        off_balance = max(unbalanced(X, normal, before, after), sag(X, after, np.arange(len(X)) * 1.0))
         residual = off_balance * (n - 1) / max(length, TINY)
         if len(history) > 0:
             history[k, LENGTH], history[k, RESIDUAL] = length, residual

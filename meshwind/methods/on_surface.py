@@ -100,7 +100,7 @@ def run_on_surface(spline, rules, physics, chain, history, tally):
     for k in range(rules.steps + 1):
         energy, length = energy_and_length(chain.X)
         count, worst = gather(chain, spline.periodic, friction, forces)
-        off_chord = sag(chain.X, chain.after) if rules.lifting else 0.0
+        off_chord = sag(chain.X, chain.after, np.arange(len(chain.X)) * 1.0) if rules.lifting else 0.0
         residual = max(worst, off_chord) * (n - 1) / max(length, TINY)
         if len(history) > 0:
             history[k, LENGTH], history[k, RESIDUAL] = length, residual

@@ -1,19 +1,51 @@
-"""The length of a fibre from its particles: fourth order where the polyline's is second.
+"""The length of a fibre from its particles, of fourth order where the polyline's is second, and what it may be off by.
 
 The chord c of an arc of curvature k is shorter than it by c^3 k^2 / 24.  The fibre in equilibrium is the shortest, or
 all but, so that its length forgives the particles' own error, which is of second order: what is left is of the fourth.
-A bridge is straight from where it truly leaves the surface, between particles, to where it comes back.
+A bridge is straight from where it truly leaves the surface, between particles, to where it comes back.  Where the
+surface between two particles is not as even as their neighbours say, the polyline counts, and what the surface stands
+out of it is the error.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from meshwind.core.cast import Bools, Floats
+from meshwind.core.cast import Bools, Floats, frozen
 from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import TINY
-from meshwind.path.kernels.state import distance
+from meshwind.path.kernels.state import State, distance
+from meshwind.path.kernels.survey import blank_survey, survey
 from meshwind.path.kernels.touchdown import touchdown
+from meshwind.surface.evaluate import frame
 from meshwind.surface.surface import Surface
+
+UNEVEN = 0.5
+"""Share by which the surface may stand out of a segment more or less than of an even arc, and by which the curvature
+may change along it, to count as one."""
+DETOUR = 4.0
+"""Longest way round what stands out of the middle half of a segment, over its square by the segment, with a margin."""
+LANDED = 0.25
+"""Share of what the true ends of a bridge change its length by that is left as an error."""
+
+
+class Laid(NamedTuple):
+    """Fibres with particles points (p, n, 3), at or above uv (p, n, 2), with gaps (p, n) and normals (p, n, 3)."""
+
+    points: Floats
+    uv: Floats
+    touching: Bools
+    gap: Floats
+    normal: Floats
+
+
+class Measured(NamedTuple):
+    """Of p fibres: length, its error, and the largest distance of the fibre from its polyline (p,)."""
+
+    length: Floats
+    error: Floats
+    off: Floats
 
 
 @njit(cache=True)
@@ -27,48 +59,111 @@ def bend(X, i):
 
 
 @njit(cache=True)
-def run_length(X, first, last):
-    """Length of the fibre on the surface from particle `first` to `last`, all of which touch."""
-    total = 0.0
+def run_length(X, normal, first, last, rise):
+    """Length of the fibre on the surface from particle `first` to `last`, all of which touch, and its error."""
+    total = error = 0.0
     for i in range(first, last):
         chord = distance(X, i, i + 1)
         # curvature is known inside the run, and taken from its neighbour at the run's ends
         a, b = max(i, first + 1), min(i + 1, last - 1)
         k2 = 0.5 * (bend(X, a) + bend(X, b)) if last - first > 1 else 0.0
-        total += chord * (1.0 + chord * chord * k2 / 24.0)
-    return total
+        change = abs(np.sqrt(bend(X, a)) - np.sqrt(bend(X, b))) if last - first > 1 else 0.0
+        arc = chord * chord * chord * k2 / 24.0
+        even = 0.125 * chord * chord * np.sqrt(k2)
+        odd = abs(rise[i] - even)
+        if odd <= UNEVEN * even and change <= UNEVEN * np.sqrt(k2):
+            total += chord + arc
+            error += 2.0 * arc * odd / max(even, TINY)
+        else:
+            total += chord
+            error += detour(X, normal, i, chord, rise[i])
+    return total, error
 
 
-def fibre_lengths(surface: Surface, points: Floats, uv: Floats, touching: Bools) -> Floats:
-    """Lengths (p,) of fibres with particles points (p, n, 3), at or above uv (p, n, 2), in the surface's units."""
-    length = np.empty(len(points))
-    parallel_for(lengths_all, len(points), 8, surface.spline, points, uv, touching, length)
-    return length
+@njit(cache=True)
+def detour(X, normal, i, chord, rise):
+    """Longest way round what stands out of segment i by `rise`: twice that, or less where little turns."""
+    turn = 0.0
+    for j in range(max(i, 1), min(i + 2, len(X) - 1)):
+        turn = max(turn, np.sqrt(bend(X, j)) * 0.5 * (distance(X, j, j - 1) + distance(X, j + 1, j)))
+    facing = 0.0
+    for k in range(3):
+        facing += (normal[i + 1, k] - normal[i, k]) ** 2
+    turn = max(turn, np.sqrt(facing))
+    return min(max(DETOUR * rise / max(chord, TINY), 0.5 * turn), 2.0) * rise
+
+
+def measured(surface: Surface, laid: Laid) -> Measured:
+    """Measure fibres, in the surface's units."""
+    length, error, off = (np.empty(len(laid.points)) for _ in range(3))
+    centred = surface.centred
+    body = centred.body_without_tree if laid.touching.all() else centred.body
+    # copies, as kernels are compiled anew for read-only arrays
+    there = Laid(*(np.array(each) for each in laid._replace(points=laid.points - surface.middle)))
+    parallel_for(measure_all, len(length), 8, body, there, length, error, off)
+    return Measured(frozen(length), frozen(error), frozen(off))
 
 
 @njit(nogil=True, cache=True)
-def lengths_all(first, last, spline, X, uv, touching, length):
-    """Write the lengths (p,) of fibres first to last with particles X (p, n, 3)."""
-    n = X.shape[1]
-    frames = np.empty((6, 3))
-    where, here, there = np.empty(2), np.empty(3), np.empty(3)
+def measure_all(first, last, body, laid, length, error, off):
+    """Write the measures (p,) of fibres first to last."""
+    n = laid.points.shape[1]
+    frames, station, counters = np.empty((n, 6, 3)), np.arange(n) * 1.0, np.zeros(4, np.int64)
+    found = blank_survey(n)
     for p in range(first, last):
-        total = 0.0
-        i = 0
-        while i < n - 1:
-            j = i
-            while j < n - 1 and touching[p, j + 1]:
-                j += 1
-            total += run_length(X[p], i, j)
-            if j == n - 1:
-                break
-            i = j + 1
-            while i < n - 1 and not touching[p, i]:
-                i += 1
-            total += touchdown(spline, X[p], uv[p], j, i, frames, where, here)
-            total += touchdown(spline, X[p], uv[p], i, j, frames, where, there)
-            square = 0.0
-            for k in range(3):
-                square += (there[k] - here[k]) ** 2
-            total += np.sqrt(square)
-        length[p] = total
+        uv, touching, gap = laid.uv[p], laid.touching[p], laid.gap[p]
+        for i in range(n):
+            frame(body.spline, uv[i, 0], uv[i, 1], frames[i])
+        state = State(laid.points[p], uv, frames, laid.normal[p], touching, gap, station, touching)
+        survey(body, state, found, counters)
+        length[p], error[p] = fibre_length(body.spline, state, found.rise)
+        off[p] = max(found.rise.max(), found.dip.max(), peak(gap))
+
+
+@njit(cache=True)
+def peak(gap):
+    """How far the largest gap may be above that of its particle, from the gaps of its neighbours."""
+    i = gap.argmax()
+    if not 0 < i < len(gap) - 1:
+        return 0.0
+    return 0.25 * abs(gap[i - 1] - 2.0 * gap[i] + gap[i + 1])
+
+
+@njit(cache=True)
+def fibre_length(spline, state, rise):
+    """Length of a fibre and its error."""
+    X, uv, touching = state.X, state.uv, state.touching
+    n = len(X)
+    frames, where, here, there = np.empty((6, 3)), np.empty(2), np.empty(3), np.empty(3)
+    total = error = 0.0
+    i = 0
+    while i < n - 1:
+        j = i
+        while j < n - 1 and touching[j + 1]:
+            j += 1
+        length, doubt = run_length(X, state.normal, i, j, rise)
+        total, error = total + length, error + doubt
+        if j == n - 1:
+            break
+        i = j + 1
+        while i < n - 1 and not touching[i]:
+            i += 1
+        before = touchdown(spline, X, uv, j, i, frames, where, here)
+        after = touchdown(spline, X, uv, i, j, frames, where, there)
+        square = chord = 0.0
+        for k in range(3):
+            square += (there[k] - here[k]) ** 2
+        for m in range(j, i):
+            d = distance(X, m, m + 1)
+            chord += d
+            if m > j and m < i - 1:
+                error += detour(X, state.normal, m, d, rise[m])
+        straight = before + after + np.sqrt(square)
+        if before + after <= chord:
+            total += straight
+            error += LANDED * abs(straight - chord)
+        else:  # the ends lie beyond one another: the fibre hardly leaves the surface
+            total += chord
+            error += detour(X, state.normal, j, distance(X, j, j + 1), rise[j])
+            error += detour(X, state.normal, i - 1, distance(X, i - 1, i), rise[i - 1])
+    return total, error

@@ -12,7 +12,8 @@ from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.path.batch import Batch, fresh, resampled
 from meshwind.path.friction import Friction, uniform
 from meshwind.path.kernels.lay import FEWEST, halvings, turn_of
-from meshwind.path.paths import EDGE, Status, sharpest_turn
+from meshwind.path.length import Laid, Measured, measured
+from meshwind.path.paths import Status
 from meshwind.path.solver import Solver
 
 REST, CUT = int(Status.CONVERGED), int(Status.TOO_COARSE)
@@ -35,13 +36,13 @@ def solve_nested(solver: Solver, curves: Floats, particles: int | None, accuracy
     if solver.friction.none:
         solver.solve_simple(batch)
         rest = np.flatnonzero(failing(batch))
-        if not len(rest) and not (batch.status == CUT).any():
+        if not len(rest):
             return batch
     levels = np.array([halvings(curve, particles) for curve in curves[rest]], np.int64)
     for level in np.unique(levels):
         index = rest[levels == level]
         batch.put(index, solve_from_level(solver, batch.rows(index)._replace(starts=curves[index]), int(level)))
-    return even_out(solver, batch)
+    return batch
 
 
 def solve_from_level(solver: Solver, batch: Batch, level: int) -> Batch:
@@ -71,42 +72,30 @@ def climb(solver: Solver, batch: Batch, particles: int, level: int) -> Batch:
     return batch
 
 
-def even_out(solver: Solver, batch: Batch) -> Batch:
-    """Solve frictionless paths that turn over sharp edges for equal tension; where that fails they stay as they are."""
-    index = np.flatnonzero(batch.status == Status.TOO_COARSE)
-    if solver.friction.none and len(index):
-        work = batch.rows(index)
-        work.anchor[:] = np.linspace(0.0, work.starts.shape[1] - 1.0, work.particles)
-        work.mode[:] = 1
-        replace(solver, equal_tension=True).relax(work, resume=True)
-        again = np.flatnonzero(work.status != Status.CONVERGED)
-        if len(again):
-            anew = fresh(work.starts[again], work.particles)
-            anew.counters[:] = work.counters[again]
-            replace(solver, equal_tension=True).relax(anew, resume=False)
-            work.put(again, anew)
-        batch.counters[index] = work.counters
-        done = np.flatnonzero(~failing(work))
-        batch.put(index[done], work.rows(done))
-    return batch
-
-
 def choose(solver: Solver, curves: Floats, accuracy: float) -> Batch:
-    """As `solve_nested`, with particles doubled until the estimated relative error of lengths is below `accuracy`."""
+    """As `solve_nested`, with particles doubled until the estimated relative error of lengths is below `accuracy`.
+
+    Where the particles do not resolve the body there is no estimate, and they are doubled, too.
+    """
     batch = solve_nested(solver, curves, int(fewest(curves).max()) + 1, accuracy)
-    length = lengths(batch)
-    while batch.particles < MOST:
-        batch = even_out(solver, ascend(solver, batch, 2 * batch.particles - 1))
-        before, length = length, lengths(batch)
+    now = measure(solver, batch)
+    while 2 * batch.particles - 1 <= MOST:
+        batch = ascend(solver, batch, 2 * batch.particles - 1)
+        before, now = now, measure(solver, batch)
         done = ~failing(batch)
-        if (batch.status == Status.TOO_COARSE).any() or (
-            sharpest_turn(batch.normal[done], batch.touching[done]) > EDGE
-        ).any():
+        if (batch.status == CUT).any():
             continue
-        # second order: a third of the last change is what is left
-        if np.all(np.abs(length - before)[done] <= 3.0 * accuracy * length[done]):
+        # the polyline's error is known from the fibre's own length, as far as that, of higher order, no longer changes
+        left = np.abs(now.length - lengths(batch)) + np.abs(now.length - before.length)
+        if np.all(np.maximum(left, now.error)[done] <= accuracy * now.length[done]):
             break
     return batch
+
+
+def measure(solver: Solver, batch: Batch) -> Measured:
+    """Length of each path's fibre, and what it may be off by."""
+    points = batch.X + solver.surface.middle
+    return measured(solver.surface, Laid(points, batch.uv, batch.touching, batch.gap, batch.normal))
 
 
 def fewest(curves: Floats) -> Ints:

@@ -10,7 +10,7 @@ from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.path.advice import Advice, advise
 from meshwind.path.asked import Asked
 from meshwind.path.kernels.status import Status as Status
-from meshwind.path.length import fibre_lengths
+from meshwind.path.length import Laid, Measured, measured
 from meshwind.surface.surface import Surface
 
 EDGE = 1.2
@@ -91,13 +91,31 @@ class Paths:
         return len(self.points)
 
     @cached_property
+    def _measured(self) -> Measured:
+        return measured(self.surface, Laid(self.points, self.uv, self.on_surface, self.gap, self.normal))
+
+    @property
     def length(self) -> Floats:
         """Length (p,) of each fibre, in the surface's units, of fourth order in the distance of the particles.
 
         The polyline through the particles is shorter, by h^2 k^2 / 24 of itself where particles are h apart on a fibre
         of curvature k.
         """
-        return frozen(fibre_lengths(self.surface, self.points, self.uv, self.on_surface))
+        return self._measured.length
+
+    @property
+    def length_error(self) -> Floats:
+        """What each length (p,) may be off by, in the surface's units: for the particles, not for the fit."""
+        return self._measured.error
+
+    @property
+    def position_error(self) -> Floats:
+        """How far each fibre (p,) may be from the polyline through its particles, in the surface's units.
+
+        It is how far the surface stands out of a segment, or stays below it between particles that touch, and what the
+        largest gap may be above that of a particle.
+        """
+        return self._measured.off
 
     def subset(self, chosen: Bools | Ints) -> "Paths":
         """Select paths.

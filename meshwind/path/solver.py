@@ -11,8 +11,8 @@ from meshwind.path.friction import Friction
 from meshwind.path.kernels.certificate import PULL
 from meshwind.path.kernels.coulomb import RoughBody
 from meshwind.path.kernels.lay import solve_without_friction
-from meshwind.path.kernels.relax import relax_all
 from meshwind.path.kernels.relax_with_friction import relax_all_with_friction
+from meshwind.path.kernels.rest import relax_all
 from meshwind.path.kernels.slide import slide_all
 from meshwind.path.kernels.state import NEEDS_TREE, Limits
 from meshwind.surface.surface import Surface
@@ -26,10 +26,8 @@ COARSE = 1e-6
 class Solver:
     """What all paths of a solve have in common, and the solvers that it selects.
 
-    final: whether answers need their certificate.  equal_tension: whether frictionless paths, too, are solved for equal
-    tension, as those with friction are; it costs more and matters at edges alone, where the springs' own balance crowds
-    the particles on one side.  Solved in coordinates about the surface's middle, so that a part far from the origin
-    loses no digits.
+    final: whether answers need their certificate.  Solved in coordinates about the surface's middle, so that a part far
+    from the origin loses no digits.
     """
 
     surface: Surface
@@ -38,7 +36,6 @@ class Solver:
     tolerance: float
     iterations: int
     final: bool = True
-    equal_tension: bool = False
 
     @property
     def _limits(self) -> Limits:
@@ -109,7 +106,7 @@ class Solver:
         part = batch if len(index) == batch.paths else batch.rows(index)
         before = None if tree else part.copied()
         body = surface.body if tree else surface.body_without_tree
-        if self.friction.none and not self.equal_tension:
+        if self.friction.none:
             parallel_for(relax_all, part.paths, 1, body, self._limits, resume, self.final, part)
         else:
             rough = RoughBody(body, self.friction.table, 0.0)

@@ -3,19 +3,24 @@
 import numpy as np
 from numba import njit
 
-from meshwind.path.kernels.contact import held, pull
-from meshwind.path.kernels.geometry import derivative, dot
+from meshwind.core.vectors import TINY
+from meshwind.path.kernels.contact import held, spring_pull
+from meshwind.path.kernels.geometry import derivative, dot, minus, row, to_parameters
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV
+
+PINNED = 1e8
+"""Stiffness of a pinned particle along the fibre, over that of its springs."""
 
 
 @njit(cache=True)
 def assemble(state, periodic, contacts, system):
     """Hessian and force of the energy over the touching particles (5.2) in the parametric plane.
 
-    The diagonal block is J'J's share of (4.16) less F . s_ab, which makes the step Newton's.  Returns the number
-    of blocks, the largest unbalanced force in the tangent plane, and the last particle held at a rim or edge (0: none).
+    A pinned particle is not pulled along the fibre, and too stiff to move there.  The diagonal block is J'J's share of
+    (4.16) less F . s_ab, which makes the step Newton's.  Returns the number of blocks, the largest unbalanced
+    force in the tangent plane, and the last particle held at a rim or edge (0: none).
     """
-    X, uv, frames = state.X, state.uv, state.frames
+    X, uv, frames, station = state.X, state.uv, state.frames, state.station
     index, before, after = contacts.inner, contacts.before, contacts.after
     diagonal, upper, metric, right = system.diagonal, system.upper, system.metric, system.right
     n = len(X)
@@ -25,19 +30,27 @@ def assemble(state, periodic, contacts, system):
     i = after[0]
     while i < n - 1:
         index[count] = i
-        force = pull(X, i, before[i], after[i])
-        weight = 1.0 / (i - before[i]) + 1.0 / (after[i] - i)
+        force = spring_pull(X, station, i, before[i], after[i])
+        weight = 1.0 / (station[i] - station[before[i]]) + 1.0 / (station[after[i]] - station[i])
         su, sv = derivative(frames, i, SU), derivative(frames, i, SV)
         auu, auv, avv = dot(su, su), dot(su, sv), dot(sv, sv)
         fu, fv = dot(force, su), dot(force, sv)
         fuu, fuv = dot(force, derivative(frames, i, SUU)), dot(force, derivative(frames, i, SUV))
         fvv = dot(force, derivative(frames, i, SVV))
+        pin_u = pin_v = pin = 0.0
+        if state.pinned[i]:
+            du, dv = to_parameters(su, sv, minus(row(X, after[i]), row(X, before[i])))
+            pin_u, pin_v = auu * du + auv * dv, auv * du + avv * dv
+            pin = 1.0 / max(pin_u * du + pin_v * dv, TINY)
+            along = pin * (fu * du + fv * dv)
+            fu, fv = fu - along * pin_u, fv - along * pin_v
+            pin *= PINNED * weight
         bits = held(uv, i, periodic, fu, fv)
-        diagonal[count, 0] = weight * auu - fuu
-        diagonal[count, 1] = weight * auv - fuv
-        diagonal[count, 2] = weight * avv - fvv
+        diagonal[count, 0] = weight * auu - fuu + pin * pin_u * pin_u
+        diagonal[count, 1] = weight * auv - fuv + pin * pin_u * pin_v
+        diagonal[count, 2] = weight * avv - fvv + pin * pin_v * pin_v
         if count > 0:
-            couple(frames, before[i], i, last, bits, upper[count - 1])
+            couple(state, before[i], i, last, bits, upper[count - 1])
         if bits:  # a held direction drops out of the system
             leaning = i
             auv = 0.0
@@ -60,10 +73,11 @@ def assemble(state, periodic, contacts, system):
 
 
 @njit(cache=True)
-def couple(frames, p, i, held_p, held_i, block):
+def couple(state, p, i, held_p, held_i, block):
     """Write the block (2, 2) that couples particle p to i, without the directions that are held."""
+    frames, weight = state.frames, 1.0 / (state.station[i] - state.station[p])
     for a in range(2):
         for b in range(2):
             block[a, b] = 0.0
             if not ((held_p >> a) & 1 or (held_i >> b) & 1):
-                block[a, b] = -dot(derivative(frames, p, SU + a), derivative(frames, i, SU + b)) / (i - p)
+                block[a, b] = -dot(derivative(frames, p, SU + a), derivative(frames, i, SU + b)) * weight

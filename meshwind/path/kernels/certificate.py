@@ -6,6 +6,7 @@ from numba import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.landing import measure_gap
 from meshwind.path.kernels.state import distance, energy
+from meshwind.path.kernels.survey import blank_survey, survey
 from meshwind.surface.evaluate import S
 
 PULL = 1e-9
@@ -14,8 +15,9 @@ INSIDE = 1e-9
 """A lifted particle deeper than this times the part's size is inside the body."""
 HALF_TURN, WHOLE_TURN = 0.4, 0.75
 """Change of u or v from particle to particle that only two sides of the body explain."""
-LONGEST_SEGMENT = 2.0
-"""A segment on the surface longer than this share of the mean cuts an edge."""
+DEEPEST = 0.15
+"""Share of the particles' mean distance that the surface may stand out of a segment: as much as where the fibre turns
+evenly by 1.2 radians from particle to particle."""
 
 
 @njit(cache=True)
@@ -45,17 +47,19 @@ def certify(body, state, required, counters):
 
 
 @njit(cache=True)
-def unresolved(state, periodic):
-    """Whether the path cuts an edge by a segment on the surface much longer than the others, or the whole body."""
-    X, touching = state.X, state.touching
-    n = len(X)
-    if largest_leap(state, periodic) > max(HALF_TURN, 2.0 / (n - 1)):
+def leaps(state, periodic):
+    """Whether the path passes through all of the body from one particle to the next."""
+    return largest_leap(state, periodic) > max(HALF_TURN, 2.0 / (len(state.X) - 1))
+
+
+@njit(cache=True)
+def unresolved(body, state, counters):
+    """Whether a segment passes deep inside the body, or the path through all of it."""
+    n = len(state.X)
+    if leaps(state, body.spline.periodic):
         return True
-    _, length = energy(X)
-    for i in range(n - 1):
-        if touching[i] and touching[i + 1] and distance(X, i, i + 1) > LONGEST_SEGMENT * length / (n - 1):
-            return True
-    return False
+    _, length = energy(state.X)
+    return survey(body, state, blank_survey(n), counters) > DEEPEST * length / (n - 1)
 
 
 @njit(cache=True)

@@ -16,6 +16,16 @@ def pull(X, i, before, after):
     return combine(1.0 / (i - before), minus(row(X, before), here), 1.0 / (after - i), minus(row(X, after), here))
 
 
+@njit(inline="always", cache=True)
+def spring_pull(X, station, i, before, after):
+    """As `pull`, by springs between the particles' stations."""
+    here = row(X, i)
+    return combine(
+        1.0 / (station[i] - station[before]), minus(row(X, before), here),
+        1.0 / (station[after] - station[i]), minus(row(X, after), here),
+    )  # fmt: skip
+
+
 @njit(cache=True)
 def link(touching, contacts):
     """Fill each touching particle's nearest touching neighbours; the two ends always touch."""
@@ -38,13 +48,13 @@ def lift(state, slack, deep, contacts):
     by repeated sweeps; without, only particles that their present neighbours pull off are released.  A pull up to
     `slack` counts as none.  Returns how many were released.
     """
-    X, normal, touching = state.X, state.normal, state.touching
+    X, normal, touching, station = state.X, state.normal, state.touching, state.station
     before, after = contacts.before, contacts.after
     link(touching, contacts)
     released = 0
     i, n = after[0], len(touching)
     while i < n - 1:
-        force = pull(X, i, before[i], after[i])
+        force = spring_pull(X, station, i, before[i], after[i])
         p, q = before[i], after[i]
         i_next = q
         if dot(force, row(normal, i)) > slack:

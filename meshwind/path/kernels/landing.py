@@ -23,12 +23,12 @@ def carry_lifted(body, step, contacts, count, state, trial, counters):
     They are carried along by their two touching neighbours, which `trial` already holds, and drawn towards the
     chord; those that would sink land on their feet (section 5.3).
     """
-    X, Y, index = state.X, trial.X, contacts.inner
+    X, Y, station, index = state.X, trial.X, state.station, contacts.inner
     i = 0
     for c in range(count + 1):
         j = index[c] if c < count else len(X) - 1
         for m in range(i + 1, j):
-            t = (m - i) / (j - i)
+            t = (station[m] - station[i]) / (station[j] - station[i])
             copy_lifted(state, trial, m)
             moved = 0.0
             for k in range(3):
@@ -124,14 +124,14 @@ def follow(body, start, u, v, trial, m, counters):
 
 
 @njit(cache=True)
-def sag(X, after):
-    """Largest distance of a lifted particle from its even place on the chord."""
+def sag(X, after, station):
+    """Largest distance of a lifted particle from its place on the chord."""
     worst = 0.0
     i, n = 0, len(X)
     while i < n - 1:
         j = after[i]
         for m in range(i + 1, j):
-            t = (m - i) / (j - i)
+            t = (station[m] - station[i]) / (station[j] - station[i])
             d = 0.0
             for k in range(3):
                 d += (X[m, k] - (1.0 - t) * X[i, k] - t * X[j, k]) ** 2

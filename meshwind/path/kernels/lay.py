@@ -7,11 +7,13 @@ few particles first and then, from their answer, on more.
 import numpy as np
 from numba import njit
 
-from meshwind.path.kernels.certificate import required_friction, unresolved
+from meshwind.path.kernels.certificate import DEEPEST, leaps, required_friction
 from meshwind.path.kernels.glide import FEW, MAX_LAST_STEPS, MAX_STEPS, Factors, glide, resample, spread_along
+from meshwind.path.kernels.mend import any_wanting
 from meshwind.path.kernels.refine import refine
-from meshwind.path.kernels.relax import relax_and_certify, restore_contact, start_on_curve
-from meshwind.path.kernels.state import CONVERGED, Limits, blank, state_of
+from meshwind.path.kernels.rest import relax_and_certify, restore_contact, start_on_curve
+from meshwind.path.kernels.state import CONVERGED, Limits, blank, energy, state_of
+from meshwind.path.kernels.survey import blank_survey, survey
 from meshwind.surface.evaluate import S, unit_normal
 
 FEWEST = 96
@@ -31,7 +33,7 @@ def solve_without_friction(first, last, body, limits, rough, batch):
     for p in range(first, last):
         curve, state = batch.starts[p], state_of(batch, p, frames)
         required, counters = batch.required[p], batch.counters[p]
-        residual, found = solve_on_surface(body.spline, limits, curve, state, factors, required, counters)
+        residual, found = solve_on_surface(body, limits, curve, state, factors, required, counters)
         status = CONVERGED
         if not found:
             residual, status = solve_nested(body, limits, rough, curve, state, required, counters)
@@ -39,10 +41,10 @@ def solve_without_friction(first, last, body, limits, rough, batch):
 
 
 @njit(cache=True)
-def solve_on_surface(spline, limits, curve, state, factors, required, counters):
+def solve_on_surface(body, limits, curve, state, factors, required, counters):
     """Solve from a starting curve (m, 2) into `state` on the surface; returns the residual and whether that does."""
     X, uv, frames, normal = state.X, state.uv, state.frames, state.normal
-    n = len(uv)
+    spline, n = body.spline, len(uv)
     few = int(np.ceil(FEW * max(1.0, turn_of(curve)))) + 1
     steps = MAX_STEPS
     if 2 * few < n:
@@ -64,7 +66,9 @@ def solve_on_surface(spline, limits, curve, state, factors, required, counters):
         unit_normal(frames[i], normal[i])
         for k in range(3):
             X[i, k] = frames[i, S, k]
-    if unresolved(state, spline.periodic):
+    found = blank_survey(n)
+    deep, spacing = survey(body, state, found, counters), energy(X)[1] / (n - 1)
+    if deep > DEEPEST * spacing or any_wanting(found, spacing) or leaps(state, spline.periodic):
         return residual, False
     for i in range(1, n - 1):
         required[i] = required_friction(X, normal, i)

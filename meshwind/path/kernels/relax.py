@@ -17,10 +17,10 @@ from meshwind.core.cast import Bools
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.assembly import assemble
 from meshwind.path.kernels.block_tridiagonal import SymmetricSystem, solve, symmetric_system
-from meshwind.path.kernels.certificate import HALF_TURN, certify, largest_leap, unresolved
+from meshwind.path.kernels.certificate import HALF_TURN, largest_leap
 from meshwind.path.kernels.contact import DEEP, NOTHING, lift, release
-from meshwind.path.kernels.glide import LONGEST_MOVE, spread_along
-from meshwind.path.kernels.landing import carry_lifted, land, sag
+from meshwind.path.kernels.glide import LONGEST_MOVE
+from meshwind.path.kernels.landing import carry_lifted, sag
 from meshwind.path.kernels.state import (
     CONVERGED,
     EVALUATIONS,
@@ -31,16 +31,14 @@ from meshwind.path.kernels.state import (
     SLID_OFF_START,
     SOLVES,
     STALLED,
-    TOO_COARSE,
     UNSTABLE,
     Contacts,
     blank,
     copy,
     copy_particle,
-    energy,
     no_contacts,
     put_on_surface,
-    state_of,
+    spring_energy,
 )
 
 SMALLEST_STEP = 1e-7
@@ -57,8 +55,6 @@ LEAP_MARGIN = 1.2
 """A path that leaps further than this times its leap at the start has gone through the body."""
 MAX_LEANING = 60
 """Maximum number of steps in a row that a path may lean on a rim before it counts as slid off there."""
-MAX_LANDINGS = 4
-"""Maximum number of times that a path is relaxed anew because its certificate finds a particle inside the body."""
 MAX_ESCAPES = 5
 """Maximum number of saddles that a path may leave."""
 INVERSE_ITERATIONS = 8
@@ -95,10 +91,12 @@ def minimise(body, limits, state, trial, counters):
     """As `relax`; the answer is left in `state` or, where the third result says so, in `trial`."""
     n, periodic = len(state.X), body.spline.periodic
     swapped = False
+    trial.station[:] = state.station
+    trial.pinned[:] = state.pinned
     work = Workspace(no_contacts(n), symmetric_system(n), np.empty(n, np.bool_))
     contacts, system = work.contacts, work.system
     shift, least = 0.0, LEAST_SHIFT * (np.pi / n) ** 2
-    now, length = energy(state.X)
+    now, length = spring_energy(state)
     most = max(HALF_TURN, LEAP_MARGIN * largest_leap(state, periodic))
     residual = np.inf
     caution = np.int64(DEEP)  # a literal would have its callees compiled twice
@@ -113,7 +111,7 @@ def minimise(body, limits, state, trial, counters):
         if released > 0 and len(body.tree.levels) == 0:
             return residual, NEEDS_TREE, swapped
         count, force, leaning = assemble(state, periodic, contacts, system)
-        residual = max(force, sag(state.X, contacts.after)) / spacing
+        residual = max(force, sag(state.X, contacts.after, state.station)) / spacing
         if released == 0 and residual <= limits.tolerance:
             if caution == NOTHING and lift(state, slack, False, contacts) > 0:
                 break  # in equilibrium but for pulls that no step could follow
@@ -124,7 +122,7 @@ def minimise(body, limits, state, trial, counters):
             if escapes > MAX_ESCAPES or not escape_saddle(body, state, trial, work, count, least, counters):
                 return residual, UNSTABLE, swapped
             state, trial, swapped = trial, state, not swapped
-            now, length = energy(state.X)
+            now, length = spring_energy(state)
             continue
         leant = leant + 1 if leaning > 0 else 0
         if leant > MAX_LEANING:
@@ -178,7 +176,7 @@ def line_search(body, most, count, now, state, trial, work, counters):
         if largest_leap(trial, body.spline.periodic) > most:  # neighbours on two sides: one went through the body
             step *= 0.5
             continue
-        then, length = energy(trial.X)
+        then, length = spring_energy(trial)
         # below round-off the energy cannot judge a step, and Newton's is right
         blind = slope <= BLIND_SLOPE * now and then <= now * (1.0 + BLIND_RISE)
         if then <= now - DESCENT * step * slope or blind:
@@ -232,12 +230,12 @@ def escape_saddle(body, state, trial, work, count, least, counters):
         counters[SOLVES] += 1
         solve(modal, shift, count)
     mode /= np.abs(mode).max()
-    best = energy(state.X)[0]
+    best = spring_energy(state)[0]
     chosen = 0.0
     for step in (ESCAPE_STEP, -ESCAPE_STEP):
         move_touching(body.spline, step, mode, contacts, count, state, trial, counters)
         carry_lifted(body, 0.0, contacts, count, state, trial, counters)
-        then = energy(trial.X)[0]
+        then = spring_energy(trial)[0]
         if then < best:
             best, chosen = then, step
     if chosen > 0.0:  # the trial holds the other side
@@ -272,64 +270,3 @@ def leaving_by(uv, i):
     if uv[i, 1] <= 0.0:
         return SLID_OFF_START
     return SLID_OFF_END if uv[i, 1] >= 1.0 else LEFT_CHART
-
-
-@njit(nogil=True, cache=True)
-def relax_all(first, last, body, limits, resume, final, batch):
-    """Relax paths first to last of a batch: from their starting curves, or with `resume` from what the batch holds.
-
-    Only a `final` answer pays for its certificate; others leave lower bounds of the gaps.
-    """
-    frames = np.empty((batch.uv.shape[1], 6, 3))
-    for p in range(first, last):
-        state, counters = state_of(batch, p, frames), batch.counters[p]
-        if resume:
-            restore_contact(body, state, counters)
-        else:
-            start_on_curve(body.spline, batch.starts[p], state, counters)
-        batch.residual[p], batch.status[p] = relax_and_certify(body, limits, final, state, batch.required[p], counters)
-
-
-@njit(cache=True)
-def start_on_curve(spline, curve, state, counters):
-    """Put a path on its starting curve (m, 2), evenly spaced by length."""
-    uv = state.uv
-    spread_along(spline, curve, uv, state.frames, counters)
-    for i in range(len(uv)):
-        put_on_surface(spline, state, i, uv[i, 0], uv[i, 1])
-    counters[EVALUATIONS] += len(uv)
-
-
-@njit(cache=True)
-def relax_and_certify(body, limits, final, state, required, counters):
-    """Relax a path and, if the answer is `final`, certify it; what the certificate finds inside the body lands.
-
-    Writes the friction that each particle requires into required (n,); returns (residual, status).
-    """
-    inside = 0
-    residual, status = np.inf, STALLED
-    for _ in range(MAX_LANDINGS):
-        residual, status = relax(body, limits, state, counters)
-        if not final or status == NEEDS_TREE:
-            return residual, status
-        inside = certify(body, state, required, counters)
-        if inside == 0 or status != CONVERGED:
-            break
-    if status == CONVERGED:
-        if inside > 0:
-            status = STALLED
-        elif unresolved(state, body.spline.periodic):
-            status = TOO_COARSE
-    return residual, status
-
-
-@njit(cache=True)
-def restore_contact(body, state, counters):
-    """Complete a state of which positions, parameters and contacts are known; what is inside the body lands."""
-    uv = state.uv
-    for i in range(len(uv)):
-        if state.touching[i]:
-            put_on_surface(body.spline, state, i, uv[i, 0], uv[i, 1])
-            counters[EVALUATIONS] += 1
-        elif state.clear[i] <= 0.0:
-            land(body, state.X, state, i, counters)

@@ -27,11 +27,10 @@ from meshwind.path.kernels.landing import sag
 from meshwind.path.kernels.relax import (
     LEAP_MARGIN,
     LEAST_SHIFT,
-    MAX_LANDINGS,
     SHIFT_DOWN,
     failure,
-    restore_contact,
 )
+from meshwind.path.kernels.rest import MAX_LANDINGS, restore_contact
 from meshwind.path.kernels.state import (
     CONVERGED,
     ITERATIONS,
@@ -85,7 +84,7 @@ def relax_with_friction(rough, limits, fibre, counters):
             return residual, NEEDS_TREE
         work.barred[:] = False
         changed, force = balance_forces(rough, fibre, work.contacts, work.barred, work.balance)
-        residual = max(force, sag(state.X, work.contacts.after)) / spacing
+        residual = max(force, sag(state.X, work.contacts.after, state.station)) / spacing
         if released == 0 and changed == 0 and residual <= limits.tolerance:
             if caution == NOTHING and lift(state, slack, False, work.contacts) > 0:
                 break
@@ -163,6 +162,6 @@ def certified_with_friction(rough, limits, final, fibre, required, counters):
     if status == CONVERGED:
         if inside > 0:
             status = STALLED
-        elif unresolved(state, body.spline.periodic):
+        elif unresolved(body, state, counters):
             status = TOO_COARSE
     return residual, status

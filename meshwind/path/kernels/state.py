@@ -28,7 +28,9 @@ class State(NamedTuple):
 
     X (n, 3): positions; uv (n, 2): parameters of the particle or of its foot; frames (n, 6, 3) and outward normals
     (n, 3) of the surface there; touching (n,): whether the particle touches; clear (n,): a lower bound of the gap of
-    those that do not.
+    those that do not; station (n,): where along the fibre they belong, from 0 to n - 1, so that the springs' natural
+    lengths are the differences: 1 for all where they are spaced evenly; pinned (n,): whether it moves across the fibre
+    only.
     """
 
     X: Floats
@@ -37,6 +39,8 @@ class State(NamedTuple):
     normal: Floats
     touching: Bools
     clear: Floats
+    station: Floats
+    pinned: Bools
 
 
 class Contacts(NamedTuple):
@@ -73,6 +77,8 @@ def blank(n):
         np.zeros((n, 3)),
         np.ones(n, np.bool_),
         np.zeros(n),
+        np.arange(n) * 1.0,
+        np.zeros(n, np.bool_),
     )
 
 
@@ -85,7 +91,10 @@ def no_contacts(n):
 @njit(cache=True)
 def state_of(batch, path, frames):
     """The state of one path of a batch, which it shares; frames (n, 6, 3) are work space."""
-    return State(batch.X[path], batch.uv[path], frames, batch.normal[path], batch.touching[path], batch.gap[path])
+    return State(
+        batch.X[path], batch.uv[path], frames, batch.normal[path], batch.touching[path], batch.gap[path],
+        np.arange(batch.X.shape[1]) * 1.0, np.zeros(batch.X.shape[1], np.bool_),
+    )  # fmt: skip
 
 
 @njit(cache=True)
@@ -93,19 +102,26 @@ def copy(source, target):
     """Copy a state into another."""
     for i in range(len(source.X)):
         copy_particle(source, target, i)
+        target.station[i], target.pinned[i] = source.station[i], source.pinned[i]
+
+
+@njit(inline="always", cache=True)
+def copy_particle(source, target, i):
+    """Copy particle i of a state into another, but for its station and pin."""
+    move_particle(source, i, target, i)
 
 
 @njit(cache=True)
-def copy_particle(source, target, i):
-    """Copy particle i of a state into another."""
+def move_particle(source, j, target, i):
+    """Copy particle j of a state to particle i of another, but for its station and pin."""
     for k in range(3):
-        target.X[i, k] = source.X[i, k]
-        target.normal[i, k] = source.normal[i, k]
+        target.X[i, k] = source.X[j, k]
+        target.normal[i, k] = source.normal[j, k]
         for row in range(6):
-            target.frames[i, row, k] = source.frames[i, row, k]
-    target.uv[i, 0], target.uv[i, 1] = source.uv[i, 0], source.uv[i, 1]
-    target.touching[i] = source.touching[i]
-    target.clear[i] = source.clear[i]
+            target.frames[i, row, k] = source.frames[j, row, k]
+    target.uv[i, 0], target.uv[i, 1] = source.uv[j, 0], source.uv[j, 1]
+    target.touching[i] = source.touching[j]
+    target.clear[i] = source.clear[j]
 
 
 @njit(cache=True)
@@ -147,5 +163,17 @@ def energy(X):
     for i in range(len(X) - 1):
         d = distance(X, i + 1, i)
         total += d * d
+        length += d
+    return 0.5 * total, length
+
+
+@njit(cache=True)
+def spring_energy(state):
+    """The energy of springs between the particles' stations, and the length: that of `energy` where these are even."""
+    X, station = state.X, state.station
+    total = length = 0.0
+    for i in range(len(X) - 1):
+        d = distance(X, i + 1, i)
+        total += d * d / (station[i + 1] - station[i])
         length += d
     return 0.5 * total, length

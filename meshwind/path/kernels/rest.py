@@ -1,0 +1,162 @@
+"""Frictionless paths with their certificates: relaxed, and given particles where the body needs them."""
+
+import numpy as np
+from numba import njit
+
+from meshwind.path.kernels.certificate import DEEPEST, certify, leaps
+from meshwind.path.kernels.glide import spread_along
+from meshwind.path.kernels.landing import land
+from meshwind.path.kernels.mend import ROUNDS, any_wanting, centre, mend, pin_beads, spread_stations
+from meshwind.path.kernels.relax import relax
+from meshwind.path.kernels.state import (
+    CONVERGED,
+    EVALUATIONS,
+    NEEDS_TREE,
+    STALLED,
+    TOO_COARSE,
+    UNSTABLE,
+    blank,
+    copy,
+    no_contacts,
+    put_on_surface,
+    spring_energy,
+    state_of,
+)
+from meshwind.path.kernels.survey import blank_survey, survey
+
+MAX_LANDINGS = 4
+"""Maximum number of times that a path is relaxed anew because its certificate finds a particle inside the body."""
+EVEN = 3
+"""Number of times that the springs' natural lengths are made even after particles were moved: each brings the pulls
+closer to one another by the square of the fibre's bends."""
+
+
+@njit(nogil=True, cache=True)
+def relax_all(first, last, body, limits, resume, final, batch):
+    """Relax paths first to last of a batch: from their starting curves, or with `resume` from what the batch holds.
+
+    Only a `final` answer pays for its certificate; others leave lower bounds of the gaps.
+    """
+    frames = np.empty((batch.uv.shape[1], 6, 3))
+    for p in range(first, last):
+        state, counters = state_of(batch, p, frames), batch.counters[p]
+        if resume:
+            restore_contact(body, state, counters)
+        else:
+            start_on_curve(body.spline, batch.starts[p], state, counters)
+        batch.residual[p], batch.status[p] = relax_and_certify(body, limits, final, state, batch.required[p], counters)
+
+
+@njit(cache=True)
+def start_on_curve(spline, curve, state, counters):
+    """Put a path on its starting curve (m, 2), evenly spaced by length."""
+    uv = state.uv
+    spread_along(spline, curve, uv, state.frames, counters)
+    for i in range(len(uv)):
+        put_on_surface(spline, state, i, uv[i, 0], uv[i, 1])
+    counters[EVALUATIONS] += len(uv)
+
+
+@njit(cache=True)
+def relax_and_certify(body, limits, final, state, required, counters):
+    """Relax a path and, if the answer is `final`, certify it, with particles where the body needs them.
+
+    Writes the friction that each particle requires into required (n,); returns (residual, status).
+    """
+    start = blank(len(state.X))
+    copy(state, start)
+    residual, status = settle(body, limits, final, state, required, counters)
+    first = status
+    for again in (False, True):  # from where it failed, then from where it started
+        if status not in (UNSTABLE, STALLED):
+            break
+        if again:
+            copy(start, state)
+        if pin_where_needed(body, state, required, counters) > 0:
+            residual, status = settle_evenly(body, limits, final, state, required, counters)
+    if status not in (CONVERGED, NEEDS_TREE):
+        return residual, first
+    if not final or status != CONVERGED:
+        return residual, status
+    n = len(state.X)
+    found = blank_survey(n)
+    deep = survey(body, state, found, counters)
+    spacing = spring_energy(state)[1] / (n - 1)
+    if any_wanting(found, spacing):
+        before = blank(n)
+        for _ in range(ROUNDS):
+            copy(state, before)
+            if mend(body, state, found, spacing, counters) == 0:
+                break
+            again, status = settle_evenly(body, limits, final, state, required, counters)
+            if status == STALLED:  # as good as it was
+                copy(before, state)
+                settle(body, limits, final, state, required, counters)
+                return residual, TOO_COARSE
+            residual = again
+            if status != CONVERGED:
+                return residual, status
+            deep = survey(body, state, found, counters)
+            spacing = spring_energy(state)[1] / (n - 1)
+            if not any_wanting(found, spacing):
+                break
+    if deep > DEEPEST * spacing or leaps(state, body.spline.periodic):
+        return residual, TOO_COARSE
+    return residual, status
+
+
+@njit(cache=True)
+def pin_where_needed(body, state, required, counters):
+    """Pin what the springs draw off edges, and move particles to those that they have left; returns how many."""
+    n = len(state.X)
+    certify(body, state, required, counters)
+    count, found = pin_beads(state, no_contacts(n)), blank_survey(n)
+    survey(body, state, found, counters)
+    return count + mend(body, state, found, spring_energy(state)[1] / (n - 1), counters)
+
+
+@njit(cache=True)
+def settle_evenly(body, limits, final, state, required, counters):
+    """As `settle`, with pinned particles in the middle of what they rest on, and equal pulls along the fibre."""
+    n = len(state.X)
+    contacts = no_contacts(n)
+    residual, status = np.inf, STALLED
+    for _ in range(EVEN):
+        released = spread_stations(state, limits.pull_off * spring_energy(state)[1] / (n - 1), contacts)
+        if released > 0 and len(body.tree.levels) == 0:
+            return residual, NEEDS_TREE
+        centre(body, state, contacts, counters)
+        residual, status = settle(body, limits, final, state, required, counters)
+        if status != CONVERGED:
+            break
+    return residual, status
+
+
+@njit(cache=True)
+def settle(body, limits, final, state, required, counters):
+    """Relax a path; if the answer is `final`, what its certificate finds inside the body lands, and it is relaxed anew.
+
+    Returns (residual, status).
+    """
+    inside = 0
+    residual, status = np.inf, STALLED
+    for _ in range(MAX_LANDINGS):
+        residual, status = relax(body, limits, state, counters)
+        if not final or status == NEEDS_TREE:
+            return residual, status
+        inside = certify(body, state, required, counters)
+        if inside == 0 or status != CONVERGED:
+            break
+    return residual, STALLED if status == CONVERGED and inside > 0 else status
+
+
+@njit(cache=True)
+def restore_contact(body, state, counters):
+    """Complete a state of which positions, parameters and contacts are known; what is inside the body lands."""
+    uv = state.uv
+    for i in range(len(uv)):
+        if state.touching[i]:
+            put_on_surface(body.spline, state, i, uv[i, 0], uv[i, 1])
+            counters[EVALUATIONS] += 1
+        elif state.clear[i] <= 0.0:
+            land(body, state.X, state, i, counters)

@@ -1,0 +1,280 @@
+"""How far the surface stands out of a path's segments, or below them, between particles.
+
+Within a knot span the surface is one polynomial, and across a knot it stays smooth to the second derivative: a segment
+that passes one knot at most hides nothing that the frames at its ends do not know.  Across more, the control net says
+whether there is anything else; only where there is, the surface is evaluated on the way.  A segment in the air is
+followed from gap to gap, unless the gaps at its ends cover it.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from meshwind.core.cast import Floats
+from meshwind.core.vectors import TINY
+from meshwind.path.kernels.geometry import derivative, dot, minus, over, plus, row, times, to_parameters
+from meshwind.path.kernels.state import EVALUATIONS, FEET, distance
+from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, S, position, spans_of, unit_normal
+from meshwind.surface.tree import nearest_foot
+
+PROBES = 8
+"""Shares of a segment at which it is compared with the surface that the frames at its ends predict."""
+PER_SPAN = 3
+"""Samples per span where the control net shows more than the frames: a bump of a spline is two spans wide or wider."""
+SMOOTH, FLAT = 0.1, 3e-4
+"""What the control net may differ from the frames' prediction: this share of it, and of the segment."""
+FACET = 0.25
+"""And this share of its second differences."""
+STEEP = 0.25
+"""Share of a segment that an even bow stays below: a prediction above it means nothing."""
+SHORTEST_STEP = 1.0 / 3.0
+"""Shortest step along a segment in the air, in spans: nothing narrower stands on the surface."""
+MOST_STEPS = 400
+"""Maximum number of such steps."""
+OPPOSED = 0.1
+"""Half the sum of two unit normals shorter than this says nothing of which way is out."""
+
+
+class Segment(NamedTuple):
+    """A segment: its start, its way to the end, its length, and the unit vector at right angles that points outwards.
+
+    out is zero where the surface faces opposite ways at the ends.
+    """
+
+    start: tuple[float, float, float]
+    way: tuple[float, float, float]
+    length: float
+    out: tuple[float, float, float]
+
+
+class Survey(NamedTuple):
+    """Heights over each segment of a path of n particles.
+
+    rise, dip (n,): how far the surface stands out of the segment from each particle to the next at most, and how far
+    it stays below between particles that touch; at (n,): the share of the segment where it rises most.
+    """
+
+    rise: Floats
+    dip: Floats
+    at: Floats
+
+
+@njit(cache=True)
+def blank_survey(n):
+    """Room for the survey of n particles."""
+    return Survey(np.zeros(n), np.zeros(n), np.zeros(n))
+
+
+@njit(cache=True)
+def survey(body, state, found, counters):
+    """Survey a path whose lifted particles have true gaps and frames; returns its largest rise."""
+    touching, clear = state.touching, state.clear
+    rise, dip, at = found.rise, found.dip, found.at
+    work = np.empty((6, 3))
+    most = 0.0
+    for i in range(len(touching) - 1):
+        rise[i] = dip[i] = at[i] = 0.0
+        air = not (touching[i] and touching[i + 1])
+        if air and clear[i] + clear[i + 1] >= distance(state.X, i, i + 1):
+            continue
+        high, low, where = over_segment(body, state, i, air, work, counters)
+        rise[i], at[i] = high, where
+        dip[i] = 0.0 if air else low
+        most = max(most, high)
+    return most
+
+
+@njit(cache=True)
+def over_segment(body, state, i, air, work, counters):
+    """Largest rise over segment i, largest dip below it, and the share of it where it rises most."""
+    segment = segment_of(state, i)
+    spline, uv = body.spline, state.uv
+    spans_u, spans_v = spans_of(spline.net)
+    knots = max(
+        abs(np.floor(uv[i + 1, 0] * spans_u) - np.floor(uv[i, 0] * spans_u)),
+        abs(np.floor(uv[i + 1, 1] * spans_v) - np.floor(uv[i, 1] * spans_v)),
+    )
+    high, low, where, odd = 0.0, 0.0, 0.0, True
+    if dot(segment.out, segment.out) > 0.0:
+        high, low, where, bow = predicted(state, i, segment)
+        odd = knots > 1.0 and not follows(spline, state, i, segment, bow)
+    if odd:
+        high, low, where = sampled(spline, uv, i, segment, work[S], counters)
+    if air and knots > 1.0:
+        deep, there = followed(body, state, i, segment, SHORTEST_STEP if odd else np.inf, work, counters)
+        if deep == 0.0:  # the line between the feet goes over what the segment passes by
+            return 0.0, 0.0, 0.0
+        if deep > high:
+            high, where = deep, there
+    return high, low, where
+
+
+@njit(cache=True)
+def segment_of(state, i):
+    """Segment i of a path."""
+    X, normal = state.X, state.normal
+    start = row(X, i)
+    way = minus(row(X, i + 1), start)
+    length = max(np.sqrt(dot(way, way)), TINY)
+    out = times(0.5, plus(row(normal, i), row(normal, i + 1)))
+    out = minus(out, times(dot(out, way) / length**2, way))
+    size = np.sqrt(dot(out, out))
+    return Segment(start, way, length, over(out, size) if size > OPPOSED else (0.0, 0.0, 0.0))
+
+
+@njit(cache=True)
+def predicted(state, i, segment):
+    """Rise, dip and the rise's share of segment i by the frames at its ends, and the bow's coefficients.
+
+    The height of the surface over the segment is the polynomial of degree 5 with the frames' heights, slopes and
+    bends along the straight line between the two in the parametric plane.
+    """
+    uv, frames = state.uv, state.frames
+    du, dv = uv[i + 1, 0] - uv[i, 0], uv[i + 1, 1] - uv[i, 1]
+    h0, s0, b0 = heights(frames, i, du, dv, segment)
+    h1, s1, b1 = heights(frames, i + 1, du, dv, segment)
+    # c0 + c1 t + c2 t^2 + t^3 (c3 + c4 t + c5 t^2)
+    c0, c1, c2 = h0, s0, 0.5 * b0
+    e, f, g = h1 - c0 - c1 - c2, s1 - c1 - 2.0 * c2, b1 - 2.0 * c2
+    c3, c4, c5 = 10.0 * e - 4.0 * f + 0.5 * g, -15.0 * e + 7.0 * f - g, 6.0 * e - 3.0 * f + 0.5 * g
+    bow = c0, c1, c2, c3, c4, c5
+    high = low = where = 0.0
+    for m in range(1, PROBES):
+        t = m / PROBES
+        h = height_at(bow, t)
+        low = max(low, -h)
+        if h > high:
+            high, where = h, t
+    return high, low, where, bow
+
+
+@njit(inline="always", cache=True)
+def height_at(bow, t):
+    """The polynomial with coefficients bow (6,) at t."""
+    return bow[0] + t * (bow[1] + t * (bow[2] + t * (bow[3] + t * (bow[4] + t * bow[5]))))
+
+
+@njit(inline="always", cache=True)
+def heights(frames, i, du, dv, segment):
+    """Height over a segment of the surface at particle i, its slope and its bend along (du, dv)."""
+    out = segment.out
+    slope = du * dot(derivative(frames, i, SU), out) + dv * dot(derivative(frames, i, SV), out)
+    bend = du * du * dot(derivative(frames, i, SUU), out) + dv * dv * dot(derivative(frames, i, SVV), out)
+    bend += 2.0 * du * dv * dot(derivative(frames, i, SUV), out)
+    return dot(minus(derivative(frames, i, S), segment.start), out), slope, bend
+
+
+@njit(cache=True)
+def follows(spline, state, i, segment, bow):
+    """Whether the control net along segment i bows as predicted, so that the surface has nothing else there.
+
+    Where it is smooth the net lies off the surface by a sixth of its second differences, much the same all along, and
+    between its points, where it is taken as bilinear, by up to an eighth of them.
+    """
+    uv = state.uv
+    du, dv = uv[i + 1, 0] - uv[i, 0], uv[i + 1, 1] - uv[i, 1]
+    spans_u, spans_v = spans_of(spline.net)
+    count = int(np.ceil(max(abs(du) * spans_u, abs(dv) * spans_v))) + 1
+    first = net_height(spline, uv[i, 0], uv[i, 1], segment) - height_at(bow, 0.0)
+    last = net_height(spline, uv[i + 1, 0], uv[i + 1, 1], segment) - height_at(bow, 1.0)
+    size = 0.0
+    for m in range(1, PROBES):
+        t = m / PROBES
+        size = max(size, abs(height_at(bow, t) - (1.0 - t) * bow[0] - t * height_at(bow, 1.0)))
+    across_u, across_v = min(1.0, abs(du) * spans_u), min(1.0, abs(dv) * spans_v)
+    facets = max(
+        between_points(spline, state.frames, i, segment, across_u, across_v),
+        between_points(spline, state.frames, i + 1, segment, across_u, across_v),
+    )
+    if size > STEEP * segment.length:
+        return False
+    allowed = SMOOTH * size + FLAT * segment.length + FACET * facets
+    for m in range(1, count):
+        t = m / count
+        h = net_height(spline, uv[i, 0] + t * du, uv[i, 1] + t * dv, segment) - height_at(bow, t)
+        if abs(h - (1.0 - t) * first - t * last) > allowed:
+            return False
+    return True
+
+
+@njit(inline="always", cache=True)
+def between_points(spline, frames, i, segment, across_u, across_v):
+    """Second differences of the control net at particle i, across a segment: in u and v, as far as it moves on."""
+    spans_u, spans_v = spans_of(spline.net)
+    along_u = dot(derivative(frames, i, SUU), segment.out) / spans_u**2
+    along_v = dot(derivative(frames, i, SVV), segment.out) / spans_v**2
+    return across_u * abs(along_u) + across_v * abs(along_v)
+
+
+@njit(cache=True)
+def net_height(spline, u, v, segment):
+    """Height over a segment of the control net, linear between its points, at (u, v)."""
+    net = spline.net
+    spans_u, spans_v = spans_of(net)
+    if spline.periodic:
+        u -= np.floor(u)
+    x, y = u * spans_u + 1.0, v * spans_v + 1.0  # control point k is that of knot k - 1
+    a, b = min(int(x), spans_u + 1), min(int(y), spans_v + 1)
+    x, y = x - a, y - b
+    total = 0.0
+    for k in range(3):
+        before = (1.0 - y) * net[a, b, k] + y * net[a, b + 1, k]
+        after = (1.0 - y) * net[a + 1, b, k] + y * net[a + 1, b + 1, k]
+        total += ((1.0 - x) * before + x * after - segment.start[k]) * segment.out[k]
+    return total
+
+
+@njit(cache=True)
+def sampled(spline, uv, i, segment, point, counters):
+    """Rise over segment i, dip below it and the rise's share of it, by samples of the surface in every span."""
+    du, dv = uv[i + 1, 0] - uv[i, 0], uv[i + 1, 1] - uv[i, 1]
+    spans_u, spans_v = spans_of(spline.net)
+    count = int(np.ceil(PER_SPAN * max(abs(du) * spans_u, abs(dv) * spans_v))) + 1
+    facing = dot(segment.out, segment.out) > 0.0
+    high = low = where = 0.0
+    counters[EVALUATIONS] += count - 1
+    for m in range(1, count):
+        t = m / count
+        position(spline, uv[i, 0] + t * du, uv[i, 1] + t * dv, point)
+        off = minus((point[0], point[1], point[2]), segment.start)
+        if facing:
+            h = dot(off, segment.out)
+        else:
+            along = min(max(dot(off, segment.way) / segment.length**2, 0.0), 1.0)
+            off = minus(off, times(along, segment.way))
+            h = np.sqrt(dot(off, off))
+        low = max(low, -h)
+        if h > high:
+            high, where = h, t
+    return high, low, where
+
+
+@njit(cache=True)
+def followed(body, state, i, segment, stride, work, counters):
+    """How deep segment i, which is in the air, passes inside the body, and the share of it where it is deepest.
+
+    Each step is as long as the gap, and at least `stride` spans of the surface below or, if less, half the segment.
+    """
+    spans_u, spans_v = spans_of(body.spline.net)
+    point, foot, normal = np.empty(3), np.empty(2), np.empty(3)
+    foot[0], foot[1] = state.uv[i, 0], state.uv[i, 1]
+    deep, where = 0.0, 0.0
+    gap, t = state.clear[i], 0.0
+    work[:] = state.frames[i]
+    for _ in range(MOST_STEPS):
+        du, dv = to_parameters(row(work, SU), row(work, SV), over(segment.way, segment.length))
+        least = stride / max(abs(du) * spans_u, abs(dv) * spans_v, TINY)
+        t += max(gap, min(least, 0.5 * segment.length)) / segment.length
+        if t * segment.length >= segment.length - state.clear[i + 1]:
+            break
+        for k in range(3):
+            point[k] = segment.start[k] + t * segment.way[k]
+        counters[FEET] += 1
+        counters[EVALUATIONS] += nearest_foot(body, point, foot, work)
+        unit_normal(work, normal)
+        away = minus((point[0], point[1], point[2]), row(work, S))
+        gap = np.sqrt(dot(away, away))
+        if dot(away, (normal[0], normal[1], normal[2])) < 0.0 and 0.0 < foot[1] < 1.0 and gap > deep:
+            deep, where = gap, t
+    return deep, where
