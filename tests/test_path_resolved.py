@@ -1,0 +1,93 @@
+"""Ribs, ridges and hollows between particles: right within the error that is stated, or told to be too coarse."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial import ConvexHull
+
+from meshwind.core.cast import Floats
+from meshwind.path import Paths, Status, solve
+from meshwind.surface import Surface, shapes
+
+LENGTH, RADIUS = 300.0, 50.0
+COUNTS = (51, 101, 201, 801, None)
+
+
+def revolved(profile: Callable[[Floats], Floats], spans: int = 1024) -> Surface:
+    return shapes.revolution(profile, 0.0, LENGTH, (16, spans))
+
+
+def bumps(at: Floats, width: Floats, height: Floats) -> Callable[[Floats], Floats]:
+    """A cylinder's radius with bumps of these widths at half their heights."""
+
+    def radius(z: Floats) -> Floats:
+        narrow = width / np.sqrt(4.0 * np.log(2.0))
+        steps = [h * np.exp(-(((z - a) / w) ** 2)) for a, w, h in zip(at, narrow, height, strict=True)]
+        return np.asarray(RADIUS + np.sum(steps, axis=0))
+
+    return radius
+
+
+def hull(surface: Surface) -> tuple[float, float]:
+    """Length of a taut meridian, the upper hull of its profile, and its largest height over the profile."""
+    v = np.linspace(0.0, 1.0, 200001)
+    points = surface.points(np.stack([np.full_like(v, 0.1), v], axis=1))
+    z, r = points[:, 2], np.hypot(points[:, 0], points[:, 1])
+    ends = [[z[0], -1e4], [z[-1], -1e4]]
+    corners = np.sort(ConvexHull(np.concatenate([np.stack([z, r], axis=1), ends])).vertices)
+    corners = corners[corners < len(z)]
+    height = np.interp(z, z[corners], r[corners]) - r
+    return float(np.hypot(np.diff(z[corners]), np.diff(r[corners])).sum()), float(height.max())
+
+
+def meridian(surface: Surface, particles: int | None) -> Paths:
+    return solve(surface, [(0.1, 0.0)], [(0.1, 1.0)], particles=particles)
+
+
+def check(surface: Surface, particles: int | None) -> None:
+    """Right to what it states, or too coarse, or not at rest: never converged and wrong."""
+    paths = meridian(surface, particles)
+    if paths.status[0] != Status.CONVERGED:
+        return
+    length, height = hull(surface)
+    assert abs(paths.length[0] - length) <= paths.length_error[0] + 1e-7 * length
+    assert paths.gap.max() <= height + paths.position_error[0] + 1e-5 * LENGTH  # the gap is no larger than the height
+
+
+@pytest.mark.parametrize(("width", "height"), [(0.6, 3.0), (1.0, 8.0), (2.0, 1.5)])
+def test_a_rib_between_particles_is_met(width: float, height: float) -> None:
+    surface = revolved(bumps(np.array([77.1]), np.array([width]), np.array([height])))
+    length, deep = hull(surface)
+    for particles in COUNTS:
+        paths = meridian(surface, particles)
+        assert paths.status[0] == Status.CONVERGED
+        assert abs(paths.length[0] - length) <= paths.length_error[0] + 1e-7 * length
+        assert paths.length_error[0] <= 1e-5 * length
+        assert paths.gap.max() == pytest.approx(deep, rel=0.1)
+
+
+@pytest.mark.parametrize(("waves", "height"), [(60, 0.2), (25, 1.0)])
+def test_contacts_shorter_than_a_spacing(waves: int, height: float) -> None:
+    def profile(z: Floats) -> Floats:
+        return np.asarray(
+            100.0 - 40.0 * (2.0 * z / LENGTH - 1.0) ** 2 + height * np.cos(2 * np.pi * waves * z / LENGTH)
+        )
+
+    surface = revolved(profile)
+    for particles in COUNTS[1:]:
+        check(surface, particles)
+        assert meridian(surface, particles).status[0] == Status.CONVERGED
+
+
+@settings(max_examples=12, deadline=None, derandomize=True, database=None)
+@given(
+    st.lists(st.tuples(st.floats(15.0, 285.0), st.floats(-0.2, 1.2), st.floats(-1.3, 0.7)), min_size=1, max_size=5),
+    st.sampled_from([51, 101, 201]),
+)
+def test_never_converged_and_wrong(ribs: list[tuple[float, float, float]], particles: int) -> None:
+    at, width, share = np.array(ribs).T
+    width = 10.0**width
+    check(revolved(bumps(at, width, np.minimum(width * 10.0**share, 10.0))), particles)
