@@ -107,7 +107,10 @@ def drag(  # noqa: PLR0913
     curve = straight(first[:1], last[:1], 2) if initial is None else floats(initial, "initial", -1, 2)[None]
     check_curves(curve)
     state = fresh(curve, particles)
-    solver.relax(state, resume=False)
+    if solver.friction.none:
+        solver.relax(state, resume=False)
+    else:
+        solver.slide(state)
     frames = [state]
     for k in range(1, len(first)):
         frames.append(_advance(solver, frames[-1], first[k], last[k]))

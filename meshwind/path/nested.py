@@ -10,7 +10,6 @@ import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.path.batch import Batch, fresh, resampled
-from meshwind.path.friction import Friction, uniform
 from meshwind.path.kernels.lay import FEWEST, halvings, turn_of
 from meshwind.path.length import Laid, Measured, measured
 from meshwind.path.paths import Status
@@ -19,10 +18,6 @@ from meshwind.path.solver import Solver
 REST, CUT = int(Status.CONVERGED), int(Status.TOO_COARSE)
 MOST = 6401
 """Particles of the highest level where their number is left open."""
-RAMP = (6.0, 4.0, 3.0, 2.2, 1.7, 1.4, 1.2, 1.08, 1.0)
-"""Factors of friction through which a path is lowered that does not settle directly."""
-RISES = 8
-"""Steps in which friction is raised from none."""
 SHARES = 8
 """Steps in which the turn of a path that slides off is built up."""
 
@@ -55,13 +50,19 @@ def solve_from_level(solver: Solver, batch: Batch, level: int) -> Batch:
         first.relax(work, resume=False)
         search(first, work)
         return climb(solver, work, n, level)
-    held, own = first.slide(work)
+    held, own = first.slide(work)  # the law decides where they rest: there is nothing to search for
     done = fresh(work.starts, n).curves_sampled()
     for which, curves in ((own, work.starts), (~own, held)):
         index = np.flatnonzero(which)
         if len(index):
-            part = climb(solver, work.rows(index)._replace(starts=curves[index]), n, level)
+            part = work.rows(index)._replace(starts=curves[index])
+            part = climb(solver, part, n, level) if level else ascend(solver, part, n)
             done.put(index, part.curves_sampled())
+    lost = np.flatnonzero(done.status == Status.STALLED)
+    if level and len(lost):  # more particles follow a slide that few cannot
+        again = batch.rows(lost)
+        again.counters[:] = done.counters[lost]
+        done.put(lost, solve_from_level(solver, again, level - 1).curves_sampled())
     return done
 
 
@@ -141,9 +142,8 @@ def failing(batch: Batch) -> Bools:
 
 
 def search(solver: Solver, batch: Batch) -> None:
-    """Look for equilibria that a direct start missed: try the paths that are not at rest in other ways, in place."""
-    others = (wind_up, wind_back) if solver.friction.none else (from_smooth, from_rough)
-    for start in (from_few, from_back, *others):
+    """Look for equilibria that a direct start missed: try frictionless paths not at rest in other ways, in place."""
+    for start in (from_few, from_back, wind_up, wind_back):
         index = np.flatnonzero(failing(batch))
         if len(index):
             work = start(solver, batch.rows(index))
@@ -167,46 +167,11 @@ def from_few(solver: Solver, part: Batch) -> Batch:
     return work
 
 
-def from_smooth(solver: Solver, part: Batch) -> Batch:
-    """Try again from where the fibres would rest without friction: at once, and then by raising it step by step."""
-    n = part.particles
-    smooth = fresh(part.starts, n)
-    smooth.counters[:] = part.counters
-    free = replace(solver, friction=uniform(0.0))
-    free.relax(smooth, resume=False)
-    search(free, smooth)
-    smooth.anchor[:] = np.linspace(0.0, part.starts.shape[1] - 1.0, n)
-    smooth.mode[:] = 1
-    best = smooth.rows(np.arange(part.paths))
-    best.status[:] = part.status
-    left = np.flatnonzero(~failing(smooth))
-    for steps in (1, RISES):
-        if not len(left):
-            break
-        work = smooth.rows(left)
-        work.counters[:] = best.counters[left]
-        for k in range(1, steps + 1):
-            table = solver.friction.table * (k / steps)
-            replace(solver, friction=Friction(table), final=k == steps and solver.final).relax(work, resume=True)
-        best.put(left, work)
-        left = left[failing(work)]
-    return best
-
-
 def from_back(solver: Solver, part: Batch) -> Batch:
     """Try again with start and end exchanged: what a search meets first can decide where it ends."""
     work = part.reversed()
     solver.relax(work, resume=False)
     return work.reversed()
-
-
-def from_rough(solver: Solver, part: Batch) -> Batch:
-    """Try again from higher friction, lowered step by step, so that few particles let go at a time."""
-    work = fresh(part.starts, part.particles)
-    work.counters[:] = part.counters
-    for k, factor in enumerate(RAMP):
-        replace(solver, friction=Friction(solver.friction.table * factor)).relax(work, resume=k > 0)
-    return work
 
 
 def wind_up(solver: Solver, part: Batch) -> Batch:

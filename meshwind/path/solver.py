@@ -89,7 +89,7 @@ class Solver:
             part = fresh(batch.starts[index], batch.particles)
             part.counters[:] = batch.counters[index]
             curves, same = np.zeros_like(part.uv), np.zeros(part.paths, np.bool_)
-            rough = RoughBody(body, self.friction.table, 0.0)
+            rough = RoughBody(body, self.friction.table)
             parallel_for(slide_all, part.paths, 1, rough, self._limits, part, curves, same)
             batch.put(index, part)
             held[index], own[index] = curves, same
@@ -109,7 +109,7 @@ class Solver:
         if self.friction.none:
             parallel_for(relax_all, part.paths, 1, body, self._limits, resume, self.final, part)
         else:
-            rough = RoughBody(body, self.friction.table, 0.0)
+            rough = RoughBody(body, self.friction.table)
             parallel_for(relax_all_with_friction, part.paths, 1, rough, self._limits, resume, self.final, part)
         if before is not None and (rerun := part.status == NEEDS_TREE).any():
             for name in ("X", "uv", "touching", "anchor", "mode"):

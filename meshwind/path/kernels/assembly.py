@@ -5,7 +5,8 @@ from numba import njit
 
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.contact import held, spring_pull
-from meshwind.path.kernels.geometry import derivative, dot, minus, row, to_parameters
+from meshwind.path.kernels.geometry import derivative, dot, minus, row, times, to_parameters
+from meshwind.path.kernels.resist import brace, resist_slip, slip_at, take_side
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV
 
 PINNED = 1e8
@@ -13,12 +14,12 @@ PINNED = 1e8
 
 
 @njit(cache=True)
-def assemble(state, periodic, contacts, system):
+def assemble(state, periodic, resist, contacts, system):
     """Hessian and force of the energy over the touching particles (5.2) in the parametric plane.
 
-    A pinned particle is not pulled along the fibre, and too stiff to move there.  The diagonal block is J'J's share of
-    (4.16) less F . s_ab, which makes the step Newton's.  Returns the number of blocks, the largest unbalanced
-    force in the tangent plane, and the last particle held at a rim or edge (0: none).
+    A pinned particle is not pulled along the fibre, and too stiff to move there; what resists a slip is one more force.
+    The diagonal block is J'J's share of (4.16) less F . s_ab, which makes the step Newton's.  Returns the number of
+    blocks, the largest unbalanced force in the tangent plane, and the last particle held at a rim or edge (0: none).
     """
     X, uv, frames, station = state.X, state.uv, state.frames, state.station
     index, before, after = contacts.inner, contacts.before, contacts.after
@@ -34,6 +35,11 @@ def assemble(state, periodic, contacts, system):
         weight = 1.0 / (station[i] - station[before[i]]) + 1.0 / (station[after[i]] - station[i])
         su, sv = derivative(frames, i, SU), derivative(frames, i, SV)
         auu, auv, avv = dot(su, su), dot(su, sv), dot(sv, sv)
+        slips = len(resist.bound) > 0 and resist.bound[i] >= 0.0
+        way = row(resist.across, i) if slips else (0.0, 0.0, 0.0)
+        if slips:
+            resist.slip[i] = slip_at(resist, X, i)
+            force = minus(force, times(resist.pace * resist.slip[i], way))
         fu, fv = dot(force, su), dot(force, sv)
         fuu, fuv = dot(force, derivative(frames, i, SUU)), dot(force, derivative(frames, i, SUV))
         fvv = dot(force, derivative(frames, i, SVV))
@@ -63,6 +69,20 @@ def assemble(state, periodic, contacts, system):
                 diagonal[count, 2] = weight * avv
         metric[count, 0], metric[count, 1], metric[count, 2] = auu, auv, avv
         right[count, 0], right[count, 1] = fu, fv
+        if len(resist.bound):
+            resist.pull[i, 0], resist.pull[i, 1] = fu, fv
+        if slips:
+            resist.ways[i, 0] = 0.0 if bits & 1 else dot(way, su)
+            resist.ways[i, 1] = 0.0 if bits & 2 else dot(way, sv)
+            take_side(resist, i, metric[count])
+            brace(diagonal, count, resist.pace, resist.ways[i, 0], resist.ways[i, 1])
+            resist_slip(resist, i, count, system)
+            back = resist.side[i] if resist.mode[i] == 0 else resist.bound[i] * resist.mode[i]
+            fu, fv = fu - back * resist.ways[i, 0], fv - back * resist.ways[i, 1]
+            if not bits:
+                diagonal[count, 0] += back * dot(way, derivative(frames, i, SUU))
+                diagonal[count, 1] += back * dot(way, derivative(frames, i, SUV))
+                diagonal[count, 2] += back * dot(way, derivative(frames, i, SVV))
         det = auu * avv - auv * auv
         if det > 0.0:
             worst = max(worst, (fu * fu * avv - 2.0 * fu * fv * auv + fv * fv * auu) / det)

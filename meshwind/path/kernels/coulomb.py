@@ -46,14 +46,10 @@ MARGIN, FAINT = 1e-8, 1e-10
 
 
 class RoughBody(NamedTuple):
-    """A body, and the coefficients of friction over it, bilinear in a table (rows over u, columns over v).
-
-    pace: force that resists a slip, over its length, by which an increment of time is made; 0 for no end of time.
-    """
+    """A body, and the coefficients of friction over it, bilinear in a table (rows over u, columns over v)."""
 
     body: Body
     friction: Floats
-    pace: float
 
 
 class Grip(NamedTuple):
@@ -192,8 +188,6 @@ def balance_forces(rough, fibre, contacts, barred, balance):
                 ways = along_rim(su, normal)
                 put(over(derivative(frames, i, SUU), np.sqrt(dot(su, su)) ** 2), turn, i)
         residual[i, 0], residual[i, 1] = residuals(springs, ways, now, back)
-        if slips(now):
-            residual[i, 1] -= rough.pace * offset[i]
         note(springs, ways, mu, residual[i, 0], balance, i)
         worst = max(worst, np.sqrt(residual[i, 0] ** 2 + residual[i, 1] ** 2))
         changed += now != mode[i]

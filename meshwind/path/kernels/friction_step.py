@@ -189,9 +189,7 @@ def line_search(rough, fibre, trial, work, count, start, direction, counters):
             step *= 0.5
             continue
         then, length = energy(trial.state.X)
-        price = merit_after(
-            then, work.system.x, step, fibre.grip, trial.grip.mode, inner[:count], work.balance, rough.pace
-        )
+        price = merit_after(then, work.system.x, step, fibre.grip, trial.grip.mode, inner, work.balance, count)
         # below round-off the merit cannot judge a step, and Newton's is right
         blind = slope <= BLIND_SLOPE * start.energy and price <= start.merit * (1.0 + BLIND_RISE)
         if price <= start.merit - DESCENT * step * slope or blind:
@@ -204,24 +202,23 @@ def line_search(rough, fibre, trial, work, count, start, direction, counters):
 
 
 @njit(cache=True)
-def merit(now, grip, inner, balance, pace, count):
-    """E + sum mu N |d| + pace d^2 / 2 over the slipping particles, E being `now`."""
+def merit(now, grip, inner, balance, count):
+    """E + sum mu N |d| over the slipping particles, E being `now`."""
     for c in range(count):
         i = inner[c]
         if slips(grip.mode[i]):
-            now += balance.press[i] * balance.mu[i] * abs(grip.offset[i]) + 0.5 * pace * grip.offset[i] ** 2
+            now += balance.press[i] * balance.mu[i] * abs(grip.offset[i])
     return now
 
 
 @njit(cache=True)
-def merit_after(then, move, step, grip, trial_mode, inner, balance, pace):
+def merit_after(then, move, step, grip, trial_mode, inner, balance, count):
     """The merit after a step, E being `then`, with N and the excess F . t - R_t as they were before it."""
-    for c in range(len(inner)):
+    for c in range(count):
         i = inner[c]
         then += step * move[c, 0] * balance.excess[i]
         if slips(grip.mode[i]) and trial_mode[i] != STUCK:
-            slip = grip.offset[i] + step * move[c, 1]
-            then += balance.press[i] * balance.mu[i] * abs(slip) + 0.5 * pace * slip * slip
+            then += balance.press[i] * balance.mu[i] * abs(grip.offset[i] + step * move[c, 1])
     return then
 
 

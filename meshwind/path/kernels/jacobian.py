@@ -76,7 +76,6 @@ def differentiate(rough, fibre, contacts, balance, system):
             diagonal[count, 0, 0] -= dot(minus(e, a), row(turn, i))
         elif slips(mode[i]):
             turn_surface(frames, normal, mu, lever, balance, i, diagonal, count)
-            diagonal[count, 1, 1] += rough.pace
         drop_fixed(mode, p, i, q, lower, diagonal, upper, count)
         right[count, 0], right[count, 1] = residual[i, 0], residual[i, 1]
         count += 1

@@ -21,6 +21,15 @@ from meshwind.path.kernels.certificate import HALF_TURN, largest_leap
 from meshwind.path.kernels.contact import DEEP, NOTHING, lift, release
 from meshwind.path.kernels.glide import LONGEST_MOVE
 from meshwind.path.kernels.landing import carry_lifted, sag
+from meshwind.path.kernels.resist import (
+    Resistance,
+    choose_sides,
+    fall,
+    follow_contacts,
+    resistance,
+    slip_energy,
+    stop_slip,
+)
 from meshwind.path.kernels.state import (
     CONVERGED,
     EVALUATIONS,
@@ -66,11 +75,15 @@ ESCAPE_STEP = 0.03
 
 
 class Workspace(NamedTuple):
-    """Contacts and linear system of the present step; touched (n,): which particles touched when it began."""
+    """Contacts and linear system of the present step, and what resists a slip.
+
+    touched (n,): which particles touched when the step began.
+    """
 
     contacts: Contacts
     system: SymmetricSystem
     touched: Bools
+    resist: Resistance
 
 
 @njit(inline="always", cache=True)
@@ -80,20 +93,20 @@ def relax(body, limits, state, counters):
     Returns (residual, status): residual is the largest unbalanced force over the tension, an angle in radians.
     """
     trial = blank(len(state.X))
-    residual, status, swapped = minimise(body, limits, state, trial, counters)
+    residual, status, swapped = minimise(body, limits, resistance(0, 0.0, 0.0, 0.0), state, trial, counters)
     if swapped:
         copy(trial, state)
     return residual, status
 
 
 @njit(cache=True)
-def minimise(body, limits, state, trial, counters):
-    """As `relax`; the answer is left in `state` or, where the third result says so, in `trial`."""
+def minimise(body, limits, resist, state, trial, counters):
+    """As `relax`, against what resists a slip; where the third result says so the answer is left in `trial`."""
     n, periodic = len(state.X), body.spline.periodic
     swapped = False
     trial.station[:] = state.station
     trial.pinned[:] = state.pinned
-    work = Workspace(no_contacts(n), symmetric_system(n), np.empty(n, np.bool_))
+    work = Workspace(no_contacts(n), symmetric_system(n), np.empty(n, np.bool_), resist)
     contacts, system = work.contacts, work.system
     shift, least = 0.0, LEAST_SHIFT * (np.pi / n) ** 2
     now, length = spring_energy(state)
@@ -110,13 +123,13 @@ def minimise(body, limits, state, trial, counters):
         released = release(state, slack, caution, contacts)
         if released > 0 and len(body.tree.levels) == 0:
             return residual, NEEDS_TREE, swapped
-        count, force, leaning = assemble(state, periodic, contacts, system)
+        count, force, leaning = assemble(state, periodic, resist, contacts, system)
         residual = max(force, sag(state.X, contacts.after, state.station)) / spacing
         if released == 0 and residual <= limits.tolerance:
             if caution == NOTHING and lift(state, slack, False, contacts) > 0:
                 break  # in equilibrium but for pulls that no step could follow
             counters[SOLVES] += 1
-            if solve(system, 0.0, count):
+            if len(resist.bound) or solve(system, 0.0, count):
                 return residual, where_it_rests(state.uv, leaning, escapes > 0), swapped
             escapes += 1
             if escapes > MAX_ESCAPES or not escape_saddle(body, state, trial, work, count, least, counters):
@@ -127,13 +140,15 @@ def minimise(body, limits, state, trial, counters):
         leant = leant + 1 if leaning > 0 else 0
         if leant > MAX_LEANING:
             return residual, leaving_by(state.uv, leaning), swapped
-        definite, shift = newton_step(system, count, shift, least, counters)
+        definite, shift = newton_step(resist, contacts.inner, system, count, shift, least, counters)
         if not definite:
             break
         accepted, then, length_then = line_search(body, most, count, now, state, trial, work, counters)
         if accepted:
             state, trial, swapped = trial, state, not swapped
             now, length = then, length_then
+            if len(resist.bound):
+                follow_contacts(resist, state, contacts.inner, count)
             caution = np.int64(DEEP)
             shift = SHIFT_DOWN * shift if shift > least else 0.0
         else:
@@ -146,11 +161,15 @@ def minimise(body, limits, state, trial, counters):
 
 
 @njit(cache=True)
-def newton_step(system, count, shift, least, counters):
+def newton_step(resist, inner, system, count, shift, least, counters):
     """Solve for the step, with the Hessian shifted until it is definite; returns whether it is, and the shift."""
     while shift < 1.0 / least:
-        counters[SOLVES] += 1
-        if solve(system, shift, count):
+        if len(resist.bound):
+            definite = choose_sides(resist, inner, system, shift, count, counters)
+        else:
+            counters[SOLVES] += 1
+            definite = solve(system, shift, count)
+        if definite:
             return True, shift
         shift = max(SHIFT_UP * shift, least)
     return False, shift
@@ -162,42 +181,47 @@ def line_search(body, most, count, now, state, trial, work, counters):
 
     Writes the moved path into `trial`; returns whether the step counts, the energy there and the length.
     """
-    right, move = work.system.right, work.system.x
-    slope = 0.0
-    reach = 0.0
+    right, move, resist = work.system.right, work.system.x, work.resist
+    slope = reach = 0.0
+    start = now + slip_energy(resist, state.X, work.contacts.inner, count) if len(resist.bound) else now
     for c in range(count):
         slope += right[c, 0] * move[c, 0] + right[c, 1] * move[c, 1]
         reach = max(reach, abs(move[c, 0]), abs(move[c, 1]))
+    if len(resist.bound):
+        slope = fall(resist, work.contacts.inner, work.system, count)
     step = min(1.0, LONGEST_MOVE / max(reach, TINY))
     then, length = now, 0.0
     while step > SMALLEST_STEP:
-        move_touching(body.spline, step, move, work.contacts, count, state, trial, counters)
+        move_touching(body.spline, step, move, work, count, state, trial, counters)
         carry_lifted(body, step, work.contacts, count, state, trial, counters)
         if largest_leap(trial, body.spline.periodic) > most:  # neighbours on two sides: one went through the body
             step *= 0.5
             continue
         then, length = spring_energy(trial)
+        cost = then + slip_energy(resist, trial.X, work.contacts.inner, count) if len(resist.bound) else then
         # below round-off the energy cannot judge a step, and Newton's is right
-        blind = slope <= BLIND_SLOPE * now and then <= now * (1.0 + BLIND_RISE)
-        if then <= now - DESCENT * step * slope or blind:
+        blind = slope <= BLIND_SLOPE * start and cost <= start * (1.0 + BLIND_RISE)
+        if cost <= start - DESCENT * step * slope or blind:
             return True, then, length
         step *= 0.5
     return False, then, length
 
 
 @njit(cache=True)
-def move_touching(spline, step, move, contacts, count, state, trial, counters):
+def move_touching(spline, step, move, work, count, state, trial, counters):
     """Write into `trial` the touching particles moved on the surface by step * move (count, 2), and the two ends."""
-    uv = state.uv
+    uv, inner, resist = state.uv, work.contacts.inner, work.resist
     n = len(uv)
     copy_particle(state, trial, 0)
     copy_particle(state, trial, n - 1)
     for c in range(count):
-        i = contacts.inner[c]
+        i = inner[c]
         u, v = uv[i, 0] + step * move[c, 0], min(max(uv[i, 1] + step * move[c, 1], 0.0), 1.0)
         if not spline.periodic:
             u = min(max(u, 0.0), 1.0)
         put_on_surface(spline, trial, i, u, v)
+        if len(resist.bound) and resist.bound[i] >= 0.0:
+            stop_slip(resist, spline, trial, i, counters)
     counters[EVALUATIONS] += count
 
 
@@ -233,13 +257,13 @@ def escape_saddle(body, state, trial, work, count, least, counters):
     best = spring_energy(state)[0]
     chosen = 0.0
     for step in (ESCAPE_STEP, -ESCAPE_STEP):
-        move_touching(body.spline, step, mode, contacts, count, state, trial, counters)
+        move_touching(body.spline, step, mode, work, count, state, trial, counters)
         carry_lifted(body, 0.0, contacts, count, state, trial, counters)
         then = spring_energy(trial)[0]
         if then < best:
             best, chosen = then, step
     if chosen > 0.0:  # the trial holds the other side
-        move_touching(body.spline, chosen, mode, contacts, count, state, trial, counters)
+        move_touching(body.spline, chosen, mode, work, count, state, trial, counters)
         carry_lifted(body, 0.0, contacts, count, state, trial, counters)
     return chosen != 0.0
 

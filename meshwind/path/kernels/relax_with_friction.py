@@ -92,9 +92,7 @@ def relax_with_friction(rough, limits, fibre, counters):
         count = differentiate(rough, fibre, work.contacts, work.balance, work.system)
         best = min(best, force / length)
         share = stride if residual > CALM else 1.0
-        start = Start(
-            now, merit(now, grip, work.contacts.inner, work.balance, rough.pace, count), force, best, share, most, least
-        )
+        start = Start(now, merit(now, grip, work.contacts.inner, work.balance, count), force, best, share, most, least)
         accepted, shift, then, length_then = take_step(rough, fibre, trial, work, count, start, shift, counters)
         if accepted:
             hold_landed(fibre, trial, body.size)

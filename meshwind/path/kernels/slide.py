@@ -10,28 +10,47 @@ import numpy as np
 from numba import njit
 
 from meshwind.core.vectors import TINY
-from meshwind.path.kernels.coulomb import STUCK, Fibre, Grip, RoughBody
+from meshwind.path.kernels.contact import link, pull
+from meshwind.path.kernels.coulomb import STUCK, Fibre, Grip
+from meshwind.path.kernels.geometry import dot, row
 from meshwind.path.kernels.grip import attach_to_curve, hold_where_it_lies
+from meshwind.path.kernels.relax import minimise
 from meshwind.path.kernels.relax_with_friction import relax_with_friction
-from meshwind.path.kernels.state import NEEDS_TREE, STALLED, Limits, blank, copy, energy, state_of
+from meshwind.path.kernels.resist import lay_down, press_anew, resistance
+from meshwind.path.kernels.state import (
+    CONVERGED,
+    NEEDS_TREE,
+    STALLED,
+    Limits,
+    blank,
+    copy,
+    energy,
+    no_contacts,
+    state_of,
+)
 
-FIRST, GROWTH = 1e-3, 1.6
+FIRST, GROWTH = 1e-4, 1.25
 """Length of the first increment, in units of the fibre's length squared over its tension's mobility, and the factor
 from each to the next: waves die out in the order of their lengths, each in a time of its length squared."""
 LATE = 0.1
 """Time from which on a fibre that moves little is at rest: its longest wave dies out in this time."""
 AT_REST = 2e-6
 """Largest move within an increment, over the fibre's length, of a fibre at rest."""
-FIRM = 2.0
-"""Friction that all but holds the fibre to its starting curve while it lifts off hollows."""
+FIRM = 1e3
+"""Force over the tension that holds the fibre to its starting curve while it lifts off hollows, which takes no time."""
 SAME = 3e-4
 """Distance, over the length, up to which friction from an earlier curve leads to the same place of rest."""
-ROUNDS, BALANCE = 16, 1e-6
-"""Maximum number of iterations of an increment before a shorter one is tried, and the unbalanced force it leaves."""
-MOST = 120
+ROUNDS, BALANCE = 30, 1e-6
+"""Maximum number of steps of an increment before a shorter one is tried, and the unbalanced force it leaves."""
+PASSES, SETTLED = 4, 0.05
+"""Maximum number of times that an increment is made anew with the contact force at its end, and the change from one to
+the next, over the increment's move, with which it counts."""
+MOST = 250
 """Maximum number of increments."""
-SHORTER, SHORTEST = 0.3, 1e-7
+SHORTER, SHORTEST = 0.3, 1e-6
 """Factor of an increment that fails, and the shortest that is tried."""
+ROOM = 1e-13
+"""Slip over the fibre's length that is round-off."""
 
 
 @njit(nogil=True, cache=True)
@@ -47,9 +66,17 @@ def slide_all(first, last, rough, limits, batch, held, own):
     for p in range(first, last):
         start, counters = batch.starts[p], batch.counters[p]
         state, grip = state_of(batch, p, frames), Grip(batch.anchor[p], offset, batch.mode[p])
-        attach_to_curve(rough.body.spline, Fibre(state, grip, start), counters)
-        residual, status, steps = slide(rough, limits, state, grip, start, lain, counters)
-        own[p], held[p] = False, lain[steps]
+        fibre = Fibre(state, grip, start)
+        attach_to_curve(rough.body.spline, fibre, counters)
+        held[p] = state.uv
+        residual, status = slide_one_way(rough, limits, fibre, counters)
+        own[p] = status == CONVERGED
+        if status in (NEEDS_TREE, CONVERGED):
+            batch.residual[p], batch.status[p] = residual, status
+            continue
+        attach_to_curve(rough.body.spline, fibre, counters)
+        residual, status, steps = slide(rough, limits, state, lain, counters)
+        held[p] = lain[steps]
         if status not in (NEEDS_TREE, STALLED):
             residual, status, k = settle(rough, limits, state, grip, start, lain, steps, counters)
             own[p] = k == 0
@@ -58,51 +85,92 @@ def slide_all(first, last, rough, limits, batch, held, own):
 
 
 @njit(cache=True)
-def slide(rough, limits, state, grip, start, lain, counters):
-    """Let a fibre that is attached to its starting curve slide to rest, in place.
+def slide_one_way(rough, limits, fibre, counters):
+    """Bring a fibre that slips to one side only, and presses everywhere, to rest at once.
+
+    Curves that shorten keep their order: one that begins to slip to one side alone never slips back, and friction from
+    the starting curve is that at rest.  Returns (residual, status), the status STALLED where that is not so.
+    """
+    state, grip = fibre.state, fibre.grip
+    n = len(state.X)
+    contacts = no_contacts(n)
+    link(state.touching, contacts)
+    resist = resistance(n, 0.0, 0.0, 0.0)
+    lay_down(resist, rough, state, contacts)
+    way = 0.0
+    for i in range(1, n - 1):
+        force = pull(state.X, i, i - 1, i + 1)
+        side = dot(force, row(resist.across, i))
+        if dot(force, row(state.normal, i)) > 0.0 or (abs(side) > resist.bound[i] and side * way < 0.0):
+            return np.inf, STALLED
+        if abs(side) > resist.bound[i]:
+            way = side
+    residual, status = relax_with_friction(rough, limits, fibre, counters)
+    for i in range(n):
+        if not state.touching[i] or grip.offset[i] * way < 0.0:
+            return residual, STALLED
+    return residual, status if status in (CONVERGED, NEEDS_TREE) else STALLED
+
+
+@njit(cache=True)
+def slide(rough, limits, state, lain, counters):
+    """Let a fibre that lies on its starting curve slide to rest, in place.
 
     Returns (residual, status, steps); lain (m, n, 2): where it lay at first and after each step.
     """
     n = len(state.X)
-    before = blank(n)
-    curve = start
-    rough_limits = Limits(limits.pull_off, max(limits.tolerance, BALANCE), ROUNDS)
+    before, last = blank(n), blank(n)
+    contacts = no_contacts(n)
+    loose = Limits(limits.pull_off, max(limits.tolerance, BALANCE), ROUNDS)
     time, steps = FIRST, 0
     lain[0] = state.uv
-    residual, status = np.inf, STALLED
+    length = energy(state.X)[1]
+    resist = resistance(n, 0.0, ROOM * length, FIRM * length)
+    lay_down(resist, rough, state, contacts)
+    resist.bound[:] = FIRM * length
+    residual, status = relax_resisted(rough.body, limits, resist, state, counters)
+    if status == NEEDS_TREE:
+        return residual, status, steps
     for _ in range(MOST):
         copy(state, before)
-        pace = 1.0 / (time * (n - 1) ** 2)
-        now = RoughBody(rough.body, rough.friction, pace)
-        residual, status = relax_with_friction(now, rough_limits, Fibre(state, grip, curve), counters)
+        length = energy(state.X)[1]
+        resist = resistance(n, 1.0 / (time * (n - 1) ** 2), ROOM * length, 0.0)
+        lay_down(resist, rough, state, contacts)
+        move = done = 0.0
+        for turn in range(PASSES):
+            copy(state, last)
+            residual, status = relax_resisted(rough.body, loose, resist, state, counters)
+            if status in (NEEDS_TREE, STALLED):
+                break
+            move = largest_move(state.X, before.X)
+            if turn > 0 and largest_move(state.X, last.X) <= max(SETTLED * move, AT_REST * length):
+                done = 1.0
+                break
+            press_anew(resist, rough, state, contacts)
         if status == NEEDS_TREE:
             break
-        if status == STALLED:
+        if (status == STALLED or done == 0.0) and time > SHORTEST:
             copy(before, state)
             time *= SHORTER
-            if time < SHORTEST:
-                break
-            if steps == 0:  # hollows are bridged in no time: first of all, on a curve that friction holds
-                grip.mode[:] = np.int8(STUCK)
-                grip.offset[:] = 0.0
-                for i in range(n):
-                    grip.anchor[i] = (len(curve) - 1.0) * i / (n - 1.0)
-                firm = RoughBody(rough.body, np.full((1, 1), FIRM), 0.0)
-                residual, status = relax_with_friction(firm, limits, Fibre(state, grip, curve), counters)
-                if status == NEEDS_TREE:
-                    break
-                steps += 1
-                lain[steps] = state.uv
-        else:
-            steps += 1
-            lain[steps] = state.uv
-            if time > LATE and largest_move(state.X, before.X) <= AT_REST * energy(state.X)[1]:
-                break
-            time *= GROWTH
-        curve = lain[steps]
-        for i in range(n):
-            grip.anchor[i], grip.offset[i], grip.mode[i] = i, 0.0, np.int8(STUCK)
+            continue
+        if status == STALLED:
+            break
+        steps += 1
+        lain[steps] = state.uv
+        if time > LATE and move <= AT_REST * length:
+            break
+        time *= GROWTH
     return residual, status, steps
+
+
+@njit(cache=True)
+def relax_resisted(body, limits, resist, state, counters):
+    """As `relax`, against what resists a slip."""
+    trial = blank(len(state.X))
+    residual, status, swapped = minimise(body, limits, resist, state, trial, counters)
+    if swapped:
+        copy(trial, state)
+    return residual, status
 
 
 @njit(cache=True)
@@ -115,7 +183,6 @@ def settle(rough, limits, state, grip, start, lain, steps, counters):
     rest = blank(n)
     copy(state, rest)
     length = energy(rest.X)[1]
-    still = RoughBody(rough.body, rough.friction, 0.0)
     residual, status = np.inf, STALLED
     k = 0
     while True:
@@ -128,7 +195,7 @@ def settle(rough, limits, state, grip, start, lain, steps, counters):
             grip.mode[i] = np.int8(STUCK)
             if 0 < i < n - 1 and state.touching[i]:
                 hold_where_it_lies(Fibre(state, grip, curve), i, rough.body.size)
-        residual, status = relax_with_friction(still, limits, Fibre(state, grip, curve), counters)
+        residual, status = relax_with_friction(rough, limits, Fibre(state, grip, curve), counters)
         if status == NEEDS_TREE or k == steps:
             break
         if status != STALLED and largest_move(state.X, rest.X) <= SAME * length:
