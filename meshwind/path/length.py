@@ -99,7 +99,8 @@ def measured(surface: Surface, laid: Laid) -> Measured:
     centred = surface.centred
     body = centred.body_without_tree if laid.touching.all() else centred.body
     # copies, as kernels are compiled anew for read-only arrays
-    there = Laid(*(np.array(each) for each in laid._replace(points=laid.points - surface.middle)))
+    points = laid.points - surface.middle
+    there = Laid(points, laid.uv.copy(), laid.touching.copy(), laid.gap.copy(), laid.normal.copy())
     parallel_for(measure_all, len(length), 8, body, there, length, error, off)
     return Measured(frozen(length), frozen(error), frozen(off))
 
