@@ -40,8 +40,8 @@ def solve_nested(solver: Solver, curves: Floats, particles: int | None, accuracy
     return batch
 
 
-def solve_from_level(solver: Solver, batch: Batch, level: int) -> Batch:
-    """Solve a batch anew, at first with its particles halved `level` times."""
+def solve_from_level(solver: Solver, batch: Batch, level: int, last: bool = False) -> Batch:
+    """Solve a batch anew, at first with its particles halved `level` times; try again what stalls, unless `last`."""
     n = batch.particles
     work = fresh(batch.starts, ((n - 1) >> level) + 1)
     work.counters[:] = batch.counters
@@ -59,10 +59,10 @@ def solve_from_level(solver: Solver, batch: Batch, level: int) -> Batch:
             part = climb(solver, part, n, level) if level else ascend(solver, part, n)
             done.put(index, part.curves_sampled())
     lost = np.flatnonzero(done.status == Status.STALLED)
-    if level and len(lost):  # more particles follow a slide that few cannot
+    if len(lost) and not last:  # more particles follow a slide that few cannot, and few one over many small dents
         again = batch.rows(lost)
         again.counters[:] = done.counters[lost]
-        done.put(lost, solve_from_level(solver, again, level - 1).curves_sampled())
+        done.put(lost, solve_from_level(solver, again, level - 1 if level else 1, last=not level).curves_sampled())
     return done
 
 

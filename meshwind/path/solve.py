@@ -87,7 +87,8 @@ def solve(  # noqa: PLR0913
         +1 or -1 for each path.  By default the sense of turning.
     friction : float, Friction, array_like of float or callable, default 0
         Coefficient of friction: one number, a table over u and v, or a function from points (n, 3) to coefficients
-        (n,). Friction acts from the starting curves: a particle that never slips stays on its starting curve.
+        (n,). The fibre slides from its starting curve to rest, overdamped, under constant tension, by Coulomb's law at
+        every particle: one that never slips stays on its starting curve.
     initial : array_like of float, shape (p, k, 2), optional
         Starting curves in the parametric plane.  By default straight lines from start to end.
     bridging : bool, default True

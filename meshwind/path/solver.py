@@ -85,9 +85,10 @@ class Solver:
         surface = self.surface.centred
         held, own = np.empty_like(batch.uv), np.zeros(batch.paths, np.bool_)
         index = np.arange(batch.paths)
+        counters = batch.counters.copy()  # counted as if the tree had been there from the start
         for body in (surface.body,) if "tree" in vars(surface) else (surface.body_without_tree, surface.body):
             part = fresh(batch.starts[index], batch.particles)
-            part.counters[:] = batch.counters[index]
+            part.counters[:] = counters[index]
             curves, same = np.zeros_like(part.uv), np.zeros(part.paths, np.bool_)
             rough = RoughBody(body, self.friction.table)
             parallel_for(slide_all, part.paths, 1, rough, self._limits, part, curves, same)

@@ -100,10 +100,16 @@ The solver lets the fibre slide instead.  Overdamped and of constant tension, it
 
 where it touches, until it is at rest, and (3.12) holds at every particle.  Where it comes to rest depends on its way
 there: a particle that has slid one way may be drawn back when the rest of the fibre has straightened, or be held where
-it stopped.  Each step in time is implicit: the fibre is brought to equilibrium with friction that acts from where it
-lay before, and with a force d / t against a slip d in a step of length t.  Within it a touching particle is stuck, and
-stays where it lay, or slips, and then friction of the size mu N acts across the fibre against the slip.  Waves die out
-in a time of their length squared, so the steps grow by a constant factor.
+it stopped.  A step in time of length t is implicit: with d the slips from where the fibre lay before it minimises ::
+
+    E + sum (mu N |d| + d^2 / (2 t))
+
+with the contact forces N held, and is made anew with those at its end until they no longer change it.  Each is a
+minimum, by which every step of Newton's method is judged; held, too, they let particles stick and slip without going in
+circles.  Bridges form in no time, waves die out in a time of their length squared, and so the steps grow by a constant
+factor.  At rest the fibre is balanced to the last against friction from the earliest curve that leads to the same
+place: the starting curve where nothing has turned back.  A fibre that begins to slip to one side only never turns back,
+as curves that shorten keep their order; where it presses everywhere one step of endless length does.
 `meshwind.path.kernels.coulomb` states the equations that it solves.
 
 Figures

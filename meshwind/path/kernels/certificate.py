@@ -15,9 +15,9 @@ INSIDE = 1e-9
 """A lifted particle deeper than this times the part's size is inside the body."""
 HALF_TURN, WHOLE_TURN = 0.4, 0.75
 """Change of u or v from particle to particle that only two sides of the body explain."""
-DEEPEST = 0.15
-"""Share of the particles' mean distance that the surface may stand out of a segment: as much as where the fibre turns
-evenly by 1.2 radians from particle to particle."""
+DEEPEST = 0.5
+"""Depth of a segment, over the particles' mean distance, from which they pass through what they do not follow: over an
+edge of 90 degrees it is at most 0.35."""
 
 
 @njit(cache=True)

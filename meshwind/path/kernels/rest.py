@@ -86,21 +86,21 @@ def relax_and_certify(body, limits, final, state, required, counters):
         before = blank(n)
         for _ in range(ROUNDS):
             copy(state, before)
+            last, then = deep, residual
             if mend(body, state, found, spacing, counters) == 0:
                 break
-            again, status = settle_evenly(body, limits, final, state, required, counters)
-            if status == STALLED:  # as good as it was
+            residual, status = settle_evenly(body, limits, final, state, required, counters)
+            if status == CONVERGED:
+                deep = survey(body, state, found, counters)
+            if status != CONVERGED or deep > last:  # it was better without
                 copy(before, state)
-                settle(body, limits, final, state, required, counters)
-                return residual, TOO_COARSE
-            residual = again
-            if status != CONVERGED:
-                return residual, status
-            deep = survey(body, state, found, counters)
+                certify(body, state, required, counters)
+                deep, residual, status = last, then, CONVERGED
+                break
             spacing = spring_energy(state)[1] / (n - 1)
             if not any_wanting(found, spacing):
                 break
-    if deep > DEEPEST * spacing or leaps(state, body.spline.periodic):
+    if status == CONVERGED and (deep > DEEPEST * spacing or leaps(state, body.spline.periodic)):
         return residual, TOO_COARSE
     return residual, status
 

@@ -118,7 +118,7 @@ def segment_of(state, i):
     way = minus(row(X, i + 1), start)
     length = max(np.sqrt(dot(way, way)), TINY)
     out = times(0.5, plus(row(normal, i), row(normal, i + 1)))
-    out = minus(out, times(dot(out, way) / length**2, way))
+    out = minus(out, times(dot(out, way) / max(length**2, TINY), way))
     size = np.sqrt(dot(out, out))
     return Segment(start, way, length, over(out, size) if size > OPPOSED else (0.0, 0.0, 0.0))
 
@@ -241,7 +241,7 @@ def sampled(spline, uv, i, segment, point, counters):
         if facing:
             h = dot(off, segment.out)
         else:
-            along = min(max(dot(off, segment.way) / segment.length**2, 0.0), 1.0)
+            along = min(max(dot(off, segment.way) / max(segment.length**2, TINY), 0.0), 1.0)
             off = minus(off, times(along, segment.way))
             h = np.sqrt(dot(off, off))
         low = max(low, -h)
@@ -265,7 +265,7 @@ def followed(body, state, i, segment, stride, work, counters):
     for _ in range(MOST_STEPS):
         du, dv = to_parameters(row(work, SU), row(work, SV), over(segment.way, segment.length))
         least = stride / max(abs(du) * spans_u, abs(dv) * spans_v, TINY)
-        t += max(gap, min(least, 0.5 * segment.length)) / segment.length
+        t += max(gap, min(least, 0.5 * segment.length)) / max(segment.length, TINY)
         if t * segment.length >= segment.length - state.clear[i + 1]:
             break
         for k in range(3):
