@@ -74,13 +74,13 @@ def run_in_space(body, rules, physics, strand, history, tally):
     stored = 0.5 * n * rules.penalty * rules.width if rules.scheme == PENALTY else 0.0
     bound = GROWTH * (physics.stiffness * energy + stored)
     update_gaps(body, strand, 0.0, rules.width, tally)
-    longest, status = np.inf, STOPPED
+    longest, status, station = np.inf, STOPPED, np.arange(n) * 1.0
     for k in range(rules.steps + 1):
         energy, length = energy_and_length(X)
         for i in range(n):
             pressed[i] = touching[i] and not loose[i]
         link(pressed, before, after)
-        off_balance = max(unbalanced(X, normal, before, after), sag(X, after, np.arange(len(X)) * 1.0))
+        off_balance = max(unbalanced(X, normal, before, after), sag(X, after, station))
         residual = off_balance * (n - 1) / max(length, TINY)
         if len(history) > 0:
             history[k, LENGTH], history[k, RESIDUAL] = length, residual

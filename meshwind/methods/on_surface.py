@@ -87,7 +87,7 @@ def run_on_surface(spline, rules, physics, chain, history, tally):
     history (steps + 1, 3) or (0, 3) takes length, residual and mean angle of every state.
     """
     n, friction = len(chain.X), physics.friction
-    work = surface_work(n)
+    work, station = surface_work(n), np.arange(n) * 1.0
     forces = work.forces
     put_on_surface(spline, chain, np.arange(n), n, physics.inertial)
     tally[EVALUATIONS] += n
@@ -100,7 +100,7 @@ def run_on_surface(spline, rules, physics, chain, history, tally):
     for k in range(rules.steps + 1):
         energy, length = energy_and_length(chain.X)
         count, worst = gather(chain, spline.periodic, friction, forces)
-        off_chord = sag(chain.X, chain.after, np.arange(len(chain.X)) * 1.0) if rules.lifting else 0.0
+        off_chord = sag(chain.X, chain.after, station) if rules.lifting else 0.0
         residual = max(worst, off_chord) * (n - 1) / max(length, TINY)
         if len(history) > 0:
             history[k, LENGTH], history[k, RESIDUAL] = length, residual

@@ -92,8 +92,14 @@ def relax(body, limits, state, counters):
 
     Returns (residual, status): residual is the largest unbalanced force over the tension, an angle in radians.
     """
+    return relax_resisted(body, limits, resistance(0, 0.0, 0.0, 0.0), state, counters)
+
+
+@njit(cache=True)
+def relax_resisted(body, limits, resist, state, counters):
+    """As `relax`, against what resists a slip."""
     trial = blank(len(state.X))
-    residual, status, swapped = minimise(body, limits, resistance(0, 0.0, 0.0, 0.0), state, trial, counters)
+    residual, status, swapped = minimise(body, limits, resist, state, trial, counters)
     if swapped:
         copy(trial, state)
     return residual, status

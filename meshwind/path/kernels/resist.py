@@ -41,11 +41,10 @@ ROUNDS = 5
 class Resistance(NamedTuple):
     """Where n particles lay when the increment began, and what resists their slip from there; empty: nothing does.
 
-    lain, across (n, 3): positions, and the directions across the fibre there; bound
-    (n,): mu N, negative where nothing resists; mode (n,): the side to which a particle is taken to slip, 0 for stuck;
-    slip, side (n,): d, and the force across before friction; ways, pull (n, 2): the gradient of d, and the force before
-    friction, in (u, v); pace: force that resists a slip, over its length; room: slip that is round-off;
-    landed: mu N of particles that land.
+    lain, across (n, 3): positions, and the directions across the fibre there; bound (n,): mu N, negative where nothing
+    resists; mode (n,): the side to which a particle is taken to slip, 0 for stuck; slip, side (n,): d, and the force
+    across before friction; ways, pull (n, 2): the gradient of d, and the force before friction, in (u, v); pace: force
+    that resists a slip, over its length; room: slip that is round-off; landed: mu N of particles that land.
     """
 
     lain: Floats
@@ -189,7 +188,7 @@ def choose_sides(resist, inner, system, shift, count, counters):
             if resist.bound[i] < 0.0:
                 continue
             w, v = resist.ways[i, 0], resist.ways[i, 1]
-            d = resist.slip[i] + w * system.x[c, 0] + v * system.x[c, 1]
+            d = slip_after(resist, system, i, c)
             if mode[i] == 0:
                 held = resist.side[i] + RIGID * d
                 then = np.int8(np.copysign(1.0, held)) if abs(held) > resist.bound[i] * (1.0 + EVEN) else mode[i]
@@ -207,6 +206,12 @@ def choose_sides(resist, inner, system, shift, count, counters):
     return True
 
 
+@njit(inline="always", cache=True)
+def slip_after(resist, system, i, c):
+    """Slip of particle i, of block c, after a whole step."""
+    return resist.slip[i] + resist.ways[i, 0] * system.x[c, 0] + resist.ways[i, 1] * system.x[c, 1]
+
+
 @njit(cache=True)
 def fall(resist, inner, system, count):
     """Least decrease of the energy, to first order in the springs', by a whole step."""
@@ -215,7 +220,7 @@ def fall(resist, inner, system, count):
         i = inner[c]
         total += resist.pull[i, 0] * system.x[c, 0] + resist.pull[i, 1] * system.x[c, 1]
         if resist.bound[i] >= 0.0:
-            d = resist.slip[i] + resist.ways[i, 0] * system.x[c, 0] + resist.ways[i, 1] * system.x[c, 1]
+            d = slip_after(resist, system, i, c)
             total -= resist.bound[i] * (abs(d) - abs(resist.slip[i]))
     return total
 

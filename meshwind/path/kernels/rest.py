@@ -100,7 +100,7 @@ def relax_and_certify(body, limits, final, state, required, counters):
             spacing = spring_energy(state)[1] / (n - 1)
             if not any_wanting(found, spacing):
                 break
-    if status == CONVERGED and (deep > DEEPEST * spacing or leaps(state, body.spline.periodic)):
+    if deep > DEEPEST * spacing or leaps(state, body.spline.periodic):
         return residual, TOO_COARSE
     return residual, status
 

@@ -10,11 +10,11 @@ import numpy as np
 from numba import njit
 
 from meshwind.core.vectors import TINY
-from meshwind.path.kernels.contact import link, pull
+from meshwind.path.kernels.contact import pull
 from meshwind.path.kernels.coulomb import STUCK, Fibre, Grip
 from meshwind.path.kernels.geometry import dot, row
 from meshwind.path.kernels.grip import attach_to_curve, hold_where_it_lies
-from meshwind.path.kernels.relax import minimise
+from meshwind.path.kernels.relax import relax_resisted
 from meshwind.path.kernels.relax_with_friction import relax_with_friction
 from meshwind.path.kernels.resist import lay_down, press_anew, resistance
 from meshwind.path.kernels.state import (
@@ -93,10 +93,8 @@ def slide_one_way(rough, limits, fibre, counters):
     """
     state, grip = fibre.state, fibre.grip
     n = len(state.X)
-    contacts = no_contacts(n)
-    link(state.touching, contacts)
     resist = resistance(n, 0.0, 0.0, 0.0)
-    lay_down(resist, rough, state, contacts)
+    lay_down(resist, rough, state, no_contacts(n))
     way = 0.0
     for i in range(1, n - 1):
         force = pull(state.X, i, i - 1, i + 1)
@@ -136,7 +134,7 @@ def slide(rough, limits, state, lain, counters):
         length = energy(state.X)[1]
         resist = resistance(n, 1.0 / (time * (n - 1) ** 2), ROOM * length, 0.0)
         lay_down(resist, rough, state, contacts)
-        move = done = 0.0
+        move, settled = 0.0, False
         for turn in range(PASSES):
             copy(state, last)
             residual, status = relax_resisted(rough.body, loose, resist, state, counters)
@@ -144,12 +142,12 @@ def slide(rough, limits, state, lain, counters):
                 break
             move = largest_move(state.X, before.X)
             if turn > 0 and largest_move(state.X, last.X) <= max(SETTLED * move, AT_REST * length):
-                done = 1.0
+                settled = True
                 break
             press_anew(resist, rough, state, contacts)
         if status == NEEDS_TREE:
             break
-        if (status == STALLED or done == 0.0) and time > SHORTEST:
+        if (status == STALLED or not settled) and time > SHORTEST:
             copy(before, state)
             time *= SHORTER
             continue
@@ -161,16 +159,6 @@ def slide(rough, limits, state, lain, counters):
             break
         time *= GROWTH
     return residual, status, steps
-
-
-@njit(cache=True)
-def relax_resisted(body, limits, resist, state, counters):
-    """As `relax`, against what resists a slip."""
-    trial = blank(len(state.X))
-    residual, status, swapped = minimise(body, limits, resist, state, trial, counters)
-    if swapped:
-        copy(trial, state)
-    return residual, status
 
 
 @njit(cache=True)
