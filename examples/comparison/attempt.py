@@ -93,8 +93,9 @@ def _theirs(method: Method, problem: Problem, particles: int, curve: Floats | No
             break
     length = found.length
     if by_rule and found.status != Ending.DIVERGED:
-        laid = Laid(found.points, found.uv, found.on_surface, np.abs(found.gap), surface.normals(found.uv))
-        length = float(measured(surface, Laid(*(each[None] for each in laid))).length[0])
+        gap, normals = np.abs(found.gap)[None], surface.normals(found.uv)[None]
+        laid = Laid(found.points[None], found.uv[None], found.on_surface[None], gap, normals)
+        length = float(measured(surface, laid).length[0])
     counters = Counters(*(int(k) for k in counts))
     return _attempt(ENDINGS[found.status], length, counters, float(np.abs(found.gap).max()), found.points)
 
