@@ -1,6 +1,7 @@
 """Ribs, ridges and hollows between particles: right within the error that is stated, or told to be too coarse."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -80,6 +81,24 @@ def test_contacts_shorter_than_a_spacing(waves: int, height: float) -> None:
     for particles in COUNTS[1:]:
         check(surface, particles)
         assert meridian(surface, particles).status[0] == Status.CONVERGED
+
+
+def test_a_groove_between_particles_is_within_the_stated_error() -> None:
+    surface = revolved(bumps(np.array([148.6]), np.array([1.2]), np.array([-4.0])))
+    paths = meridian(surface, 101)
+    _, deep = hull(surface)
+    assert paths.gap.max() < 0.5 * deep  # no particle is over its middle
+    assert paths.gap.max() + paths.position_error[0] >= 0.6 * min(deep, 0.6)  # half its width away from its walls
+
+
+def test_particles_that_coincide_are_measured() -> None:
+    surface = revolved(bumps(np.array([77.1]), np.array([2.0]), np.array([1.5])))
+    paths = meridian(surface, 51)
+    points, uv = paths.points.copy(), paths.uv.copy()
+    points[0, 30], uv[0, 30] = points[0, 31], uv[0, 31]
+    again = replace(paths, points=points, uv=uv)
+    assert np.isfinite(again.length[0])
+    assert np.isfinite(again.position_error[0])
 
 
 @settings(max_examples=12, deadline=None, derandomize=True, database=None)

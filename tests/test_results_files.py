@@ -250,7 +250,7 @@ def test_report_agrees_with_the_files(written: tuple[Layup, Path]) -> None:
         "mesh": {"vertices", "faces", "units", "repairs"},
         "surface": {"control_points", "fit_error", "flipped_triangles"},
         "winding": {"revolutions", "paths_per_family", "particles", "friction"},
-        "paths": {"converged", "not_converged", "length_total", "bridged_fraction", "max_gap", "max_slip"},
+        "paths": {"converged", "not_converged", "length_total", "length_error", "position_error", "max_gap"},
         "crossings": {"count", "angle"},
         "coverage": {"min", "median", "max"},
         "quads": {"faces", "quads", "triangles"},
@@ -262,6 +262,8 @@ def test_report_agrees_with_the_files(written: tuple[Layup, Path]) -> None:
         assert keys is None or set(figures[section]) >= keys, section
     poly = pv.read(out / "paths.vtp")
     assert figures["paths"]["length_total"] == pytest.approx(poly.cell_data["fibre_length"].sum(), rel=1e-12)
+    assert figures["paths"]["length_error"] == pytest.approx(layup.paths.length_error.sum(), rel=1e-12)
+    assert figures["paths"]["position_error"] == layup.paths.position_error.max()
     assert figures["paths"]["max_gap"] == poly.cell_data["max_gap"].max()
     assert figures["crossings"]["count"] == pv.read(out / "crossings.vtp").n_points
     assert figures["quads"]["faces"] == (pv.read(out / "quads.vtu").celltypes != 1).sum()

@@ -16,7 +16,7 @@ from meshwind.core.cast import Bools, Floats, frozen
 from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.state import State, distance
-from meshwind.path.kernels.survey import blank_survey, survey
+from meshwind.path.kernels.survey import below, blank_survey, seen, survey
 from meshwind.path.kernels.touchdown import touchdown
 from meshwind.surface.evaluate import frame
 from meshwind.surface.surface import Surface
@@ -26,7 +26,9 @@ UNEVEN = 0.5
 may change along it, to count as one."""
 DETOUR = 4.0
 """Longest way round what stands out of the middle half of a segment, over its square by the segment, with a margin."""
-LANDED = 0.25
+ROUNDED = 1e-3
+"""What its ends may add to a bridge, as a share of its length, beyond the longest way round what stands out of it."""
+LANDED = 0.5
 """Share of what the true ends of a bridge change its length by that is left as an error."""
 
 
@@ -110,24 +112,37 @@ def measure_all(first, last, body, laid, length, error, off):
     """Write the measures (p,) of fibres first to last."""
     n = laid.points.shape[1]
     frames, station, counters = np.empty((n, 6, 3)), np.arange(n) * 1.0, np.zeros(4, np.int64)
-    found = blank_survey(n)
+    found, point = blank_survey(n), np.empty(3)
     for p in range(first, last):
         uv, touching, gap = laid.uv[p], laid.touching[p], laid.gap[p]
         for i in range(n):
             frame(body.spline, uv[i, 0], uv[i, 1], frames[i])
         state = State(laid.points[p], uv, frames, laid.normal[p], touching, gap, station, touching)
         survey(body, state, found, counters)
+        for i in range(n - 1):
+            if touching[i] and touching[i + 1]:
+                high, low = seen(body.spline, state, i, point, counters)
+                found.rise[i], found.dip[i] = max(found.rise[i], high), max(found.dip[i], low)
         length[p], error[p] = fibre_length(body.spline, state, found.rise)
-        off[p] = max(found.rise.max(), found.dip.max(), peak(gap))
+        off[p] = max(found.rise.max(), found.dip.max(), peak(body.spline, state, counters))
 
 
 @njit(cache=True)
-def peak(gap):
-    """How far the largest gap may be above that of its particle, from the gaps of its neighbours."""
-    i = gap.argmax()
-    if not 0 < i < len(gap) - 1:
-        return 0.0
-    return 0.25 * abs(gap[i - 1] - 2.0 * gap[i] + gap[i + 1])
+def peak(spline, state, counters):
+    """How far the largest gap may be above that of any particle.
+
+    Between two particles it is as large as the surface stays below their segment; by their own gaps, as it changes by
+    no more than the way.
+    """
+    gap, point = state.clear, np.empty(3)
+    largest = gap.max()
+    most = largest
+    for i in range(len(gap) - 1):
+        if not (state.touching[i] and state.touching[i + 1]):
+            reach = 0.5 * (gap[i] + gap[i + 1] + distance(state.X, i, i + 1))
+            if reach > most:
+                most = max(most, min(reach, below(spline, state, i, point, counters)))
+    return most - largest
 
 
 @njit(cache=True)
@@ -160,11 +175,12 @@ def fibre_length(spline, state, rise):
             if m > j and m < i - 1:
                 error += detour(X, state.normal, m, d, rise[m])
         straight = before + after + np.sqrt(square)
-        if before + after <= chord:
+        doubt = detour(X, state.normal, j, distance(X, j, j + 1), rise[j])
+        doubt += detour(X, state.normal, i - 1, distance(X, i - 1, i), rise[i - 1])
+        if before + after <= chord and straight - chord <= doubt + ROUNDED * chord:
             total += straight
             error += LANDED * abs(straight - chord)
-        else:  # the ends lie beyond one another: the fibre hardly leaves the surface
+        else:  # the ends lie beyond one another, or further round than the surface stands out
             total += chord
-            error += detour(X, state.normal, j, distance(X, j, j + 1), rise[j])
-            error += detour(X, state.normal, i - 1, distance(X, i - 1, i), rise[i - 1])
+            error += doubt + max(straight - chord, 0.0)
     return total, error

@@ -112,8 +112,8 @@ class Paths:
     def position_error(self) -> Floats:
         """How far each fibre (p,) may be from the polyline through its particles, in the surface's units.
 
-        It is how far the surface stands out of a segment, or stays below it between particles that touch, and what the
-        largest gap may be above that of a particle.
+        It is how far the surface stands out of a segment, or stays below it between particles that touch, or what the
+        largest gap may be above those of all particles.
         """
         return self._measured.off
 

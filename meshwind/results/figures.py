@@ -11,15 +11,18 @@ from meshwind.path.paths import Paths, Status, converged_or_all
 class PathFigures:
     """Figures of the paths that converged, or of all where none did: `counted` (p,) says which.
 
-    converged: how many did; fibre_length: the total; bridged_share: share of the polylines' length off the surface;
-    spans: the resolved bridges, whose gap is above what counts as none; unresolved: the others, which count as contact,
-    and unresolved_share: their share of the length.  Lengths are in the mesh's units, max_slip is the required friction
-    |kg| / kn, max_residual is over the tension.
+    converged: how many did; fibre_length, length_error: the total, and what the particles may make it wrong by;
+    position_error: how far a fibre may be from the polyline through its particles; bridged_share: share of the
+    polylines' length off the surface; spans: the resolved bridges, whose gap is above what counts as none; unresolved:
+    the others, which count as contact, and unresolved_share: their share of the length.  Lengths are in the mesh's
+    units, max_slip is the required friction |kg| / kn, max_residual is over the tension.
     """
 
     counted: Bools
     converged: int
     fibre_length: float
+    length_error: float
+    position_error: float
     bridged_share: float
     spans: Bridges
     unresolved: Bridges
@@ -48,6 +51,8 @@ def path_figures(paths: Paths) -> PathFigures:
         counted=frozen(counted),
         converged=int((paths.status == Status.CONVERGED).sum()),
         fibre_length=float(paths.length[counted].sum()),
+        length_error=float(paths.length_error[counted].sum()),
+        position_error=float(paths.position_error[counted].max(initial=0.0)),
         bridged_share=bridged_share((each, counted)),
         spans=spans.where(spans.resolved),
         unresolved=spans.where(~spans.resolved),

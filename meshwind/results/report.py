@@ -171,6 +171,8 @@ def _paths(paths: Paths) -> PathsFigures:
         "advice": _advice(paths),
         "figures_over": figures.over,
         "length_total": figures.fibre_length,
+        "length_error": figures.length_error,
+        "position_error": figures.position_error,
         "bridged_fraction": figures.bridged_share,
         "bridges": len(figures.spans),
         "longest_bridge": figures.longest_bridge,

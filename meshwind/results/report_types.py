@@ -125,13 +125,19 @@ class UnresolvedFigures(TypedDict):
 
 
 class PathsFigures(TypedDict):
-    """The paths; lengths, bridges and maxima are over those that `figures_over` names, residuals over the tension."""
+    """The paths; lengths, bridges and maxima are over those that `figures_over` names, residuals over the tension.
+
+    length_error: what the total may be off by; position_error: how far a fibre may be from the polyline through its
+    particles: both for the particles, not for the fit.
+    """
 
     converged: int
     not_converged: list[Failure]
     advice: AdviceFigures
     figures_over: str
     length_total: float
+    length_error: float
+    position_error: float
     bridged_fraction: float
     bridges: int
     longest_bridge: float

@@ -23,7 +23,7 @@ class Status(IntEnum):
     LEFT_CHART : int
         5: the fibre slides off an open edge of a surface that does not close in u.
     TOO_COARSE : int
-        6: in equilibrium, but the fibre turns over an edge that is sharper than its particles can follow.
+        6: in equilibrium, but the surface stands out of the fibre between two of its particles.
 
     Examples
     --------
@@ -58,7 +58,8 @@ _MEANING = {
     Status.UNSTABLE: "no stable path: the fibre is balanced on a ridge and falls off it (a conjugate point, or "
     "windings too long for the bulge)",
     Status.LEFT_CHART: "the fibre slides off an open edge of the surface (u=0 or u=1)",
-    Status.TOO_COARSE: "the fibre turns over an edge that is too sharp for the distance of its particles",
+    Status.TOO_COARSE: "the particles are too far apart for the surface, which stands out of the fibre between two "
+    "of them (an edge, a rib, or a fold)",
     Status.STALLED: "the solver stopped before the fibre was at rest",
 }
 _MAY_HELP = {
@@ -66,6 +67,6 @@ _MAY_HELP = {
     Status.SLID_OFF_END: "fewer revolutions, more friction, or a wider opening there may hold it",
     Status.UNSTABLE: "fewer revolutions or more friction may hold it",
     Status.LEFT_CHART: "ends further away from it, or more friction, may hold it",
-    Status.TOO_COARSE: "more particles (--particles) or a rounder edge may resolve it",
+    Status.TOO_COARSE: "more particles (--particles) may resolve it, or a smoother surface (--tolerance 1e-3)",
     Status.STALLED: "fewer revolutions, more particles, or a smoother surface (--tolerance 1e-3) may bring it to rest",
 }

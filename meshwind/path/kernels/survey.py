@@ -90,24 +90,56 @@ def over_segment(body, state, i, air, work, counters):
     """Largest rise over segment i, largest dip below it, and the share of it where it rises most."""
     segment = segment_of(state, i)
     spline, uv = body.spline, state.uv
-    spans_u, spans_v = spans_of(spline.net)
-    knots = max(
-        abs(np.floor(uv[i + 1, 0] * spans_u) - np.floor(uv[i, 0] * spans_u)),
-        abs(np.floor(uv[i + 1, 1] * spans_v) - np.floor(uv[i, 1] * spans_v)),
-    )
-    high, low, where, odd = 0.0, 0.0, 0.0, True
-    if dot(segment.out, segment.out) > 0.0:
-        high, low, where, bow = predicted(state, i, segment)
-        odd = knots > 1.0 and not follows(spline, state, i, segment, bow)
-    if odd:
-        high, low, where = sampled(spline, uv, i, segment, work[S], counters)
+    knots = knots_passed(spline, uv, i)
+    high, low, where, odd = foreseen(spline, state, i, segment, knots)
+    deep = there = 0.0
     if air and knots > 1.0:
         deep, there = followed(body, state, i, segment, SHORTEST_STEP if odd else np.inf, work, counters)
         if deep == 0.0:  # the line between the feet goes over what the segment passes by
             return 0.0, 0.0, 0.0
-        if deep > high:
-            high, where = deep, there
+    if odd:
+        high, low, where = sampled(spline, uv, i, segment, work[S], counters)
+    if deep > high:
+        high, where = deep, there
     return high, low, where
+
+
+@njit(inline="always", cache=True)
+def knots_passed(spline, uv, i):
+    """Number of knots that segment i passes, in u or in v."""
+    spans_u, spans_v = spans_of(spline.net)
+    return max(
+        abs(np.floor(uv[i + 1, 0] * spans_u) - np.floor(uv[i, 0] * spans_u)),
+        abs(np.floor(uv[i + 1, 1] * spans_v) - np.floor(uv[i, 1] * spans_v)),
+    )
+
+
+@njit(cache=True)
+def foreseen(spline, state, i, segment, knots):
+    """Rise, dip and the rise's share of segment i by the frames at its ends, and whether there may be anything else."""
+    if dot(segment.out, segment.out) == 0.0:
+        return 0.0, 0.0, 0.0, True
+    high, low, where, bow = predicted(state, i, segment)
+    return high, low, where, knots > 1.0 and not follows(spline, state, i, segment, bow)
+
+
+@njit(cache=True)
+def seen(spline, state, i, point, counters):
+    """Rise over segment i and dip below it by samples of the surface, whatever the frames predict."""
+    high, low, _ = sampled(spline, state.uv, i, segment_of(state, i), point, counters)
+    return high, low
+
+
+@njit(cache=True)
+def below(spline, state, i, point, counters):
+    """How far the surface stays below segment i at most; infinite where it faces opposite ways at the ends."""
+    segment = segment_of(state, i)
+    if dot(segment.out, segment.out) == 0.0:
+        return np.inf
+    _, low, _, odd = foreseen(spline, state, i, segment, knots_passed(spline, state.uv, i))
+    if odd:
+        _, low, _ = sampled(spline, state.uv, i, segment, point, counters)
+    return low
 
 
 @njit(cache=True)
@@ -118,7 +150,7 @@ def segment_of(state, i):
     way = minus(row(X, i + 1), start)
     length = max(np.sqrt(dot(way, way)), TINY)
     out = times(0.5, plus(row(normal, i), row(normal, i + 1)))
-    out = minus(out, times(dot(out, way) / max(length**2, TINY), way))
+    out = minus(out, times(dot(out, way) / length / length, way))
     size = np.sqrt(dot(out, out))
     return Segment(start, way, length, over(out, size) if size > OPPOSED else (0.0, 0.0, 0.0))
 
@@ -241,7 +273,7 @@ def sampled(spline, uv, i, segment, point, counters):
         if facing:
             h = dot(off, segment.out)
         else:
-            along = min(max(dot(off, segment.way) / max(segment.length**2, TINY), 0.0), 1.0)
+            along = min(max(dot(off, segment.way) / segment.length / segment.length, 0.0), 1.0)
             off = minus(off, times(along, segment.way))
             h = np.sqrt(dot(off, off))
         low = max(low, -h)
