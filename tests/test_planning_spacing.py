@@ -5,8 +5,8 @@ import pytest
 from layup_shapes import cylinder, fitted, helices, wound
 
 from meshwind.core.errors import BadInputError
+from meshwind.layup.neighbours import neighbours
 from meshwind.path import Paths
-from meshwind.path.neighbours import neighbours
 from meshwind.planning.spacing import Spaced, space_out
 from meshwind.surface import Surface, shapes
 

@@ -11,9 +11,9 @@ from meshwind.core.vectors import unit
 from meshwind.layup.bands import Bands, bands
 from meshwind.layup.coverage import Coverage, coverage
 from meshwind.layup.crossings import CellSides, Crossings, cell_sides, crossings, own_crossings
+from meshwind.layup.neighbours import Neighbours, neighbours
 from meshwind.layup.quads import QuadMesh, QuadQuality, quad_quality, quads
 from meshwind.layup.windability import Windability, windability
-from meshwind.path.neighbours import Neighbours, neighbours
 from meshwind.path.paths import Paths, Status
 from meshwind.path.solve import straight
 from meshwind.surface.evaluate import SU, SV, S

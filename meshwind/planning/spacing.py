@@ -14,8 +14,8 @@ from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import TINY
 from meshwind.path import Paths, Status, solve
+from meshwind.path.apart import apart
 from meshwind.path.friction import Friction
-from meshwind.path.neighbours import apart
 from meshwind.surface.rims import rim_parameters
 from meshwind.surface.surface import Surface
 

@@ -1,16 +1,14 @@
-"""Distances along the surface between neighbouring paths of a family (Fig. 6.3).
+"""Distances along the surface from one path of a family to the next (Fig. 6.3).
 
-Two neighbours are next to each other in the chart unrolled over all turns of u, where one strand of a path lies between
+The two are next to each other in the chart unrolled over all turns of u, where one strand of a path lies between
 two strands of the next, however steep the winding is.  The distance is measured across: by the straight line in (u, v)
 where that is as short as the geodesic, and otherwise by the geodesic itself, on few particles.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numba import njit
 
-from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.cast import Floats, Ints
 from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.glide import MAX_STEPS, Factors, glide
@@ -18,7 +16,7 @@ from meshwind.path.kernels.state import Limits
 from meshwind.path.paths import Paths
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, S, frame, tangents, unit_normal
 
-_SEAM = 1e-12
+SEAM = 1e-12
 """Starts closer than this to the seam from below, in turns, are on it, but for round-off."""
 _STRAIGHT = 0.2
 """Angle (radians) by which a line in (u, v) may turn within the surface: it is longer than the geodesic by 1/24 of its
@@ -39,71 +37,35 @@ _GAUSS = (0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)), (5.0 / 18.0, 8.0 / 18.
 """Places and weights of Gauss's rule of three points on [0, 1]."""
 
 
-@dataclass(frozen=True)
-class Neighbours:
-    """The m pairs of paths of a family that are next to each other at the start rim.
-
-    first, second (m,): paths; family (m,); particles (k,): those of `first` that are measured from, all of them where
-    there are few; distance (m, k): of each, or of its foot, to `second` along the surface, in the mesh's units, 0 where
-    it lies beyond the ends; largest (m,): the larger of the largest distances from `first` to `second` and back.
-    """
-
-    first: Ints
-    second: Ints
-    family: Ints
-    particles: Ints
-    distance: Floats
-    largest: Floats
-
-
-def neighbours(paths: Paths) -> Neighbours:
-    """Measure from each path to the next of its family around the start rim, and from the last to the first."""
-    pairs = [_ring(paths, family) for family in (1, -1)]
-    first, second = (np.concatenate(side).astype(np.int64) for side in zip(*pairs, strict=True))
-    there, back = _both_ways(paths, first, second)
-    return Neighbours(*map(frozen, (first, second, paths.family[first], _measured(paths), there, _larger(there, back))))
-
-
 def apart(paths: Paths, first: Ints, second: Ints) -> Floats:
     """Largest distance (m,) between each path in `first` and the next one of its family, in `second`, either way."""
-    return _larger(*_both_ways(paths, first.astype(np.int64), second.astype(np.int64)))
+    return larger(*both_ways(paths, first.astype(np.int64), second.astype(np.int64)))
 
 
-def _larger(there: Floats, back: Floats) -> Floats:
+def larger(there: Floats, back: Floats) -> Floats:
     """The largest distance (m,) of both ways (m, n)."""
     return np.maximum(there.max(axis=1, initial=0.0), back.max(axis=1, initial=0.0))
 
 
-def _measured(paths: Paths) -> Ints:
+def measured(paths: Paths) -> Ints:
     """Particles (k,) from which a path is measured."""
     n = paths.uv.shape[1]
     return np.rint(np.linspace(0.0, n - 1.0, min(n, _SAMPLES))).astype(np.int64)
 
 
-def _both_ways(paths: Paths, first: Ints, second: Ints) -> tuple[Floats, Floats]:
+def both_ways(paths: Paths, first: Ints, second: Ints) -> tuple[Floats, Floats]:
     """Distances (m, k) of particles of paths `first` to paths `second`, and back."""
-    which = _measured(paths)
+    which = measured(paths)
     begin = paths.uv[:, 0, 0]
     shift = np.zeros(len(first))
     if paths.surface.periodic:
         step = begin[second] - begin[first]
-        shift = np.mod(step + _SEAM, 1.0) - _SEAM - step  # to the strand that is next
+        shift = np.mod(step + SEAM, 1.0) - SEAM - step  # to the strand that is next
         shift[first == second] = 1.0
     there, back = (np.empty((len(first), len(which))) for _ in range(2))
     for a, b, way, out in ((first, second, shift, there), (second, first, -shift, back)):
         parallel_for(_measure, len(a), 1, paths.surface.spline, paths.uv, (a, b), which, way, out)
     return there, back
-
-
-def _ring(paths: Paths, family: int) -> tuple[Ints, Ints]:
-    """Each path of a family and the next around the start rim; none where there is only one."""
-    mine = np.flatnonzero(paths.family == family)
-    if len(mine) < 2:
-        return mine[:0], mine[:0]
-    # by the start alone two paths from one pin could change places: the end decides between them
-    order = np.lexsort((paths.uv[mine, -1, 0] - paths.uv[mine, 0, 0], np.mod(paths.uv[mine, 0, 0] + _SEAM, 1.0)))
-    mine = mine[order]
-    return (mine, np.roll(mine, -1)) if paths.surface.periodic else (mine[:-1], mine[1:])
 
 
 @njit(nogil=True, cache=True)

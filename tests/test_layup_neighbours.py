@@ -5,7 +5,7 @@ import pytest
 from layup_shapes import DATA, HEIGHT, cylinder, drawn, helices, wound
 
 import meshwind as mw
-from meshwind.path.neighbours import neighbours
+from meshwind.layup.neighbours import neighbours
 from meshwind.surface import shapes
 
 CYLINDER = cylinder()
