@@ -1,10 +1,13 @@
 """Neighbours and how far apart they lie; batches of paths taken apart and joined."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from layup_shapes import DATA, HEIGHT, cylinder, drawn, helices, wound
 
 import meshwind as mw
+from meshwind.core.cast import Floats, frozen
 from meshwind.layup.neighbours import neighbours
 from meshwind.surface import shapes
 
@@ -74,3 +77,46 @@ def test_paths_are_selected_and_joined_whole() -> None:
     assert np.array_equal(again.points, paths.points[[4, 5, 0]])
     assert np.array_equal(again.family, [-1, -1, 1])
     assert again.counters.solves == 2 * paths.counters.solves
+
+
+def bossed(height: float) -> mw.Surface:
+    """A cylinder with a round boss in the middle of one side."""
+
+    def points(u: Floats, v: Floats) -> Floats:
+        far = ((np.mod(u, 1.0) - 0.5) / 0.05) ** 2 + ((v - 0.5) / 0.08) ** 2
+        ring, turn = 1.0 + height * np.exp(-0.5 * far), 2.0 * np.pi * u
+        return np.stack([ring * np.cos(turn), ring * np.sin(turn), 4.0 * v], axis=-1)
+
+    return shapes.parametric(points, (96, 64))
+
+
+def test_neighbours_part_round_a_boss_and_not_where_fibres_fan_out() -> None:
+    """However many paths start between the two, none rests on the boss; on a cone and an elbow all distances shrink."""
+    paths = wound(bossed(0.6), 10, 0.1)
+    layup = mw.assess(paths)
+    near = layup.neighbours
+    pairs = np.stack([near.first, near.second], axis=1)[layup.partings]
+    assert len(pairs) == 2
+    for first, second in pairs:  # one on either side of the boss
+        middle = paths.uv[[first, second]][:, paths.uv.shape[1] // 2, 0]
+        assert middle[0] < 0.5 < middle[1]
+    assert near.largest[layup.partings].min() > 2.0 * np.median(near.largest)
+    for even in (wound(bossed(0.02), 10, 0.1), wound(shapes.elbow(3.0, 1.0, spans=(48, 32)), 12, 0.5)):
+        assert not mw.assess(even).partings.any()
+
+
+def test_partings_are_those_of_more_paths() -> None:
+    """With twice as many paths the same places stay open, and no others of their size."""
+    surface = mw.fit(mw.flatten(mw.annulus(mw.read(DATA / "cast.ply"))), tolerance=1e-4)
+    few, many = (mw.assess(wound(surface, count, 1.5)) for count in (24, 48))
+    near, parted = few.neighbours, few.partings
+    left = np.sort(many.neighbours.largest)
+    assert parted.sum() == 2
+    assert left[-2:] == pytest.approx(np.sort(near.largest[parted]), rel=0.1)
+    assert left[-3] < 0.25 * left[-2]
+
+
+def test_paths_that_are_not_at_rest_part_round_nothing() -> None:
+    paths = wound(bossed(0.6), 10, 0.1)
+    loose = replace(paths, status=frozen(np.full(len(paths), int(mw.Status.STALLED))))
+    assert not mw.assess(loose).partings.any()

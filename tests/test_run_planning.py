@@ -8,10 +8,14 @@ import numpy as np
 import pytest
 
 import meshwind as mw
+from meshwind.cli.summary import run_lines
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import turns
+from meshwind.pictures.layup_scenes import unrolled_scene
 from meshwind.pictures.revolutions_picture import draw_revolutions
+from meshwind.pictures.subject import subject_of
 from meshwind.planning.revolutions import choose_revolutions
+from meshwind.results.reading import read_results
 from meshwind.surface import shapes
 
 DATA = Path(__file__).parents[1] / "data"
@@ -60,6 +64,20 @@ def test_pins_take_the_place_of_even_ends(tmp_path: Path) -> None:
     assert result.paths.family.tolist() == [1] * 4 + [-1] * 4
     assert result.settled
     assert result.report()["winding"]["paths_per_family"] == 4
+
+
+def test_neighbours_that_part_are_said_to_in_figures_summary_and_picture(tmp_path: Path) -> None:
+    mw.wind(DATA / "cast.ply", revolutions=1.5, paths=24, particles=145, out=tmp_path, render=False)
+    results = read_results(tmp_path)
+    near = results.report["spacing"]
+    assert len(near["partings"]) == 2 and near["widest_parting"] == near["neighbours"]["max"]
+    assert near["kept"] < 0.25 * near["widest_parting"]
+    (line,) = [line for line in run_lines(results.report) if "neighbours" in line]
+    assert line.endswith("mm apart, but 2 pairs that part round a body, by up to 122 mm")
+    assert results.partings.tolist() == near["partings"]
+    outlines = unrolled_scene(subject_of(results)).parted
+    assert len(outlines) == 2
+    assert (np.ptp(outlines[..., 0], axis=1) < 2.0).all()  # to the strand that is next, not round the part
 
 
 def test_partings_are_reported() -> None:

@@ -72,12 +72,16 @@ def _paths(paths: PathsFigures, units: str) -> list[str]:
 
 def _layup(report: Report, units: str) -> list[str]:
     """Coverage and spacing; the fibre's mass where it is known."""
-    cover, near, fibre = report["coverage"], report["spacing"]["neighbours"], report["fibre"]
+    cover, near, fibre = report["coverage"], report["spacing"], report["fibre"]
     shares = {"bare": cover["bare"], "once": cover["once"], "twice": cover["twice"], "more": cover["more"]}
     covered = ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in shares.items())
     lines = [f"coverage  band {quantity(cover['band_width'], units, 3)}: {covered}"]
-    if near["max"] is not None:
-        lines[0] += f"; neighbours up to {quantity(near['max'], units, 3)} apart"
+    if near["neighbours"]["max"] is not None:
+        lines[0] += f"; neighbours up to {quantity(near['kept'], units, 3)} apart"
+    if near["partings"]:
+        many = len(near["partings"])
+        lines[0] += f", {'but one pair' if many == 1 else f'but {many} pairs'} that part round a body, by up to "
+        lines[0] += quantity(near["widest_parting"], units, 3)
     if fibre["mass"] is not None:
         lines.append(f"fibre     {quantity(fibre['length'], units)}, mass {fibre['mass']:.4g}")
     return lines

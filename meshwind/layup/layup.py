@@ -12,6 +12,7 @@ from meshwind.layup.bands import Bands, bands
 from meshwind.layup.coverage import Coverage, coverage
 from meshwind.layup.crossings import CellSides, Crossings, cell_sides, crossings, own_crossings
 from meshwind.layup.neighbours import Neighbours, neighbours
+from meshwind.layup.partings import partings
 from meshwind.layup.quads import QuadMesh, QuadQuality, quad_quality, quads
 from meshwind.layup.windability import Windability, windability
 from meshwind.path.paths import Paths, Status
@@ -72,6 +73,11 @@ class Layup:
     def neighbours(self) -> Neighbours:
         """Distances between neighbouring paths of a family, in the mesh's units."""
         return neighbours(self.paths)
+
+    @cached_property
+    def partings(self) -> Bools:
+        """Which of the neighbours part round a body, so that no path rests between them."""
+        return partings(self.paths, self.neighbours)
 
     @cached_property
     def sides(self) -> CellSides:

@@ -56,16 +56,22 @@ def measured(paths: Paths) -> Ints:
 def both_ways(paths: Paths, first: Ints, second: Ints) -> tuple[Floats, Floats]:
     """Distances (m, k) of particles of paths `first` to paths `second`, and back."""
     which = measured(paths)
-    begin = paths.uv[:, 0, 0]
-    shift = np.zeros(len(first))
-    if paths.surface.periodic:
-        step = begin[second] - begin[first]
-        shift = np.mod(step + SEAM, 1.0) - SEAM - step  # to the strand that is next
-        shift[first == second] = 1.0
+    shift = to_next(paths, first, second)
     there, back = (np.empty((len(first), len(which))) for _ in range(2))
     for a, b, way, out in ((first, second, shift, there), (second, first, -shift, back)):
         parallel_for(_measure, len(a), 1, paths.surface.spline, paths.uv, (a, b), which, way, out)
     return there, back
+
+
+def to_next(paths: Paths, first: Ints, second: Ints) -> Floats:
+    """Turns (m,) by which u of paths `second` is shifted to the strand that is next to each of `first`."""
+    shift = np.zeros(len(first))
+    if paths.surface.periodic:
+        begin = paths.uv[:, 0, 0]
+        step = begin[second] - begin[first]
+        shift = np.mod(step + SEAM, 1.0) - SEAM - step
+        shift[first == second] = 1.0
+    return shift
 
 
 @njit(nogil=True, cache=True)

@@ -4,6 +4,7 @@ import numpy as np
 
 from meshwind.appearance.looks import Look, Scale, fixed
 from meshwind.core.cast import Floats
+from meshwind.path.apart import to_next
 from meshwind.path.lengths import bridging
 from meshwind.pictures.scenes import CrossingsScene, QuadsScene, SlipScene, UnrolledScene
 from meshwind.pictures.subject import Subject
@@ -89,7 +90,16 @@ def unrolled_scene(of: Subject) -> UnrolledScene:
         bridging=bridging(of.paths)[:, of.kept],
         family=of.paths.family,
         converged=of.converged,
+        parted=_parted(of),
     )
+
+
+def _parted(of: Subject) -> Floats:
+    """Outlines (k, 2 n, 2) in the chart of the strips between neighbours that part: along one, back on the other."""
+    first, second = of.partings[:, 0], of.partings[:, 1]
+    uv, shift = of.paths.uv[:, of.kept], to_next(of.paths, first, second)
+    other = uv[second] + np.stack([shift, np.zeros(len(shift))], axis=1)[:, None]
+    return np.concatenate([uv[first], other[:, ::-1]], axis=1)
 
 
 def _unrolled_subtitle(low: Floats, high: Floats, units: str) -> str:

@@ -167,7 +167,10 @@ class QuadsScene:
 
 @dataclass(frozen=True)
 class UnrolledScene:
-    """The chart as an image (h, w, 3) and the fibres on it, uv (p, n, 2); bridging (p, n): whether particles bridge."""
+    """The chart as an image (h, w, 3) and the fibres on it, uv (p, n, 2); bridging (p, n): whether particles bridge.
+
+    parted: outlines (k, 2 n, 2) of the strips between neighbours that part round a body.
+    """
 
     frame: Frame
     image: Floats
@@ -175,6 +178,7 @@ class UnrolledScene:
     bridging: Bools
     family: Ints
     converged: Bools
+    parted: Floats
 
 
 @dataclass(frozen=True)

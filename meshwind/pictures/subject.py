@@ -1,7 +1,7 @@
 """Subject of the pictures of a winding: its layup, the maps on its surface, and the view."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -29,7 +29,7 @@ class Subject:
     """A layup and its surface as outward quads (q, 4) between points (k, 3) with normals (k, 3) and maps (k,).
 
     name and units of the part for titles and legends; revolutions: as given, None if that is not known; seen_from:
-    "auto", the name of a side, or a view.
+    "auto", the name of a side, or a view; partings (k, 2): pairs of neighbours that part round a body.
     """
 
     layup: Layup
@@ -41,6 +41,7 @@ class Subject:
     revolutions: float | None = None
     maps: Mapping[str, NDArray[Any]] = field(default_factory=dict)
     seen_from: str | View = "auto"
+    partings: Ints = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
 
     @property
     def paths(self) -> Paths:
@@ -130,4 +131,5 @@ def subject_in(
 def subject_of(results: Results, seen_from: str = "auto") -> Subject:
     """The winding of a run's folder."""
     turns = results.revolutions
-    return subject_in(results.folder, results.layup, results.name, results.units, turns, seen_from, trusted=False)
+    of = subject_in(results.folder, results.layup, results.name, results.units, turns, seen_from, trusted=False)
+    return replace(of, partings=results.partings)

@@ -13,8 +13,12 @@ from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import UnrolledScene
 
 _BRIDGING = "#b0127b"
+_PARTED = "#333333"
+"""Between neighbours that part round a body."""
 _PALE = 0.55
 """Share of white mixed into the image, so that the fibres stand out."""
+_VEIL = 0.35
+"""Opacity of the strips between neighbours that part."""
 _DPI = 100.0
 
 
@@ -37,6 +41,7 @@ def draw(window: Any, scene: UnrolledScene, page: Page) -> Any:
     pen = canvas.titled(image, page, scene.frame)
     rows = [(bodies.FAMILY[name], words) for name, words in bodies.NAMES.items()]
     rows += [(_BRIDGING, "bridging")] if scene.bridging.any() else []
+    rows += [(_PARTED, "parting")] if len(scene.parted) else []
     canvas.legend(pen, page, rows if scene.converged.all() else [*rows, (bodies.LOOSE, "not at rest")])
     return image
 
@@ -45,6 +50,9 @@ def _fill(axes: Any, scene: UnrolledScene, s: float, width: float) -> None:
     """Draw image, fibres and labels of the axes."""
     thick = min(1.6 * s, 0.16 * width / len(scene.uv))
     axes.imshow(_PALE + (1.0 - _PALE) * scene.image, extent=(0.0, 1.0, 0.0, 1.0), origin="lower", aspect="auto")
+    for outline in scene.parted:
+        for turn in np.arange(np.floor(outline[:, 0].min()), np.ceil(outline[:, 0].max())):
+            axes.fill(*(outline - [turn, 0.0]).T, facecolor=_PARTED, alpha=_VEIL, edgecolor="none")
     for path, (uv, family) in enumerate(zip(scene.uv, scene.family, strict=True)):
         colour = bodies.FAMILY[int(family)] if scene.converged[path] else bodies.LOOSE
         axes.plot(*_wrapped(uv), color=colour, linewidth=thick)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from meshwind.core.cast import Floats
+from meshwind.core.cast import Floats, Ints
 from meshwind.layup.crossings import Crossings, counts
 from meshwind.layup.layup import Layup
 from meshwind.layup.windability import CONCAVE, CONVEX, SADDLE, Windability
@@ -64,21 +64,30 @@ def coverage_figures(layup: Layup) -> CoverageFigures:
 
 def spacing_figures(layup: Layup, spaced: Spaced | None) -> SpacingFigures:
     """Distances between neighbours and between crossings; the gap and overlap that the band's width leaves."""
-    largest, width = layup.neighbours.largest, layup.coverage.width
+    near, width = layup.neighbours, layup.coverage.width
+    largest = near.largest
     figures: SpacingFigures = {
         "neighbours": parallel_for(largest),
         "d1": parallel_for(layup.sides.d1),
         "d2": parallel_for(layup.sides.d2),
         "widest_gap": max(float(largest.max(initial=width)) - width, 0.0),
         "neighbours_apart": float((largest > width).mean()) if len(largest) else None,
+        "partings": parted(layup, spaced).tolist(),
+        "widest_parting": float(largest[layup.partings].max(initial=0.0)) if spaced is None else spaced.widest,
+        "kept": float(largest[~layup.partings].max(initial=0.0)) if spaced is None else spaced.gap,
     }
     if spaced is not None:
         figures["asked"] = spaced.spacing
-        figures["kept"] = spaced.gap
         figures["paths_added"] = len(spaced.paths) - 2 * spaced.even
-        figures["partings"] = spaced.partings.tolist()
-        figures["widest_parting"] = spaced.widest
     return figures
+
+
+def parted(layup: Layup, spaced: Spaced | None) -> Ints:
+    """Pairs (k, 2) of neighbours that part round a body: those that spacing them has found, if it was asked for."""
+    if spaced is not None:
+        return spaced.partings
+    near = layup.neighbours
+    return np.stack([near.first, near.second], axis=1)[layup.partings]
 
 
 def windability_figures(press: Windability) -> WindabilityFigures:

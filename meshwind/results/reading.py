@@ -80,6 +80,16 @@ class Results:
         return float(width) if width else None
 
     @property
+    def partings(self) -> Ints:
+        """Pairs (k, 2) of neighbours that part round a body; none if the report does not say."""
+        pairs = _under(self.report, "spacing", "partings")
+        try:
+            known = np.array(pairs or [], dtype=np.int64).reshape(-1, 2)
+        except (TypeError, ValueError, OverflowError) as error:
+            raise _spoilt(self.folder / REPORT, error) from error
+        return known[((known >= 0) & (known < len(self.paths))).all(axis=1)]
+
+    @property
     def at_rest(self) -> Bools:
         """Which paths (p,) converged; no fibre stays on the others."""
         return np.asarray(self.paths.status == Status.CONVERGED)

@@ -178,7 +178,9 @@ class CoverageFigures(TypedDict):
 class SpacingFigures(TypedDict):
     """Distances between neighbours and, along the fibres, between crossings; gaps that the band's width leaves.
 
-    `asked` and the following are present only if a spacing was given; partings are pairs of paths that exceed it.
+    partings: pairs of neighbours that part round a body; widest_parting, kept: largest distance between them, and
+    between all other neighbours.  `asked` and `paths_added` are present only if a spacing was given; partings are then
+    the pairs that exceed it.
     """
 
     neighbours: Spread
@@ -186,11 +188,11 @@ class SpacingFigures(TypedDict):
     d2: Spread
     widest_gap: float
     neighbours_apart: float | None
+    partings: list[list[int]]
+    widest_parting: float
+    kept: float
     asked: NotRequired[float]
-    kept: NotRequired[float]
     paths_added: NotRequired[int]
-    partings: NotRequired[list[list[int]]]
-    widest_parting: NotRequired[float]
 
 
 class WindabilityFigures(TypedDict):

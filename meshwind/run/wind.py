@@ -19,6 +19,7 @@ from meshwind.pictures.subject import subject_in
 from meshwind.planning.pins import check_pins
 from meshwind.results import folder
 from meshwind.results.config_file import write_config
+from meshwind.results.layup_figures import parted
 from meshwind.results.report import RunFacts, report, write_report
 from meshwind.results.report_types import Report
 from meshwind.results.schema import CONFIG, FIT_PICTURE, REPORT, REVOLUTIONS_PICTURE, SHEET, WINDING, picture
@@ -330,6 +331,7 @@ def _draw(result: Result, out: Path) -> str:
     """Draw the winding, the picture of a warning and the contact sheet; return "" or what is missing for drawing."""
     name, units = result.mesh.name, result.mesh.units
     of = subject_in(out, result.layup, name, units, result.revolutions)
+    of = replace(of, partings=parted(result.layup, result.spaced))
     with TemporaryDirectory(dir=out) as cells:  # within, so that a killed run leaves nothing elsewhere
         pictures = placed(scenes_of(of), (WINDING, SHEET), Page(), out, Path(cells))
         work = dict(pictures)
