@@ -14,12 +14,13 @@ PINNED = 1e8
 
 
 @njit(cache=True)
-def assemble(state, periodic, resist, contacts, system):
+def assemble(state, periodic, resist, contacts, system, faint):
     """Hessian and force of the energy over the touching particles (5.2) in the parametric plane.
 
     A pinned particle is not pulled along the fibre, and too stiff to move there; what resists a slip is one more force.
     The diagonal block is J'J's share of (4.16) less F . s_ab, which makes the step Newton's.  Returns the number of
-    blocks, the largest unbalanced force in the tangent plane, and the last particle held at a rim or edge (0: none).
+    blocks, the largest unbalanced force in the tangent plane, and the last particle that is pressed out over a rim or
+    edge by more than a `faint` force (0: none).
     """
     X, uv, frames, station = state.X, state.uv, state.frames, state.station
     index, before, after = contacts.inner, contacts.before, contacts.after
@@ -58,7 +59,8 @@ def assemble(state, periodic, resist, contacts, system):
         if count > 0:
             couple(state, before[i], i, last, bits, upper[count - 1])
         if bits:  # a held direction drops out of the system
-            leaning = i
+            if force_squared(fu, fv, auu, auv, avv) > faint * faint:
+                leaning = i
             auv = 0.0
             diagonal[count, 1] = 0.0
             if bits & 1:
@@ -83,13 +85,18 @@ def assemble(state, periodic, resist, contacts, system):
                 diagonal[count, 0] += back * dot(way, derivative(frames, i, SUU))
                 diagonal[count, 1] += back * dot(way, derivative(frames, i, SUV))
                 diagonal[count, 2] += back * dot(way, derivative(frames, i, SVV))
-        det = auu * avv - auv * auv
-        if det > 0.0:
-            worst = max(worst, (fu * fu * avv - 2.0 * fu * fv * auv + fv * fv * auu) / det)
+        worst = max(worst, force_squared(fu, fv, auu, auv, avv))
         last = bits
         count += 1
         i = after[i]
     return count, np.sqrt(worst), leaning
+
+
+@njit(inline="always", cache=True)
+def force_squared(fu, fv, auu, auv, avv):
+    """Square of a force in the tangent plane of which the products with s_u and s_v are known."""
+    det = auu * avv - auv * auv
+    return (fu * fu * avv - 2.0 * fu * fv * auv + fv * fv * auu) / det if det > 0.0 else 0.0
 
 
 @njit(cache=True)

@@ -7,6 +7,8 @@ from meshwind.path.kernels.geometry import combine, dot, minus, row
 DEEP, SHALLOW, NOTHING = range(3)
 """What a step may release: all that pulls off, as in a convex hull scan; only what its present neighbours pull off;
 nothing.  A step that fails is tried again with the next."""
+RIM = 1e-9
+"""Particles closer than this to a rim or an edge, in v or u, are on it: a step that short lowers no energy visibly."""
 
 
 @njit(inline="always", cache=True)
@@ -82,8 +84,8 @@ def release(state, slack, caution, contacts):
 def held(uv, i, periodic, fu, fv):
     """Bit 1: the force pushes particle i out over an edge in u; bit 2: out over a rim in v."""
     bits = 0
-    if not periodic and ((uv[i, 0] <= 0.0 and fu < 0.0) or (uv[i, 0] >= 1.0 and fu > 0.0)):
+    if not periodic and ((uv[i, 0] <= RIM and fu < 0.0) or (uv[i, 0] >= 1.0 - RIM and fu > 0.0)):
         bits |= 1
-    if (uv[i, 1] <= 0.0 and fv < 0.0) or (uv[i, 1] >= 1.0 and fv > 0.0):
+    if (uv[i, 1] <= RIM and fv < 0.0) or (uv[i, 1] >= 1.0 - RIM and fv > 0.0):
         bits |= 2
     return bits

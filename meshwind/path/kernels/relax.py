@@ -18,7 +18,7 @@ from meshwind.core.vectors import TINY
 from meshwind.path.kernels.assembly import assemble
 from meshwind.path.kernels.block_tridiagonal import SymmetricSystem, solve, symmetric_system
 from meshwind.path.kernels.certificate import HALF_TURN, largest_leap
-from meshwind.path.kernels.contact import DEEP, NOTHING, lift, release
+from meshwind.path.kernels.contact import DEEP, NOTHING, RIM, lift, release
 from meshwind.path.kernels.glide import LONGEST_MOVE
 from meshwind.path.kernels.landing import carry_lifted, sag
 from meshwind.path.kernels.resist import (
@@ -129,7 +129,7 @@ def minimise(body, limits, resist, state, trial, counters):
         released = release(state, slack, caution, contacts)
         if released > 0 and len(body.tree.levels) == 0:
             return residual, NEEDS_TREE, swapped
-        count, force, leaning = assemble(state, periodic, resist, contacts, system)
+        count, force, leaning = assemble(state, periodic, resist, contacts, system, limits.tolerance * spacing)
         residual = max(force, sag(state.X, contacts.after, state.station)) / spacing
         if released == 0 and residual <= limits.tolerance:
             if caution == NOTHING and lift(state, slack, False, contacts) > 0:
@@ -289,7 +289,7 @@ def where_it_rests(uv, leaning, escaped):
 def failure(uv, periodic):
     """Status of a path that found no equilibrium: where it lies on a rim or hangs over it, or else STALLED."""
     for i in range(1, len(uv) - 1):
-        if uv[i, 1] <= 0.0 or uv[i, 1] >= 1.0 or (not periodic and (uv[i, 0] <= 0.0 or uv[i, 0] >= 1.0)):
+        if at_rim(uv[i, 1]) or (not periodic and at_rim(uv[i, 0])):
             return leaving_by(uv, i)
     return STALLED
 
@@ -297,6 +297,12 @@ def failure(uv, periodic):
 @njit(cache=True)
 def leaving_by(uv, i):
     """Where a path leaves whose particle i is held: over a rim, or an edge of a surface open in u."""
-    if uv[i, 1] <= 0.0:
+    if uv[i, 1] <= RIM:
         return SLID_OFF_START
-    return SLID_OFF_END if uv[i, 1] >= 1.0 else LEFT_CHART
+    return SLID_OFF_END if uv[i, 1] >= 1.0 - RIM else LEFT_CHART
+
+
+@njit(inline="always", cache=True)
+def at_rim(v):
+    """Whether v is on a rim, or u on an edge, of a surface that ends there."""
+    return v <= RIM or v >= 1.0 - RIM
