@@ -6,8 +6,12 @@ import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.threads import parallel_for
+from meshwind.core.vectors import TINY
 from meshwind.path.kernels.refine import refine_all
 from meshwind.path.kernels.starting_curve import sample_all
+
+A_RADIAN = 4.0
+"""Particles that a turn by a radian is worth where few of them have to follow a fibre."""
 
 
 class Batch(NamedTuple):
@@ -76,6 +80,15 @@ class Batch(NamedTuple):
         parallel_for(refine_all, self.paths, 64, self, fine)
         return fine
 
+    def thinned(self, particles: int) -> "Batch":
+        """The same paths with fewer of their particles, most of them where the fibre bends; counters go on."""
+        index = np.array([_where_it_bends(X, particles) for X in self.X], dtype=np.int64)
+        few = fresh(self.starts, particles)
+        for name in ("X", "uv", "normal", "touching", "gap", "required"):
+            getattr(few, name)[:] = getattr(self, name)[np.arange(self.paths)[:, None], index]
+        few.residual[:], few.status[:], few.counters[:] = self.residual, self.status, self.counters
+        return few
+
     def curves_sampled(self) -> "Batch":
         """The same with as many points on the starting curves as there are particles."""
         last, points = self.starts.shape[1] - 1, self.particles
@@ -88,6 +101,23 @@ class Batch(NamedTuple):
 
 _ALONG_PATH = ("starts", "X", "uv", "normal", "touching", "gap", "required", "anchor", "mode")
 """Fields whose second axis runs along the path."""
+
+
+def _where_it_bends(X: Floats, count: int) -> Ints:
+    """Which `count` particles of X (n, 3) share out its length, and its turning by so much a radian."""
+    way = np.diff(X, axis=0)
+    size = np.linalg.norm(way, axis=1)
+    ahead = way / np.maximum(size, TINY)[:, None]
+    turn = np.linalg.norm(np.diff(ahead, axis=0), axis=1)  # nearly the angle
+    each = size * ((count - 1) / size.sum())
+    each[:-1] += 0.5 * A_RADIAN * turn
+    each[1:] += 0.5 * A_RADIAN * turn
+    share = np.concatenate([[0.0], np.cumsum(each)])
+    rank = np.arange(count)
+    wanted = np.searchsorted(share, share[-1] * rank / (count - 1))
+    wanted = np.maximum.accumulate(np.minimum(wanted, len(X) - count + rank) - rank) + rank  # no particle twice
+    wanted[0] = 0
+    return np.asarray(wanted)
 
 
 def fresh(starts: Floats, particles: int) -> Batch:

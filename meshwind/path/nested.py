@@ -18,6 +18,8 @@ from meshwind.path.solver import Solver
 REST, CUT = int(Status.CONVERGED), int(Status.TOO_COARSE)
 MOST = 6401
 """Particles of the highest level where their number is left open."""
+FINER = 2
+"""Number of times that particles are doubled for paths that cut an edge."""
 SHARES = 8
 """Steps in which the turn of a path that slides off is built up."""
 
@@ -26,6 +28,14 @@ def solve_nested(solver: Solver, curves: Floats, particles: int | None, accuracy
     """Bring paths to rest from their starting curves (p, k, 2), with `particles` or as many as `accuracy` needs."""
     if particles is None:
         return choose(solver, curves, accuracy)
+    batch = solve_with(solver, curves, particles)
+    if solver.friction.none:
+        resolve(solver, batch)
+    return batch
+
+
+def solve_with(solver: Solver, curves: Floats, particles: int) -> Batch:
+    """Bring paths to rest from their starting curves (p, k, 2), with so many particles, evenly or nearly so."""
     batch = fresh(curves if solver.friction.none else resampled(curves, particles), particles)
     rest = np.arange(len(curves))
     if solver.friction.none:
@@ -38,6 +48,29 @@ def solve_nested(solver: Solver, curves: Floats, particles: int | None, accuracy
         index = rest[levels == level]
         batch.put(index, solve_from_level(solver, batch.rows(index)._replace(starts=curves[index]), int(level)))
     return batch
+
+
+def resolve(solver: Solver, batch: Batch) -> None:
+    """Solve paths that cut an edge with more particles, and leave them those that follow it, in place.
+
+    What has no equilibrium then has none.
+    """
+    index, n = np.flatnonzero(batch.status == CUT), batch.particles
+    fine = batch.rows(index)
+    for _ in range(FINER):
+        if not len(index):
+            break
+        fine = ascend(solver, fine, 2 * fine.particles - 1)
+        few = fine.thinned(n)
+        rest = np.flatnonzero(fine.status == REST)
+        taut = few.rows(rest)
+        solver.relax_as_spaced(taut)
+        few.put(rest, taut)
+        batch.counters[index] = few.counters
+        fine.counters[:] = few.counters
+        done = (few.status != CUT) & ~((few.status != REST) & (fine.status == REST))
+        batch.put(index[done], few.rows(np.flatnonzero(done)))
+        index, fine = index[~done], fine.rows(np.flatnonzero(~done))
 
 
 def solve_from_level(solver: Solver, batch: Batch, level: int, last: bool = False) -> Batch:
@@ -78,7 +111,7 @@ def choose(solver: Solver, curves: Floats, accuracy: float) -> Batch:
 
     Where the particles do not resolve the body there is no estimate, and they are doubled, too.
     """
-    batch = solve_nested(solver, curves, int(fewest(curves).max()) + 1, accuracy)
+    batch = solve_with(solver, curves, int(fewest(curves).max()) + 1)
     now = measure(solver, batch)
     while 2 * batch.particles - 1 <= MOST:
         batch = ascend(solver, batch, 2 * batch.particles - 1)

@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from meshwind.path.kernels.certificate import DEEPEST, certify, leaps
+from meshwind.path.kernels.certificate import DEEPEST, certify, leaps, unresolved
 from meshwind.path.kernels.glide import spread_along
 from meshwind.path.kernels.landing import land
 from meshwind.path.kernels.mend import ROUNDS, any_wanting, centre, mend, pin_beads, spread_stations
@@ -47,6 +47,21 @@ def relax_all(first, last, body, limits, resume, final, batch):
         batch.residual[p], batch.status[p] = relax_and_certify(body, limits, final, state, batch.required[p], counters)
 
 
+@njit(nogil=True, cache=True)
+def relax_all_as_spaced(first, last, body, limits, batch):
+    """As `relax_all`, from paths first to last of a batch whose particles stay where they are along the fibre."""
+    n = batch.uv.shape[1]
+    frames = np.empty((n, 6, 3))
+    for p in range(first, last):
+        state, counters = state_of(batch, p, frames), batch.counters[p]
+        restore_contact(body, state, counters)
+        state.pinned[:] = True
+        residual, status = settle_evenly(body, limits, True, False, state, batch.required[p], counters)
+        if status == CONVERGED and unresolved(body, state, counters):
+            status = TOO_COARSE
+        batch.residual[p], batch.status[p] = residual, status
+
+
 @njit(cache=True)
 def start_on_curve(spline, curve, state, counters):
     """Put a path on its starting curve (m, 2), evenly spaced by length."""
@@ -73,33 +88,44 @@ def relax_and_certify(body, limits, final, state, required, counters):
         if again:
             copy(start, state)
         if pin_where_needed(body, state, required, counters) > 0:
-            residual, status = settle_evenly(body, limits, final, state, required, counters)
+            residual, status = settle_evenly(body, limits, final, True, state, required, counters)
     if status not in (CONVERGED, NEEDS_TREE):
         return residual, first
     if not final or status != CONVERGED:
         return residual, status
-    n = len(state.X)
+    return resolve(body, limits, state, required, residual, counters)
+
+
+@njit(cache=True)
+def resolve(body, limits, state, required, residual, counters):
+    """Give a path at rest particles where the body needs them, and say whether they resolve it; as `relax` returns."""
+    n, status = len(state.X), CONVERGED
     found = blank_survey(n)
     deep = survey(body, state, found, counters)
     spacing = spring_energy(state)[1] / (n - 1)
     if any_wanting(found, spacing):
-        before = blank(n)
+        best, least, left = blank(n), deep, residual
+        copy(state, best)
         for _ in range(ROUNDS):
-            copy(state, before)
-            last, then = deep, residual
             if mend(body, state, found, spacing, counters) == 0:
                 break
-            residual, status = settle_evenly(body, limits, final, state, required, counters)
-            if status == CONVERGED:
-                deep = survey(body, state, found, counters)
-            if status != CONVERGED or deep > last:  # it was better without
-                copy(before, state)
-                certify(body, state, required, counters)
-                deep, residual, status = last, then, CONVERGED
+            residual, status = settle_evenly(body, limits, True, True, state, required, counters)
+            if status != CONVERGED:
                 break
+            deep = survey(body, state, found, counters)
             spacing = spring_energy(state)[1] / (n - 1)
+            if deep <= least:
+                copy(state, best)
+                least, left = deep, residual
+            elif least <= DEEPEST * spacing:  # it was better without
+                break
             if not any_wanting(found, spacing):
                 break
+        if status != CONVERGED or deep > least:
+            copy(best, state)
+            certify(body, state, required, counters)
+            deep, residual, status = least, left, CONVERGED
+            spacing = spring_energy(state)[1] / (n - 1)
     if deep > DEEPEST * spacing or leaps(state, body.spline.periodic):
         return residual, TOO_COARSE
     return residual, status
@@ -116,8 +142,9 @@ def pin_where_needed(body, state, required, counters):
 
 
 @njit(cache=True)
-def settle_evenly(body, limits, final, state, required, counters):
-    """As `settle`, with pinned particles in the middle of what they rest on, and equal pulls along the fibre."""
+def settle_evenly(body, limits, final, centred, state, required, counters):
+    """As `settle`, with equal pulls along the fibre, and, if `centred`, pinned particles in the middle of what they
+    rest on."""
     n = len(state.X)
     contacts = no_contacts(n)
     residual, status = np.inf, STALLED
@@ -125,7 +152,8 @@ def settle_evenly(body, limits, final, state, required, counters):
         released = spread_stations(state, limits.pull_off * spring_energy(state)[1] / (n - 1), contacts)
         if released > 0 and len(body.tree.levels) == 0:
             return residual, NEEDS_TREE
-        centre(body, state, contacts, counters)
+        if centred:
+            centre(body, state, contacts, counters)
         residual, status = settle(body, limits, final, state, required, counters)
         if status != CONVERGED:
             break
