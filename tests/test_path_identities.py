@@ -4,11 +4,13 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
+import pytest
 from friction_checks import SHAPES, bent_shape
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
 from meshwind.path import Paths, Status, solve
 from meshwind.surface import Surface, shapes
 
@@ -75,6 +77,29 @@ def test_place_and_unit(
     paths, other = lay(surface, *places, friction), lay(moved, *places, friction)
     same(paths, (other.points[0] / scale - shift) @ matrix, other)
     assert np.array_equal(paths.on_surface, other.on_surface) or friction == 0.0 or paths.status[0] != 0
+
+
+@pytest.mark.parametrize("name", ["bent", "bottle", "vase"])
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+def test_any_unit(name: str, friction: float) -> None:
+    """Over all sizes that a surface may have; by powers of two, which leave the digits alone, to the last of them."""
+    surface, start, end = SHAPES[name](), [[0.1, 0.1]], [[0.5, 0.9]]
+    paths = solve(surface, start, end, particles=PARTICLES, friction=friction)
+    for power in (-158, -100, -10, 10, 100, 158):
+        scale = 2.0**power
+        other = solve(Surface(surface.control_points * scale, surface.periodic), start, end, particles=PARTICLES,
+                      friction=friction)  # fmt: skip
+        assert other.status == paths.status
+        assert np.abs(other.points / scale - paths.points).max() <= 1e-12 * surface.size
+        assert other.length / scale == pytest.approx(paths.length, rel=1e-12)
+        assert other.length_error / scale == pytest.approx(paths.length_error, rel=1e-6, abs=1e-14 * surface.size)
+
+
+@pytest.mark.parametrize("scale", [1e-100, 1e-51, 1e51, 1e100])
+def test_sizes_that_overflow_are_refused(scale: float) -> None:
+    """Squares of areas of s_u and s_v lose themselves there: a path was said to be in equilibrium that was 4 % off."""
+    with pytest.raises(BadInputError, match="scale it to ordinary units"):
+        Surface(SHAPES["vase"]().control_points * scale)
 
 
 @few

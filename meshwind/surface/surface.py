@@ -14,6 +14,9 @@ from meshwind.surface import evaluate, tree
 from meshwind.surface.evaluate import DEGREE, SU, SV, Spline
 from meshwind.surface.tree import NO_TREE, Body, SearchTree
 
+_LEAST, _MOST = 1e-50, 1e50
+"""Sizes of a surface: fourth powers of lengths beside them overflow, or underflow, where u and v are found."""
+
 
 @dataclass(frozen=True)
 class FitError:
@@ -93,7 +96,8 @@ class Surface(PicklableRecord):
     Raises
     ------
     BadInputError
-        If the control net has another shape, is too small, or holds values that are not finite.
+        If the control net has another shape, is too small, holds values that are not finite, or reaches over more than
+        1e50 units or less than 1e-50.
 
     See Also
     --------
@@ -120,6 +124,9 @@ class Surface(PicklableRecord):
         points = floats(self.control_points, "control_points", -1, -1, 3)
         if min(points.shape[:2]) < DEGREE + 1:
             raise BadInputError(f"a bicubic surface needs at least 4 x 4 control points, got {points.shape[:2]}")
+        extent = float(np.ptp(points.reshape(-1, 3), axis=0).max())
+        if extent and not _LEAST < extent < _MOST:
+            raise BadInputError(f"a surface {extent:g} across is out of range; scale it to ordinary units")
         object.__setattr__(self, "control_points", frozen(points))
 
     @property
