@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial import cKDTree
 
 from meshwind.path import Status, solve
 from meshwind.surface import Surface, shapes, tree
+from meshwind.surface.foot import foot
 
 RIBS = shapes.revolution(lambda z: 1 + 0.3 * np.cos(4 * np.pi * z), 0.0, 4.0, (96, 192))
 
@@ -49,3 +51,29 @@ def test_gap_above_a_waist_is_the_true_distance() -> None:
     reach = np.hypot(middle[0], middle[1])
     z = np.linspace(-2, 2, 400_001)
     assert paths.gap[0, 200] == pytest.approx(np.hypot(np.sqrt(1 + z * z) - reach, z - middle[2]).min(), abs=1e-7)
+
+
+def test_feet_side_by_side_are_told_apart() -> None:
+    """On a rough tube, from the foot below each point: brute force by Newton from the nearest of 98,000 samples.
+
+    Two feet in pieces side by side were taken for one, which 2 % of the gaps were wrong by; half of them still are.
+    """
+    tube, rng = shapes.cylinder(1.0, 3.0, (48, 32)), np.random.default_rng(3)
+    out = tube.control_points * [1.0, 1.0, 0.0]
+    out /= np.linalg.norm(out, axis=2, keepdims=True)
+    surface = Surface(tube.control_points + rng.normal(0.0, 0.02, out.shape[:2])[..., None] * out).centred
+    uv = np.stack([rng.random(3000), rng.uniform(0.05, 0.95, 3000)], axis=1)
+    points = surface.points(uv) + rng.uniform(0.02, 0.6, (3000, 1)) * surface.normals(uv)
+    fine = np.stack(np.meshgrid(np.arange(384) / 384, np.linspace(0, 1, 257), indexing="ij"), -1).reshape(-1, 2)
+    _, near = cKDTree(surface.points(fine)).query(points, k=10)
+    wrong = 0
+    for point, guess, starts in zip(points, uv, near, strict=True):
+        at = np.empty((6, 3))
+        found = nearest(surface, tuple(point), tuple(guess))
+        best = found
+        for start in starts:
+            foot(surface.spline, point, fine[start].copy(), at)
+            best = min(best, float(np.linalg.norm(at[0] - point)))
+        wrong += found > best * (1.0 + 1e-9)
+        assert found <= best * 1.01
+    assert wrong <= 0.017 * len(points)

@@ -29,6 +29,8 @@ REACH = 0.36
 CANDIDATE, NEARER = 1e-9, 1e-12
 """Shares of the squared distance by which a candidate must promise to be nearer and a foot found from it must be; below
 them is round-off."""
+BESIDE = 1.0
+"""Intervals between samples within which a foot is that of the sample."""
 FIRST, ROWS, COLUMNS = range(3)
 """Columns of a tree's levels: number of the level's first node, rows and columns of nodes."""
 LEVEL, ROW, COLUMN = range(3)
@@ -128,8 +130,9 @@ def to_samples(samples, point, out):
 def closer_candidate(body, point, square, u, v):
     """Piece and sample to start from where the surface may come nearer to `point` than sqrt(square); -1 if none does.
 
-    Pieces next to (u, v), the foot found so far, are judged by their samples; on others a nearer foot may hide between
-    samples, and these count by the least distance that it may have.  Pieces are numbered row by row.
+    Pieces next to (u, v), the foot found so far, are judged by their samples, unless one of these is nearer than all
+    about it, as beside another foot; on others a nearer foot may hide between samples.  Samples that may hide one count
+    by the least distance that it may have.  Pieces are numbered row by row.
     """
     boxes, levels, samples = body.tree.boxes, body.tree.levels, body.tree.samples
     rows, columns = spans_of(body.spline.net)
@@ -156,15 +159,42 @@ def closer_candidate(body, point, square, u, v):
             apart = abs(a - here_i)
             if periodic:
                 apart = min(apart, rows - apart)
-            hidden = 0.0
-            if apart > 1 or abs(b - here_j) > 1:
-                box = boxes[parent(levels[0], a, b)]
-                hidden = REACH**2 * (box[EXTENT, c] ** 2 + box[EXTENT + 1, c] ** 2)
+            box = boxes[parent(levels[0], a, b)]
+            hidden = REACH**2 * (box[EXTENT, c] ** 2 + box[EXTENT + 1, c] ** 2)
             to_samples(samples[a * columns + b], point, near)
-            for m in range(SIDE * SIDE):
-                if near[m] - hidden < best:
-                    best, piece, sample = near[m] - hidden, a * columns + b, m
+            m = np.argmin(near)
+            if near[m] - hidden >= best:
+                continue
+            if apart <= 1 and abs(b - here_j) <= 1 and not another_foot(body, point, u, v, a, b, m, near[m]):
+                hidden = 0.0
+            if near[m] - hidden < best:
+                best, piece, sample = near[m] - hidden, a * columns + b, m
     return piece, sample
+
+
+@njit(cache=True)
+def another_foot(body, point, u, v, a, b, m, square):
+    """Whether sample m of piece (a, b), at a squared distance, is nearer than those about it, and not beside (u, v)."""
+    samples, periodic = body.tree.samples, body.spline.periodic
+    rows, columns = spans_of(body.spline.net)
+    across, along = DENSITY * rows, DENSITY * columns
+    i, j = DENSITY * a + m // SIDE, DENSITY * b + m % SIDE
+    off = i - u * across
+    if periodic:
+        off -= across * np.round(off / across)
+    if abs(off) <= BESIDE and abs(j - v * along) <= BESIDE:
+        return False
+    for p in range(i - 1, i + 2):
+        for q in range(j - 1, j + 2):
+            if q < 0 or q > along or (not periodic and (p < 0 or p > across)):
+                continue
+            r = p % across if periodic else p
+            row, column = min(r // DENSITY, rows - 1), min(q // DENSITY, columns - 1)
+            at, c = samples[row * columns + column], SIDE * (r - DENSITY * row) + q - DENSITY * column
+            x, y, z = point[0] - at[0, c], point[1] - at[1, c], point[2] - at[2, c]
+            if x * x + y * y + z * z < square * (1.0 - NEARER):
+                return False
+    return True
 
 
 @njit(cache=True)
