@@ -15,11 +15,12 @@ from numba import njit
 from meshwind.core.cast import Bools, Floats, frozen
 from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import TINY
-from meshwind.path.kernels.state import State, distance
-from meshwind.path.kernels.survey import below, blank_survey, seen, survey
+from meshwind.path.kernels.state import EVALUATIONS, FEET, State, distance
+from meshwind.path.kernels.survey import blank_survey, seen, survey
 from meshwind.path.kernels.touchdown import touchdown
-from meshwind.surface.evaluate import frame
+from meshwind.surface.evaluate import S, frame
 from meshwind.surface.surface import Surface
+from meshwind.surface.tree import nearest_foot
 
 UNEVEN = 0.5
 """Share by which the surface may stand out of a segment more or less than of an even arc, and by which the curvature
@@ -28,6 +29,12 @@ DETOUR = 4.0
 """Longest way round what stands out of the middle half of a segment, over its square by the segment, with a margin."""
 ROUNDED = 1e-3
 """What its ends may add to a bridge, as a share of its length, beyond the longest way round what stands out of it."""
+SHARE, GAP, AT_U, AT_V, FOOT, POINT = 0, 1, 2, 3, 4, 7
+"""Columns of a point of a segment: where on it, its gap, and its foot; and their number."""
+CLOSE_ENOUGH = 0.01
+"""How far above the largest gap found a bound of others may be, over the segment."""
+DEEPEST_HALF = 12
+"""Maximum number of times that a segment is halved."""
 LANDED = 0.5
 """Share of what the true ends of a bridge change its length by that is left as an error."""
 
@@ -124,25 +131,88 @@ def measure_all(first, last, body, laid, length, error, off):
                 high, low = seen(body.spline, state, i, point, counters)
                 found.rise[i], found.dip[i] = max(found.rise[i], high), max(found.dip[i], low)
         length[p], error[p] = fibre_length(body.spline, state, found.rise)
-        off[p] = max(found.rise.max(), found.dip.max(), peak(body.spline, state, counters))
+        off[p] = max(found.dip.max(), found.rise.max() + peak(body, state, counters))
 
 
 @njit(cache=True)
-def peak(spline, state, counters):
+def peak(body, state, counters):
     """How far the largest gap may be above that of any particle.
 
-    Between two particles it is as large as the surface stays below their segment; by their own gaps, as it changes by
-    no more than the way.
+    A gap is no larger than the distance from any foot: between two points of a segment it is largest, at most, where
+    their feet are as far.  Segments are halved until that is no more than a little above the largest gap.
     """
-    gap, point = state.clear, np.empty(3)
+    X, touching, gap = state.X, state.touching, state.clear
+    stack, work = np.empty((DEEPEST_HALF + 1, 2, POINT)), np.empty((6, 3))
     largest = gap.max()
-    most = largest
+    most = beyond = largest
     for i in range(len(gap) - 1):
-        if not (state.touching[i] and state.touching[i + 1]):
-            reach = 0.5 * (gap[i] + gap[i + 1] + distance(state.X, i, i + 1))
-            if reach > most:
-                most = max(most, min(reach, below(spline, state, i, point, counters)))
-    return most - largest
+        if touching[i] and touching[i + 1]:
+            continue
+        enough = CLOSE_ENOUGH * distance(X, i, i + 1)
+        for k in range(2):
+            at_particle(state, i + k, k, stack[0, k])
+        size = 1
+        while size > 0:
+            size -= 1
+            reach = farthest(X, i, stack[size, 0], stack[size, 1])
+            if reach <= max(most, beyond):
+                continue
+            if reach <= most + enough or size == DEEPEST_HALF - 1:
+                beyond = reach
+                continue
+            stack[size + 1, 1] = stack[size, 1]
+            middle = stack[size, 1]
+            halve(body, X, i, stack[size, 0], middle, work, counters)
+            stack[size + 1, 0] = middle
+            most = max(most, middle[GAP])
+            size += 2
+    return max(most, beyond) - largest
+
+
+@njit(cache=True)
+def at_particle(state, i, t, point):
+    """Note particle i, at share t of a segment: its share, gap, foot and where that is in the plane."""
+    point[SHARE], point[GAP] = t, state.clear[i]
+    point[AT_U], point[AT_V] = state.uv[i, 0], state.uv[i, 1]
+    for k in range(3):
+        point[FOOT + k] = state.frames[i, S, k]
+
+
+@njit(cache=True)
+def halve(body, X, i, low, high, work, counters):
+    """Write into `high` the point of segment i in the middle of two."""
+    where, uv = np.empty(3), np.empty(2)
+    t = 0.5 * (low[SHARE] + high[SHARE])
+    for k in range(3):
+        where[k] = (1.0 - t) * X[i, k] + t * X[i + 1, k]
+    uv[0], uv[1] = 0.5 * (low[AT_U] + high[AT_U]), 0.5 * (low[AT_V] + high[AT_V])
+    counters[FEET] += 1
+    counters[EVALUATIONS] += nearest_foot(body, where, uv, work)
+    square = 0.0
+    for k in range(3):
+        high[FOOT + k] = work[S, k]
+        square += (where[k] - work[S, k]) ** 2
+    high[SHARE], high[GAP], high[AT_U], high[AT_V] = t, np.sqrt(square), uv[0], uv[1]
+
+
+@njit(cache=True)
+def farthest(X, i, low, high):
+    """Largest distance that a point of segment i between two can have from the nearer of their feet."""
+    slope = here = there = 0.0
+    for k in range(3):
+        way = X[i + 1, k] - X[i, k]
+        a, b = X[i, k] - low[FOOT + k], X[i, k] - high[FOOT + k]
+        slope += 2.0 * way * (a - b)
+        here, there = here + a * a, there + b * b
+    if slope == 0.0:
+        return 0.0
+    t = (there - here) / slope  # where both are as far
+    if not low[SHARE] < t < high[SHARE]:
+        return 0.0
+    square = 0.0
+    for k in range(3):
+        square += ((1.0 - t) * X[i, k] + t * X[i + 1, k] - low[FOOT + k]) ** 2
+    return np.sqrt(square)
 
 
 @njit(cache=True)
@@ -175,12 +245,13 @@ def fibre_length(spline, state, rise):
             if m > j and m < i - 1:
                 error += detour(X, state.normal, m, d, rise[m])
         straight = before + after + np.sqrt(square)
-        doubt = detour(X, state.normal, j, distance(X, j, j + 1), rise[j])
-        doubt += detour(X, state.normal, i - 1, distance(X, i - 1, i), rise[i - 1])
-        if before + after <= chord and straight - chord <= doubt + ROUNDED * chord:
+        first = detour(X, state.normal, j, distance(X, j, j + 1), rise[j])
+        last = detour(X, state.normal, i - 1, distance(X, i - 1, i), rise[i - 1])
+        if before + after <= chord and straight - chord <= first + last + ROUNDED * chord:
             total += straight
             error += LANDED * abs(straight - chord)
+            error += (first if before == 0.0 else 0.0) + (last if after == 0.0 else 0.0)
         else:  # the ends lie beyond one another, or further round than the surface stands out
             total += chord
-            error += doubt + max(straight - chord, 0.0)
+            error += first + last + max(straight - chord, 0.0)
     return total, error

@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit
 
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.vectors import TINY
 from meshwind.surface.boxes import ALONG, CENTRE, EXTENT, FAR, NORMAL, WIDE, bezier, enclose, enclose_children, to_boxes
 from meshwind.surface.evaluate import Spline, position, spans_of
 from meshwind.surface.foot import foot, squared_distance
@@ -24,6 +25,10 @@ SIDE = DENSITY + 1
 """Samples of a piece in either direction, its edges included; as many as Bezier points."""
 MAX_FEET = 4
 """Maximum number of feet tried: one from the guess, then one per piece that may be nearer."""
+MAX_MISSED = 1
+"""Maximum number of those that are not nearer after all."""
+BOWED = 1.5
+"""How much more than an even arc a piece may bow between samples."""
 REACH = 0.36
 """No point of a piece is further from a sample than this share of its box's half extents, with a tenth to spare."""
 CANDIDATE, NEARER = 1e-9, 1e-12
@@ -127,19 +132,20 @@ def to_samples(samples, point, out):
 
 
 @njit(cache=True)
-def closer_candidate(body, point, square, u, v):
+def closer_candidate(body, point, floor, square, u, v):
     """Piece and sample to start from where the surface may come nearer to `point` than sqrt(square); -1 if none does.
 
     Pieces next to (u, v), the foot found so far, are judged by their samples, unless one of these is nearer than all
-    about it, as beside another foot; on others a nearer foot may hide between samples.  Samples that may hide one count
-    by the least distance that it may have.  Pieces are numbered row by row.
+    about it, as beside another foot; on others a nearer foot may hide between samples.  Of those that are likely to be
+    further than sqrt(floor) the nearest is taken.  Pieces are numbered row by row.  Returns its likely squared
+    distance, its number and the sample.
     """
     boxes, levels, samples = body.tree.boxes, body.tree.levels, body.tree.samples
     rows, columns = spans_of(body.spline.net)
     periodic = body.spline.periodic
     here_i = int(np.floor((u - np.floor(u)) * rows if periodic else u * rows))
     here_j = int(v * columns)
-    best, piece, sample = square, -1, -1
+    best, piece, sample = np.inf, -1, -1
     stack = np.empty((WIDE * WIDE * len(levels), 3), np.int64)
     away, near = np.empty(WIDE * WIDE), np.empty(SIDE * SIDE)
     stack[0, LEVEL], stack[0, ROW], stack[0, COLUMN] = len(levels) - 1, 0, 0
@@ -149,7 +155,7 @@ def closer_candidate(body, point, square, u, v):
         level, i, j = stack[size, LEVEL], WIDE * stack[size, ROW], WIDE * stack[size, COLUMN]
         to_boxes(boxes[parent(levels[level], i, j)], point, away)
         for c in range(WIDE * WIDE):
-            if away[c] >= best:
+            if away[c] >= min(best, square):
                 continue
             a, b = i + c // WIDE, j + c % WIDE
             if level > 0:
@@ -159,17 +165,48 @@ def closer_candidate(body, point, square, u, v):
             apart = abs(a - here_i)
             if periodic:
                 apart = min(apart, rows - apart)
-            box = boxes[parent(levels[0], a, b)]
-            hidden = REACH**2 * (box[EXTENT, c] ** 2 + box[EXTENT + 1, c] ** 2)
-            to_samples(samples[a * columns + b], point, near)
-            m = np.argmin(near)
-            if near[m] - hidden >= best:
+            box, nodes = boxes[parent(levels[0], a, b)], samples[a * columns + b]
+            to_samples(nodes, point, near)
+            m = int(near.argmin())
+            likely = least = near[m]
+            if least - REACH**2 * (box[EXTENT, c] ** 2 + box[EXTENT + 1, c] ** 2) >= square:
                 continue
-            if apart <= 1 and abs(b - here_j) <= 1 and not another_foot(body, point, u, v, a, b, m, near[m]):
-                hidden = 0.0
-            if near[m] - hidden < best:
-                best, piece, sample = near[m] - hidden, a * columns + b, m
-    return piece, sample
+            if apart > 1 or abs(b - here_j) > 1 or another_foot(body, point, u, v, a, b, m, near[m]):
+                likely, least = between_samples(nodes, point, m, near[m])
+                likely = max(likely, away[c])
+            if least < square and floor < likely < best:
+                best, piece, sample = likely, a * columns + b, m
+    return best, piece, sample
+
+
+@njit(cache=True)
+def between_samples(samples, point, m, square):
+    """Squared distance of a point to a piece that is flat about its nearest sample m, sqrt(square) away; its least.
+
+    From sample to sample a piece bows by an eighth of their second difference.
+    """
+    sag = 0.0
+    for way in range(2):
+        here, stride = (m // SIDE, SIDE) if way == 0 else (m % SIDE, 1)
+        inner = m + (min(max(here, 1), SIDE - 2) - here) * stride
+        gain = bow = 0.0
+        for x in range(3):
+            bow += (samples[x, inner - stride] - 2.0 * samples[x, inner] + samples[x, inner + stride]) ** 2
+        sag += np.sqrt(bow) / 8.0
+        for k in (-1, 1):
+            if not 0 <= here + k < SIDE:
+                continue
+            along = size = 0.0
+            for x in range(3):
+                d = samples[x, m + k * stride] - samples[x, m]
+                along += d * (point[x] - samples[x, m])
+                size += d * d
+            if along > 0.0:
+                share = min(along / max(size, TINY), 0.5)
+                gain = max(gain, share * (2.0 * along - share * size))
+        square -= gain
+    square = max(square, 0.0)
+    return square, max(np.sqrt(square) - BOWED * sag, 0.0) ** 2
 
 
 @njit(cache=True)
@@ -205,10 +242,11 @@ def nearest_foot(body, point, guess, at):
     """
     before = guess[0]
     count = foot(body.spline, point, guess, at)
-    square = squared_distance(at, point)
+    square, floor = squared_distance(at, point), -1.0
     rows, columns = spans_of(body.spline.net)
+    missed = 0
     for _ in range(MAX_FEET - 1):
-        piece, sample = closer_candidate(body, point, square * (1.0 - CANDIDATE), guess[0], guess[1])
+        likely, piece, sample = closer_candidate(body, point, floor, square * (1.0 - CANDIDATE), guess[0], guess[1])
         if piece < 0:
             break
         local_u, local_v = guess[0], guess[1]
@@ -216,11 +254,15 @@ def nearest_foot(body, point, guess, at):
         guess[1] = (piece % columns + sample % SIDE / DENSITY) / columns
         count += foot(body.spline, point, guess, at)
         found = squared_distance(at, point)
-        if found >= square * (1.0 - NEARER):
-            guess[0], guess[1] = local_u, local_v
-            count += foot(body.spline, point, guess, at)
+        if found < square * (1.0 - NEARER):
+            square, floor = found, -1.0
+            continue
+        guess[0], guess[1] = local_u, local_v
+        count += foot(body.spline, point, guess, at)
+        floor = likely
+        missed += 1
+        if missed == MAX_MISSED:
             break
-        square = found
     if body.spline.periodic:
         guess[0] += np.round(before - guess[0])
     return count

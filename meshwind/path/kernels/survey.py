@@ -95,8 +95,8 @@ def over_segment(body, state, i, air, work, counters):
     deep = there = 0.0
     if air and knots > 1.0:
         deep, there = followed(body, state, i, segment, SHORTEST_STEP if odd else np.inf, work, counters)
-        if deep == 0.0:  # the line between the feet goes over what the segment passes by
-            return 0.0, 0.0, 0.0
+        if deep == 0.0 and (odd or not meets(body, state, i, where, work, counters)):
+            return 0.0, 0.0, 0.0  # the line between the feet goes over what the segment passes by
     if odd:
         high, low, where = sampled(spline, uv, i, segment, work[S], counters)
     if deep > high:
@@ -128,18 +128,6 @@ def seen(spline, state, i, point, counters):
     """Rise over segment i and dip below it by samples of the surface, whatever the frames predict."""
     high, low, _ = sampled(spline, state.uv, i, segment_of(state, i), point, counters)
     return high, low
-
-
-@njit(cache=True)
-def below(spline, state, i, point, counters):
-    """How far the surface stays below segment i at most; infinite where it faces opposite ways at the ends."""
-    segment = segment_of(state, i)
-    if dot(segment.out, segment.out) == 0.0:
-        return np.inf
-    _, low, _, odd = foreseen(spline, state, i, segment, knots_passed(spline, state.uv, i))
-    if odd:
-        _, low, _ = sampled(spline, state.uv, i, segment, point, counters)
-    return low
 
 
 @njit(cache=True)
@@ -283,12 +271,33 @@ def sampled(spline, uv, i, segment, point, counters):
 
 
 @njit(cache=True)
+def meets(body, state, i, t, work, counters):
+    """Whether the point of segment i at share t, which is 0 for none, is inside the body."""
+    if t == 0.0:
+        return False
+    point, foot, normal = np.empty(3), np.empty(2), np.empty(3)
+    for k in range(3):
+        point[k] = (1.0 - t) * state.X[i, k] + t * state.X[i + 1, k]
+    for k in range(2):
+        foot[k] = (1.0 - t) * state.uv[i, k] + t * state.uv[i + 1, k]
+    counters[FEET] += 1
+    counters[EVALUATIONS] += nearest_foot(body, point, foot, work)
+    unit_normal(work, normal)
+    away = minus((point[0], point[1], point[2]), row(work, S))
+    return dot(away, (normal[0], normal[1], normal[2])) < 0.0 and 0.0 < foot[1] < 1.0
+
+
+@njit(cache=True)
 def followed(body, state, i, segment, stride, work, counters):
     """How deep segment i, which is in the air, passes inside the body, and the share of it where it is deepest.
 
-    Each step is as long as the gap, and at least `stride` spans of the surface below or, if less, half the segment.
+    Each step is as long as the gap, and at least `stride` spans of the surface, by the frame below or by the spans from
+    end to end, or, if less, half the segment.
     """
     spans_u, spans_v = spans_of(body.spline.net)
+    uv = state.uv
+    spans = max(abs(uv[i + 1, 0] - uv[i, 0]) * spans_u, abs(uv[i + 1, 1] - uv[i, 1]) * spans_v)
+    longest = min(0.5, stride / max(spans, TINY)) * segment.length
     point, foot, normal = np.empty(3), np.empty(2), np.empty(3)
     foot[0], foot[1] = state.uv[i, 0], state.uv[i, 1]
     deep, where = 0.0, 0.0
@@ -297,7 +306,7 @@ def followed(body, state, i, segment, stride, work, counters):
     for _ in range(MOST_STEPS):
         du, dv = to_parameters(row(work, SU), row(work, SV), over(segment.way, segment.length))
         least = stride / max(abs(du) * spans_u, abs(dv) * spans_v, TINY)
-        t += max(gap, min(least, 0.5 * segment.length)) / max(segment.length, TINY)
+        t += max(gap, min(least, longest)) / max(segment.length, TINY)
         if t * segment.length >= segment.length - state.clear[i + 1]:
             break
         for k in range(3):
