@@ -143,14 +143,16 @@ def lengths(batch: Batch) -> Floats:
 
 
 def ascend(solver: Solver, batch: Batch, particles: int) -> Batch:
-    """The batch with more particles; a path that stalls, below or here, starts anew from its curve.
+    """The batch with more particles; a frictionless path that stalls, below or here, starts anew from its curve.
 
     A path that slid off is only drawn with more particles: it has no answer to refine.
     """
     fine = batch.refined(particles)
     gone = failing(batch) & (batch.status != Status.STALLED)
-    held, loose = np.flatnonzero(~failing(batch)), np.flatnonzero(gone)
+    stuck = (batch.status == Status.STALLED) & ~np.bool_(solver.friction.none)  # where its slide stopped may be at rest
+    held, loose = np.flatnonzero(~failing(batch) | stuck), np.flatnonzero(gone)
     taut = fine.rows(held)
+    taut.status[stuck[held]] = Status.STALLED
     solver.relax(taut, resume=True)
     fine.put(held, taut)
     if len(loose):
@@ -158,13 +160,14 @@ def ascend(solver: Solver, batch: Batch, particles: int) -> Batch:
         replace(solver, iterations=0).relax(drawn, resume=True)
         drawn.status[:], drawn.residual[:] = batch.status[loose], batch.residual[loose]
         fine.put(loose, drawn)
-    lost = np.flatnonzero((failing(fine) | failing(batch)) & ~gone)
-    if len(lost):
+    lost = np.flatnonzero((failing(fine) | (failing(batch) & ~stuck)) & ~gone)
+    if not solver.friction.none:  # the law says how they come to rest: only another slide is an answer
+        fine.status[lost] = Status.STALLED
+    elif len(lost):
         anew = fresh(fine.starts[lost], particles)
         anew.counters[:] = fine.counters[lost]
         solver.relax(anew, resume=False)
-        if solver.friction.none:
-            search(solver, anew)
+        search(solver, anew)
         fine.put(lost, anew)
     return fine
 

@@ -11,17 +11,18 @@ import numpy as np
 from numba import njit
 
 from meshwind.core.vectors import TINY
-from meshwind.path.kernels.certificate import HALF_TURN, certify, largest_leap, unresolved
+from meshwind.path.kernels.certificate import HALF_TURN, certify, largest_leap
 from meshwind.path.kernels.contact import DEEP, NOTHING, lift, release
 from meshwind.path.kernels.coulomb import (
     HELD,
+    STUCK,
     Fibre,
     Grip,
     balance_forces,
     blank_grip,
 )
 from meshwind.path.kernels.friction_step import Start, merit, take_step, workspace
-from meshwind.path.kernels.grip import attach_to_curve, copy_grip, hold_landed, restore_grip
+from meshwind.path.kernels.grip import attach_to_curve, copy_grip, hold_landed, hold_where_it_lies, restore_grip
 from meshwind.path.kernels.jacobian import differentiate
 from meshwind.path.kernels.landing import sag
 from meshwind.path.kernels.relax import (
@@ -30,7 +31,8 @@ from meshwind.path.kernels.relax import (
     SHIFT_DOWN,
     failure,
 )
-from meshwind.path.kernels.rest import MAX_LANDINGS, restore_contact
+from meshwind.path.kernels.resist import resistance
+from meshwind.path.kernels.rest import MAX_LANDINGS, pin_where_needed, resolve, restore_contact, settle_evenly
 from meshwind.path.kernels.state import (
     CONVERGED,
     ITERATIONS,
@@ -38,7 +40,6 @@ from meshwind.path.kernels.state import (
     SLID_OFF_END,
     SLID_OFF_START,
     STALLED,
-    TOO_COARSE,
     blank,
     copy,
     energy,
@@ -50,6 +51,8 @@ RESTART = 60
 SHORT, CALM = 1.0 / 16.0, 1e-4
 """Least share of Newton's step that is tried first, which is halved at every restart; unbalanced force below which
 whole steps are tried again."""
+ROOM = 1e-13
+"""Slip over the fibre's length that is round-off."""
 
 
 @njit(cache=True)
@@ -139,17 +142,25 @@ def relax_all_with_friction(first, last, rough, limits, resume, final, batch):
             restore_grip(body.spline, fibre, body.size, counters)
         else:
             attach_to_curve(body.spline, fibre, counters)
-        residual, status = certified_with_friction(rough, limits, final, fibre, batch.required[p], counters)
+        required, stalled = batch.required[p], resume and batch.status[p] == STALLED
+        residual, status = certified_with_friction(rough, limits, final, resume, stalled, fibre, required, counters)
         batch.residual[p], batch.status[p] = residual, status
 
 
 @njit(inline="always", cache=True)
-def certified_with_friction(rough, limits, final, fibre, required, counters):
-    """As `relax_and_certify`, under friction."""
+def certified_with_friction(rough, limits, final, resume, stalled, fibre, required, counters):
+    """As `relax_and_certify`, under friction.
+
+    A path that has been at rest, or whose slide `stalled`, slides on from where it lay: over what only its particles of
+    now meet, and where Newton's method fails.
+    """
     body, state = rough.body, fibre.state
+    before = blank(len(state.X))
+    if final:
+        copy(state, before)
     inside = 0
     residual, status = np.inf, STALLED
-    for _ in range(MAX_LANDINGS):
+    for _ in range(0 if stalled else MAX_LANDINGS):
         residual, status = relax_with_friction(rough, limits, fibre, counters)
         if not final or status == NEEDS_TREE:
             return residual, status
@@ -157,9 +168,32 @@ def certified_with_friction(rough, limits, final, fibre, required, counters):
         if inside == 0 or status != CONVERGED:
             break
         restore_grip(body.spline, fibre, body.size, counters)
-    if status == CONVERGED:
-        if inside > 0:
-            status = STALLED
-        elif unresolved(body, state, counters):
-            status = TOO_COARSE
+    if status == CONVERGED and inside > 0:
+        status = STALLED
+    if status != CONVERGED and not (resume and final):
+        return residual, status
+    resist = resistance(len(state.X), 0.0, ROOM * energy(before.X)[1], 0.0)
+    anew = status != CONVERGED
+    if anew:
+        first = status
+        copy(before, state)
+        pin_where_needed(body, state, required, counters)
+        residual, status = settle_evenly(rough, resist, limits, final, True, state, required, counters)
+        if status != CONVERGED:
+            return residual, status if status == NEEDS_TREE else first
+    residual, status = resolve(rough, resist, limits, state, required, residual, counters)
+    if anew or state.pinned.any():
+        hold_all(fibre, body.size)
     return residual, status
+
+
+@njit(cache=True)
+def hold_all(fibre, size):
+    """Find the anchors and modes of all particles anew."""
+    grip, touching = fibre.grip, fibre.state.touching
+    n = len(touching)
+    scale = (len(fibre.curve) - 1.0) / (n - 1.0)
+    for i in range(n):
+        grip.anchor[i], grip.offset[i], grip.mode[i] = scale * i, 0.0, np.int8(STUCK)
+        if 0 < i < n - 1 and touching[i]:
+            hold_where_it_lies(fibre, i, size)

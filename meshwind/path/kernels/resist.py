@@ -12,9 +12,10 @@ from numba import njit
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.block_tridiagonal import solve
-from meshwind.path.kernels.contact import link
-from meshwind.path.kernels.coulomb import coefficient, springs_at
+from meshwind.path.kernels.contact import link, spring_pull
+from meshwind.path.kernels.coulomb import coefficient
 from meshwind.path.kernels.geometry import (
+    combine,
     cross,
     derivative,
     dot,
@@ -86,11 +87,21 @@ def lay_down(resist, rough, state, contacts):
 def lay_particle(resist, state, p, i, q, mu):
     """Note where particle i lies, between touching ones p and q; returns mu N."""
     outward = row(state.normal, i)
-    springs = springs_at(state.X, p, i, q, outward, mu)
-    t = over(minus(springs.sum, times(springs.lean, outward)), springs.span)
-    put(row(state.X, i), resist.lain, i)
-    put(cross(outward, t), resist.across, i)
-    return springs.bound
+    X, station = state.X, state.station
+    here = row(X, i)
+    ahead, back = minus(row(X, q), here), minus(here, row(X, p))
+    way = combine(1.0 / (station[q] - station[i]), ahead, 1.0 / (station[i] - station[p]), back)
+    lean = dot(way, outward)
+    span = np.sqrt(max(dot(way, way) - lean * lean, TINY))
+    put(here, resist.lain, i)
+    put(cross(outward, over(minus(way, times(lean, outward)), span)), resist.across, i)
+    return held_by(state, p, i, q, mu)
+
+
+@njit(inline="always", cache=True)
+def held_by(state, p, i, q, mu):
+    """Force mu N that friction can hold at particle i between touching ones p and q."""
+    return mu * max(-dot(spring_pull(state.X, state.station, i, p, q), row(state.normal, i)), 0.0)
 
 
 @njit(cache=True)
@@ -121,7 +132,7 @@ def follow_contacts(resist, state, inner, count):
 @njit(cache=True)
 def press_anew(resist, rough, state, contacts):
     """Hold the particles that still touch with the contact force of `state`."""
-    X, uv, before, after, n = state.X, state.uv, contacts.before, contacts.after, len(state.X)
+    uv, before, after, n = state.uv, contacts.before, contacts.after, len(state.X)
     link(state.touching, contacts)
     for i in range(n):
         if not state.touching[i]:
@@ -130,7 +141,7 @@ def press_anew(resist, rough, state, contacts):
     while i < n - 1:
         if resist.bound[i] >= 0.0:
             mu, _, _ = coefficient(rough.friction, rough.body.spline.periodic, uv[i, 0], uv[i, 1])
-            resist.bound[i] = springs_at(X, before[i], i, after[i], row(state.normal, i), mu).bound
+            resist.bound[i] = held_by(state, before[i], i, after[i], mu)
         i = after[i]
 
 
@@ -244,6 +255,16 @@ def slip_energy(resist, X, inner, count):
 def slip_at(resist, X, i):
     """Slip d of particle i."""
     return dot(minus(row(X, i), row(resist.lain, i)), row(resist.across, i))
+
+
+@njit(cache=True)
+def farthest_slip(resist, state):
+    """Largest distance by which a touching particle has slipped."""
+    most = 0.0
+    for i in range(1, len(state.X) - 1):
+        if state.touching[i] and resist.bound[i] >= 0.0:
+            most = max(most, abs(slip_at(resist, state.X, i)))
+    return most
 
 
 @njit(cache=True)

@@ -4,10 +4,12 @@ import numpy as np
 from numba import njit
 
 from meshwind.path.kernels.certificate import DEEPEST, certify, leaps, unresolved
+from meshwind.path.kernels.coulomb import RoughBody
 from meshwind.path.kernels.glide import spread_along
 from meshwind.path.kernels.landing import land
 from meshwind.path.kernels.mend import ROUNDS, any_wanting, centre, mend, pin_beads, spread_stations
-from meshwind.path.kernels.relax import relax
+from meshwind.path.kernels.relax import relax_resisted
+from meshwind.path.kernels.resist import farthest_slip, lay_down, press_anew, resistance
 from meshwind.path.kernels.state import (
     CONVERGED,
     EVALUATIONS,
@@ -15,6 +17,7 @@ from meshwind.path.kernels.state import (
     STALLED,
     TOO_COARSE,
     UNSTABLE,
+    Limits,
     blank,
     copy,
     no_contacts,
@@ -26,6 +29,12 @@ from meshwind.path.kernels.survey import blank_survey, survey
 
 MAX_LANDINGS = 4
 """Maximum number of times that a path is relaxed anew because its certificate finds a particle inside the body."""
+PASSES, PRESSED = 4, 1e-3
+"""Maximum number of times that contact forces are taken anew, and the change over the largest with which they count."""
+NEAR = 3e-4
+"""Longest slip over the length of a path that counts as at rest where it lay."""
+BALANCE = 1e-8
+"""Unbalanced force that short springs leave where particles stick: it is their round-off."""
 EVEN = 3
 """Number of times that the springs' natural lengths are made even after particles were moved: each brings the pulls
 closer to one another by the square of the fibre's bends."""
@@ -52,11 +61,12 @@ def relax_all_as_spaced(first, last, body, limits, batch):
     """As `relax_all`, from paths first to last of a batch whose particles stay where they are along the fibre."""
     n = batch.uv.shape[1]
     frames = np.empty((n, 6, 3))
+    rough, resist = frictionless(body)
     for p in range(first, last):
         state, counters = state_of(batch, p, frames), batch.counters[p]
         restore_contact(body, state, counters)
         state.pinned[:] = True
-        residual, status = settle_evenly(body, limits, True, False, state, batch.required[p], counters)
+        residual, status = settle_evenly(rough, resist, limits, True, False, state, batch.required[p], counters)
         if status == CONVERGED and unresolved(body, state, counters):
             status = TOO_COARSE
         batch.residual[p], batch.status[p] = residual, status
@@ -80,7 +90,8 @@ def relax_and_certify(body, limits, final, state, required, counters):
     """
     start = blank(len(state.X))
     copy(state, start)
-    residual, status = settle(body, limits, final, state, required, counters)
+    rough, resist = frictionless(body)
+    residual, status = settle(rough, resist, limits, final, state, required, counters)
     first = status
     for again in (False, True):  # from where it failed, then from where it started
         if status not in (UNSTABLE, STALLED):
@@ -88,18 +99,18 @@ def relax_and_certify(body, limits, final, state, required, counters):
         if again:
             copy(start, state)
         if pin_where_needed(body, state, required, counters) > 0:
-            residual, status = settle_evenly(body, limits, final, True, state, required, counters)
+            residual, status = settle_evenly(rough, resist, limits, final, True, state, required, counters)
     if status not in (CONVERGED, NEEDS_TREE):
         return residual, first
     if not final or status != CONVERGED:
         return residual, status
-    return resolve(body, limits, state, required, residual, counters)
+    return resolve(rough, resist, limits, state, required, residual, counters)
 
 
 @njit(cache=True)
-def resolve(body, limits, state, required, residual, counters):
+def resolve(rough, resist, limits, state, required, residual, counters):
     """Give a path at rest particles where the body needs them, and say whether they resolve it; as `relax` returns."""
-    n, status = len(state.X), CONVERGED
+    body, n, status = rough.body, len(state.X), CONVERGED
     found = blank_survey(n)
     deep = survey(body, state, found, counters)
     spacing = spring_energy(state)[1] / (n - 1)
@@ -109,7 +120,7 @@ def resolve(body, limits, state, required, residual, counters):
         for _ in range(ROUNDS):
             if mend(body, state, found, spacing, counters) == 0:
                 break
-            residual, status = settle_evenly(body, limits, True, True, state, required, counters)
+            residual, status = settle_evenly(rough, resist, limits, True, True, state, required, counters)
             if status != CONVERGED:
                 break
             deep = survey(body, state, found, counters)
@@ -142,10 +153,10 @@ def pin_where_needed(body, state, required, counters):
 
 
 @njit(cache=True)
-def settle_evenly(body, limits, final, centred, state, required, counters):
+def settle_evenly(rough, resist, limits, final, centred, state, required, counters):
     """As `settle`, with equal pulls along the fibre, and, if `centred`, pinned particles in the middle of what they
     rest on."""
-    n = len(state.X)
+    body, n = rough.body, len(state.X)
     contacts = no_contacts(n)
     residual, status = np.inf, STALLED
     for _ in range(EVEN):
@@ -154,14 +165,14 @@ def settle_evenly(body, limits, final, centred, state, required, counters):
             return residual, NEEDS_TREE
         if centred:
             centre(body, state, contacts, counters)
-        residual, status = settle(body, limits, final, state, required, counters)
+        residual, status = settle(rough, resist, limits, final, state, required, counters)
         if status != CONVERGED:
             break
     return residual, status
 
 
 @njit(cache=True)
-def settle(body, limits, final, state, required, counters):
+def settle(rough, resist, limits, final, state, required, counters):
     """Relax a path; if the answer is `final`, what its certificate finds inside the body lands, and it is relaxed anew.
 
     Returns (residual, status).
@@ -169,13 +180,44 @@ def settle(body, limits, final, state, required, counters):
     inside = 0
     residual, status = np.inf, STALLED
     for _ in range(MAX_LANDINGS):
-        residual, status = relax(body, limits, state, counters)
+        residual, status = come_to_rest(rough, resist, limits, state, counters)
         if not final or status == NEEDS_TREE:
             return residual, status
-        inside = certify(body, state, required, counters)
+        inside = certify(rough.body, state, required, counters)
         if inside == 0 or status != CONVERGED:
             break
     return residual, STALLED if status == CONVERGED and inside > 0 else status
+
+
+@njit(cache=True)
+def come_to_rest(rough, resist, limits, state, counters):
+    """Relax a path against what resists a slip from where it lies now, with the contact forces of where it comes to.
+
+    Where something resists, a path that slips far is not followed: that takes a slide.
+    """
+    if len(resist.bound) == 0:
+        return relax_resisted(rough.body, limits, resist, state, counters)
+    contacts = no_contacts(len(state.X))
+    loose = Limits(limits.pull_off, max(limits.tolerance, BALANCE), limits.iterations)
+    lay_down(resist, rough, state, contacts)
+    residual, status = np.inf, STALLED
+    for _ in range(PASSES):
+        residual, status = relax_resisted(rough.body, loose, resist, state, counters)
+        if status != CONVERGED:
+            break
+        before = resist.bound.copy()
+        press_anew(resist, rough, state, contacts)
+        if np.abs(resist.bound - before).max() <= PRESSED * before.max():
+            break
+    if status == CONVERGED and farthest_slip(resist, state) > NEAR * spring_energy(state)[1]:
+        status = STALLED
+    return residual, status
+
+
+@njit(cache=True)
+def frictionless(body):
+    """A body without friction, and what resists a slip there: nothing."""
+    return RoughBody(body, np.zeros((1, 1))), resistance(0, 0.0, 0.0, 0.0)
 
 
 @njit(cache=True)

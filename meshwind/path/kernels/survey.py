@@ -95,7 +95,7 @@ def over_segment(body, state, i, air, work, counters):
     deep = there = 0.0
     if air and knots > 1.0:
         deep, there = followed(body, state, i, segment, SHORTEST_STEP if odd else np.inf, work, counters)
-        if deep == 0.0 and (odd or not meets(body, state, i, where, work, counters)):
+        if deep == 0.0 and (odd or not meets(body, state, i, segment, where, work, counters)):
             return 0.0, 0.0, 0.0  # the line between the feet goes over what the segment passes by
     if odd:
         high, low, where = sampled(spline, uv, i, segment, work[S], counters)
@@ -271,17 +271,19 @@ def sampled(spline, uv, i, segment, point, counters):
 
 
 @njit(cache=True)
-def meets(body, state, i, t, work, counters):
-    """Whether the point of segment i at share t, which is 0 for none, is inside the body."""
+def meets(body, state, i, segment, t, work, counters):
+    """Whether segment i is inside the body below the point at share t from foot to foot, which is 0 for none."""
     if t == 0.0:
         return False
     point, foot, normal = np.empty(3), np.empty(2), np.empty(3)
-    for k in range(3):
-        point[k] = (1.0 - t) * state.X[i, k] + t * state.X[i + 1, k]
     for k in range(2):
         foot[k] = (1.0 - t) * state.uv[i, k] + t * state.uv[i + 1, k]
+    position(body.spline, foot[0], foot[1], point)
+    along = dot(minus((point[0], point[1], point[2]), segment.start), segment.way) / segment.length / segment.length
+    for k in range(3):
+        point[k] = segment.start[k] + min(max(along, 0.0), 1.0) * segment.way[k]
     counters[FEET] += 1
-    counters[EVALUATIONS] += nearest_foot(body, point, foot, work)
+    counters[EVALUATIONS] += 1 + nearest_foot(body, point, foot, work)
     unit_normal(work, normal)
     away = minus((point[0], point[1], point[2]), row(work, S))
     return dot(away, (normal[0], normal[1], normal[2])) < 0.0 and 0.0 < foot[1] < 1.0
