@@ -39,9 +39,7 @@ def lay(surface: Surface, start: Floats, end: Floats, friction: float, initial: 
 
 
 def same(paths: Paths, points: Floats, other: Paths, near: float | None = None) -> None:
-    """Both at rest on the same curve, or neither; a slide under friction may stall on one side, and says so."""
-    if paths.friction > 0.0 and Status.STALLED in (paths.status[0], other.status[0]):
-        return
+    """Both at rest on the same curve, or neither."""
     assert (paths.status[0] == Status.CONVERGED) == (other.status[0] == Status.CONVERGED)
     near = (NEAR if paths.friction == 0.0 else SLID) if near is None else near
     if paths.status[0] == Status.CONVERGED:

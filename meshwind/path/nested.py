@@ -84,8 +84,10 @@ def solve_from_level(solver: Solver, batch: Batch, level: int, last: bool = Fals
         search(first, work)
         return climb(solver, work, n, level)
     held, own = first.slide(work)  # the law decides where they rest: there is nothing to search for
-    done = fresh(work.starts, n).curves_sampled()
-    for which, curves in ((own, work.starts), (~own, held)):
+    done = work.refined(n).curves_sampled()
+    done.status[:], done.residual[:] = work.status, work.residual
+    slid = work.status != Status.STALLED
+    for which, curves in ((own & slid, work.starts), (~own & slid, held)):
         index = np.flatnonzero(which)
         if len(index):
             part = work.rows(index)._replace(starts=curves[index])
@@ -96,6 +98,11 @@ def solve_from_level(solver: Solver, batch: Batch, level: int, last: bool = Fals
         again = batch.rows(lost)
         again.counters[:] = done.counters[lost]
         done.put(lost, solve_from_level(solver, again, level - 1 if level else 1, last=not level).curves_sampled())
+    elif len(lost):
+        drawn = done.rows(lost)
+        replace(solver, iterations=0).relax(drawn, resume=True)
+        drawn.status[:], drawn.residual[:] = done.status[lost], done.residual[lost]
+        done.put(lost, drawn)
     return done
 
 

@@ -19,6 +19,7 @@ from meshwind.path.kernels.relax_with_friction import relax_with_friction
 from meshwind.path.kernels.resist import lay_down, press_anew, resistance
 from meshwind.path.kernels.state import (
     CONVERGED,
+    EVALUATIONS,
     NEEDS_TREE,
     STALLED,
     Limits,
@@ -29,7 +30,7 @@ from meshwind.path.kernels.state import (
     state_of,
 )
 
-FIRST, GROWTH = 1e-4, 1.25
+FIRST, GROWTH = 1e-4, 1.12
 """Length of the first increment, in units of the fibre's length squared over its tension's mobility, and the factor
 from each to the next: waves die out in the order of their lengths, each in a time of its length squared."""
 LATE = 0.1
@@ -45,9 +46,9 @@ ROUNDS, BALANCE = 30, 1e-6
 PASSES, SETTLED = 4, 0.05
 """Maximum number of times that an increment is made anew with the contact force at its end, and the change from one to
 the next, over the increment's move, with which it counts."""
-MOST = 250
-"""Maximum number of increments."""
-LEANING = 8
+MOST, DEAREST = 250, 20_000
+"""Maximum number of increments, and of evaluations a particle, of a slide."""
+LEANING = 16
 """Number of increments in a row over which a fibre that leans on a rim has slid off: in them the time grows six times,
 and what has leaned for longer than one or two has not been seen to come back."""
 SHORTER, SHORTEST = 0.3, 1e-6
@@ -129,6 +130,7 @@ def slide(rough, limits, state, lain, counters):
     resist = resistance(n, 0.0, ROOM * length, FIRM * length)
     lay_down(resist, rough, state, contacts)
     resist.bound[:] = FIRM * length
+    spent = counters[EVALUATIONS] + DEAREST * n
     residual, status = relax_resisted(rough.body, limits, resist, state, counters)
     if status == NEEDS_TREE:
         return residual, status, steps
@@ -149,6 +151,9 @@ def slide(rough, limits, state, lain, counters):
                 break
             press_anew(resist, rough, state, contacts)
         if status == NEEDS_TREE:
+            break
+        if counters[EVALUATIONS] > spent:
+            status = STALLED
             break
         if (status == STALLED or not settled) and time > SHORTEST:
             copy(before, state)
