@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.core.cast import Bools, Floats, frozen
 from meshwind.core.vectors import TINY
 from meshwind.layup.neighbours import Neighbours
-from meshwind.path.apart import apart, to_next
+from meshwind.path.apart import apart, sampled, to_next
 from meshwind.path.paths import Paths, Status
 from meshwind.path.solve import solve
 
@@ -30,7 +30,8 @@ def partings(paths: Paths, near: Neighbours) -> Bools:
     found = np.zeros(len(near.first), dtype=bool)
     shift = to_next(paths, near.first, near.second)
     which = np.flatnonzero(_far_apart(paths, near, shift))
-    left, right = _thinned(paths.uv)[near.first[which]], _thinned(paths.uv)[near.second[which]]
+    uv = paths.uv[:, sampled(paths, _PARTICLES)]
+    left, right = uv[near.first[which]], uv[near.second[which]]
     right = right + np.stack([shift[which], np.zeros(len(which))], axis=1)[:, None]
     for _ in range(_HALVINGS):
         if not len(which):
@@ -65,13 +66,6 @@ def _far_apart(paths: Paths, near: Neighbours, shift: Floats) -> Bools:
     known = np.where(near.distance > 0.0, near.distance, np.nan)
     ends = np.array([each[np.isfinite(each)][[0, -1]].max() if np.isfinite(each).any() else 0.0 for each in known])
     return np.asarray(rest & ((rate > _UNUSUAL * usual) | (near.largest > _BULGING * ends)))
-
-
-def _thinned(uv: Floats) -> Floats:
-    """Fewer particles of paths (p, n, 2), their ends included."""
-    n = uv.shape[1]
-    kept: Ints = np.rint(np.linspace(0.0, n - 1.0, min(n, _PARTICLES))).astype(np.int64)
-    return uv[:, kept]
 
 
 def _distances(paths: Paths, left: Floats, right: Floats) -> Floats:

@@ -49,8 +49,13 @@ def larger(there: Floats, back: Floats) -> Floats:
 
 def measured(paths: Paths) -> Ints:
     """Particles (k,) from which a path is measured."""
+    return sampled(paths, _SAMPLES)
+
+
+def sampled(paths: Paths, most: int) -> Ints:
+    """Particles (k,) of a path, no more than so many, the ends among them."""
     n = paths.uv.shape[1]
-    return np.rint(np.linspace(0.0, n - 1.0, min(n, _SAMPLES))).astype(np.int64)
+    return np.rint(np.linspace(0.0, n - 1.0, min(n, most))).astype(np.int64)
 
 
 def both_ways(paths: Paths, first: Ints, second: Ints) -> tuple[Floats, Floats]:

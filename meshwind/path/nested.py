@@ -68,7 +68,7 @@ def resolve(solver: Solver, batch: Batch) -> None:
         few.put(rest, taut)
         batch.counters[index] = few.counters
         fine.counters[:] = few.counters
-        done = (few.status != CUT) & ~((few.status != REST) & (fine.status == REST))
+        done = np.where(fine.status == REST, few.status == REST, fine.status != CUT)
         batch.put(index[done], few.rows(np.flatnonzero(done)))
         index, fine = index[~done], fine.rows(np.flatnonzero(~done))
 
@@ -99,10 +99,7 @@ def solve_from_level(solver: Solver, batch: Batch, level: int, last: bool = Fals
         again.counters[:] = done.counters[lost]
         done.put(lost, solve_from_level(solver, again, level - 1 if level else 1, last=not level).curves_sampled())
     elif len(lost):
-        drawn = done.rows(lost)
-        replace(solver, iterations=0).relax(drawn, resume=True)
-        drawn.status[:], drawn.residual[:] = done.status[lost], done.residual[lost]
-        done.put(lost, drawn)
+        draw(solver, done, lost)
     return done
 
 
@@ -163,10 +160,8 @@ def ascend(solver: Solver, batch: Batch, particles: int) -> Batch:
     solver.relax(taut, resume=True)
     fine.put(held, taut)
     if len(loose):
-        drawn = fine.rows(loose)
-        replace(solver, iterations=0).relax(drawn, resume=True)
-        drawn.status[:], drawn.residual[:] = batch.status[loose], batch.residual[loose]
-        fine.put(loose, drawn)
+        fine.status[loose], fine.residual[loose] = batch.status[loose], batch.residual[loose]
+        draw(solver, fine, loose)
     lost = np.flatnonzero((failing(fine) | (failing(batch) & ~stuck)) & ~gone)
     if not solver.friction.none:  # the law says how they come to rest: only another slide is an answer
         fine.status[lost] = Status.STALLED
@@ -177,6 +172,14 @@ def ascend(solver: Solver, batch: Batch, particles: int) -> Batch:
         search(solver, anew)
         fine.put(lost, anew)
     return fine
+
+
+def draw(solver: Solver, batch: Batch, index: Ints) -> None:
+    """Complete paths that have no answer, as they lie, in place; how they ended stays."""
+    drawn = batch.rows(index)
+    replace(solver, iterations=0).relax(drawn, resume=True)
+    drawn.status[:], drawn.residual[:] = batch.status[index], batch.residual[index]
+    batch.put(index, drawn)
 
 
 def failing(batch: Batch) -> Bools:

@@ -88,6 +88,18 @@ def hold_where_it_lies(fibre, i, size):
 
 
 @njit(cache=True)
+def hold_all(fibre, size):
+    """Find the anchors and modes of all particles anew."""
+    grip, touching = fibre.grip, fibre.state.touching
+    n = len(touching)
+    scale = (len(fibre.curve) - 1.0) / (n - 1.0)
+    for i in range(n):
+        grip.anchor[i], grip.offset[i], grip.mode[i] = scale * i, 0.0, np.int8(STUCK)
+        if 0 < i < n - 1 and touching[i]:
+            hold_where_it_lies(fibre, i, size)
+
+
+@njit(cache=True)
 def restore_grip(spline, fibre, size, counters):
     """Complete a grip whose anchors and modes are known: stuck particles go to their anchors, others are located."""
     touching, offset, mode = fibre.state.touching, fibre.grip.offset, fibre.grip.mode

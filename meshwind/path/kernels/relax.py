@@ -26,7 +26,6 @@ from meshwind.path.kernels.resist import (
     choose_sides,
     fall,
     follow_contacts,
-    resistance,
     slip_energy,
     stop_slip,
 )
@@ -86,18 +85,12 @@ class Workspace(NamedTuple):
     resist: Resistance
 
 
-@njit(inline="always", cache=True)
-def relax(body, limits, state, counters):
-    """Bring a path to equilibrium from `state`, in place.
+@njit(cache=True)
+def relax(body, limits, resist, state, counters):
+    """Bring a path to equilibrium from `state`, in place, against what resists a slip.
 
     Returns (residual, status): residual is the largest unbalanced force over the tension, an angle in radians.
     """
-    return relax_resisted(body, limits, resistance(0, 0.0, 0.0, 0.0), state, counters)
-
-
-@njit(cache=True)
-def relax_resisted(body, limits, resist, state, counters):
-    """As `relax`, against what resists a slip."""
     trial = blank(len(state.X))
     residual, status, swapped = minimise(body, limits, resist, state, trial, counters)
     if swapped:
@@ -107,7 +100,7 @@ def relax_resisted(body, limits, resist, state, counters):
 
 @njit(cache=True)
 def minimise(body, limits, resist, state, trial, counters):
-    """As `relax`, against what resists a slip; where the third result says so the answer is left in `trial`."""
+    """As `relax`; where the third result says so the answer is left in `trial`."""
     n, periodic = len(state.X), body.spline.periodic
     swapped = False
     trial.station[:] = state.station

@@ -15,14 +15,13 @@ from meshwind.path.kernels.certificate import HALF_TURN, certify, largest_leap
 from meshwind.path.kernels.contact import DEEP, NOTHING, lift, release
 from meshwind.path.kernels.coulomb import (
     HELD,
-    STUCK,
     Fibre,
     Grip,
     balance_forces,
     blank_grip,
 )
 from meshwind.path.kernels.friction_step import Start, merit, take_step, workspace
-from meshwind.path.kernels.grip import attach_to_curve, copy_grip, hold_landed, hold_where_it_lies, restore_grip
+from meshwind.path.kernels.grip import attach_to_curve, copy_grip, hold_all, hold_landed, restore_grip
 from meshwind.path.kernels.jacobian import differentiate
 from meshwind.path.kernels.landing import sag
 from meshwind.path.kernels.relax import (
@@ -31,7 +30,7 @@ from meshwind.path.kernels.relax import (
     SHIFT_DOWN,
     failure,
 )
-from meshwind.path.kernels.resist import resistance
+from meshwind.path.kernels.resist import ROOM, resistance
 from meshwind.path.kernels.rest import MAX_LANDINGS, pin_where_needed, resolve, restore_contact, settle_evenly
 from meshwind.path.kernels.state import (
     CONVERGED,
@@ -51,8 +50,6 @@ RESTART = 60
 SHORT, CALM = 1.0 / 16.0, 1e-4
 """Least share of Newton's step that is tried first, which is halved at every restart; unbalanced force below which
 whole steps are tried again."""
-ROOM = 1e-13
-"""Slip over the fibre's length that is round-off."""
 
 
 @njit(cache=True)
@@ -185,15 +182,3 @@ def certified_with_friction(rough, limits, final, resume, stalled, fibre, requir
     if anew or state.pinned.any():
         hold_all(fibre, body.size)
     return residual, status
-
-
-@njit(cache=True)
-def hold_all(fibre, size):
-    """Find the anchors and modes of all particles anew."""
-    grip, touching = fibre.grip, fibre.state.touching
-    n = len(touching)
-    scale = (len(fibre.curve) - 1.0) / (n - 1.0)
-    for i in range(n):
-        grip.anchor[i], grip.offset[i], grip.mode[i] = scale * i, 0.0, np.int8(STUCK)
-        if 0 < i < n - 1 and touching[i]:
-            hold_where_it_lies(fibre, i, size)

@@ -35,6 +35,8 @@ TURNS, FREE = 60, 10
 only the first, which ends for sure."""
 RIGID = 1e6
 """Stiffness, in units of the springs', by which a stuck particle does not move across."""
+ROOM = 1e-13
+"""Slip over the fibre's length that is round-off."""
 ROUNDS = 5
 """Maximum number of steps by which a particle is put back to where the fibre lay."""
 

@@ -8,7 +8,7 @@ from meshwind.path.kernels.coulomb import RoughBody
 from meshwind.path.kernels.glide import spread_along
 from meshwind.path.kernels.landing import land
 from meshwind.path.kernels.mend import ROUNDS, any_wanting, centre, mend, pin_beads, spread_stations
-from meshwind.path.kernels.relax import relax_resisted
+from meshwind.path.kernels.relax import relax
 from meshwind.path.kernels.resist import farthest_slip, lay_down, press_anew, resistance
 from meshwind.path.kernels.state import (
     CONVERGED,
@@ -154,8 +154,10 @@ def pin_where_needed(body, state, required, counters):
 
 @njit(cache=True)
 def settle_evenly(rough, resist, limits, final, centred, state, required, counters):
-    """As `settle`, with equal pulls along the fibre, and, if `centred`, pinned particles in the middle of what they
-    rest on."""
+    """As `settle`, with equal pulls along the fibre.
+
+    If `centred`, pinned particles move to the middle of what they rest on.
+    """
     body, n = rough.body, len(state.X)
     contacts = no_contacts(n)
     residual, status = np.inf, STALLED
@@ -196,13 +198,13 @@ def come_to_rest(rough, resist, limits, state, counters):
     Where something resists, a path that slips far is not followed: that takes a slide.
     """
     if len(resist.bound) == 0:
-        return relax_resisted(rough.body, limits, resist, state, counters)
+        return relax(rough.body, limits, resist, state, counters)
     contacts = no_contacts(len(state.X))
     loose = Limits(limits.pull_off, max(limits.tolerance, BALANCE), limits.iterations)
     lay_down(resist, rough, state, contacts)
     residual, status = np.inf, STALLED
     for _ in range(PASSES):
-        residual, status = relax_resisted(rough.body, loose, resist, state, counters)
+        residual, status = relax(rough.body, loose, resist, state, counters)
         if status != CONVERGED:
             break
         before = resist.bound.copy()

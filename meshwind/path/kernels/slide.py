@@ -11,12 +11,12 @@ from numba import njit
 
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.contact import pull
-from meshwind.path.kernels.coulomb import STUCK, Fibre, Grip
+from meshwind.path.kernels.coulomb import Fibre, Grip
 from meshwind.path.kernels.geometry import dot, row
-from meshwind.path.kernels.grip import attach_to_curve, hold_where_it_lies
-from meshwind.path.kernels.relax import relax_resisted
+from meshwind.path.kernels.grip import attach_to_curve, hold_all
+from meshwind.path.kernels.relax import relax
 from meshwind.path.kernels.relax_with_friction import relax_with_friction
-from meshwind.path.kernels.resist import lay_down, press_anew, resistance
+from meshwind.path.kernels.resist import ROOM, lay_down, press_anew, resistance
 from meshwind.path.kernels.state import (
     CONVERGED,
     EVALUATIONS,
@@ -53,8 +53,6 @@ LEANING = 16
 and what has leaned for longer than one or two has not been seen to come back."""
 SHORTER, SHORTEST = 0.3, 1e-6
 """Factor of an increment that fails, and the shortest that is tried."""
-ROOM = 1e-13
-"""Slip over the fibre's length that is round-off."""
 
 
 @njit(nogil=True, cache=True)
@@ -131,7 +129,7 @@ def slide(rough, limits, state, lain, counters):
     lay_down(resist, rough, state, contacts)
     resist.bound[:] = FIRM * length
     spent = counters[EVALUATIONS] + DEAREST * n
-    residual, status = relax_resisted(rough.body, limits, resist, state, counters)
+    residual, status = relax(rough.body, limits, resist, state, counters)
     if status == NEEDS_TREE:
         return residual, status, steps
     for _ in range(MOST):
@@ -142,7 +140,7 @@ def slide(rough, limits, state, lain, counters):
         move, settled = 0.0, False
         for turn in range(PASSES):
             copy(state, last)
-            residual, status = relax_resisted(rough.body, loose, resist, state, counters)
+            residual, status = relax(rough.body, loose, resist, state, counters)
             if status in (NEEDS_TREE, STALLED):
                 break
             move = largest_move(state.X, before.X)
@@ -178,8 +176,7 @@ def settle(rough, limits, state, grip, start, lain, steps, counters):
 
     Returns (residual, status, k), k being the number of that curve among `lain`, 0 for the starting curve.
     """
-    n = len(state.X)
-    rest = blank(n)
+    rest = blank(len(state.X))
     copy(state, rest)
     length = energy(rest.X)[1]
     residual, status = np.inf, STALLED
@@ -188,13 +185,9 @@ def settle(rough, limits, state, grip, start, lain, steps, counters):
         curve = start if k == 0 else lain[k]
         if k > 0:
             copy(rest, state)
-        scale = (len(curve) - 1.0) / (n - 1.0)
-        for i in range(n):
-            grip.anchor[i], grip.offset[i] = scale * i, 0.0
-            grip.mode[i] = np.int8(STUCK)
-            if 0 < i < n - 1 and state.touching[i]:
-                hold_where_it_lies(Fibre(state, grip, curve), i, rough.body.size)
-        residual, status = relax_with_friction(rough, limits, Fibre(state, grip, curve), counters)
+        fibre = Fibre(state, grip, curve)
+        hold_all(fibre, rough.body.size)
+        residual, status = relax_with_friction(rough, limits, fibre, counters)
         if status == NEEDS_TREE or k == steps:
             break
         if status != STALLED and largest_move(state.X, rest.X) <= SAME * length:
