@@ -70,6 +70,14 @@ def test_a_rib_between_particles_is_met(width: float, height: float) -> None:
         assert paths.gap.max() == pytest.approx(deep, rel=0.1)
 
 
+def test_a_thin_rib_between_the_feet_of_a_segment_is_met() -> None:
+    """The nearest feet of both of its ends lie on the rib, one on either flank, few spans apart."""
+    surface = revolved(bumps(np.array([95.593, 177.027]), np.array([0.314, 2.591]), np.array([5.94, 9.161])), 4096)
+    for particles in COUNTS[:3]:
+        assert meridian(surface, particles).on_surface.sum() >= 4
+        check(surface, particles)
+
+
 @pytest.mark.parametrize(("waves", "height"), [(60, 0.2), (25, 1.0)])
 def test_contacts_shorter_than_a_spacing(waves: int, height: float) -> None:
     def profile(z: Floats) -> Floats:

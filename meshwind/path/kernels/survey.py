@@ -30,6 +30,8 @@ STEEP = 0.25
 """Share of a segment that an even bow stays below: a prediction above it means nothing."""
 SHORTEST_STEP = 1.0 / 3.0
 """Shortest step along a segment in the air, in spans: nothing narrower stands on the surface."""
+BEHIND = 1e-3
+"""How far behind the surface a segment that runs into it is looked at, as a share of its length."""
 MOST_STEPS = 400
 """Maximum number of such steps."""
 OPPOSED = 0.1
@@ -294,7 +296,7 @@ def followed(body, state, i, segment, stride, work, counters):
     """How deep segment i, which is in the air, passes inside the body, and the share of it where it is deepest.
 
     Each step is as long as the gap, and at least `stride` spans of the surface, by the frame below or by the spans from
-    end to end, or, if less, half the segment.
+    end to end, or, if less, half the segment; but where the segment runs into the surface, just to behind it.
     """
     spans_u, spans_v = spans_of(body.spline.net)
     uv = state.uv
@@ -302,22 +304,39 @@ def followed(body, state, i, segment, stride, work, counters):
     longest = min(0.5, stride / max(spans, TINY)) * segment.length
     point, foot, normal = np.empty(3), np.empty(2), np.empty(3)
     foot[0], foot[1] = state.uv[i, 0], state.uv[i, 1]
+    ahead = over(segment.way, segment.length)
+    end = segment.length - state.clear[i + 1]
     deep, where = 0.0, 0.0
-    gap, t = state.clear[i], 0.0
+    gap, s = state.clear[i], 0.0
     work[:] = state.frames[i]
+    entering = -dot(ahead, row(state.normal, i))
     for _ in range(MOST_STEPS):
-        du, dv = to_parameters(row(work, SU), row(work, SV), over(segment.way, segment.length))
-        least = stride / max(abs(du) * spans_u, abs(dv) * spans_v, TINY)
-        t += max(gap, min(least, longest)) / max(segment.length, TINY)
-        if t * segment.length >= segment.length - state.clear[i + 1]:
+        du, dv = to_parameters(row(work, SU), row(work, SV), ahead)
+        least = min(stride / max(abs(du) * spans_u, abs(dv) * spans_v, TINY), longest)
+        if entering > STEEP:
+            least = min(least, gap / entering + BEHIND * segment.length)
+        s += max(gap, least)
+        if s >= end:
             break
-        for k in range(3):
-            point[k] = segment.start[k] + t * segment.way[k]
-        counters[FEET] += 1
-        counters[EVALUATIONS] += nearest_foot(body, point, foot, work)
-        unit_normal(work, normal)
-        away = minus((point[0], point[1], point[2]), row(work, S))
-        gap = np.sqrt(dot(away, away))
-        if dot(away, (normal[0], normal[1], normal[2])) < 0.0 and 0.0 < foot[1] < 1.0 and gap > deep:
-            deep, where = gap, t
-    return deep, where
+        inside = into(body, segment, s, point, foot, normal, work, counters)
+        gap = abs(inside)
+        if inside > deep:
+            deep, where = inside, s
+        entering = -dot(ahead, (normal[0], normal[1], normal[2])) if inside <= 0.0 else 1.0
+    return deep, where / max(segment.length, TINY)
+
+
+@njit(cache=True)
+def into(body, segment, s, point, foot, normal, work, counters):
+    """How deep a segment is inside the body at distance s from its start, negative outside.
+
+    Writes the point, its foot, from the one before, and the normal and frame there.
+    """
+    for k in range(3):
+        point[k] = segment.start[k] + s / segment.length * segment.way[k]
+    counters[FEET] += 1
+    counters[EVALUATIONS] += nearest_foot(body, point, foot, work)
+    unit_normal(work, normal)
+    away = minus((point[0], point[1], point[2]), row(work, S))
+    gap = np.sqrt(dot(away, away))
+    return gap if dot(away, (normal[0], normal[1], normal[2])) < 0.0 and 0.0 < foot[1] < 1.0 else -gap

@@ -15,6 +15,8 @@ from meshwind.surface.surface import Surface
 
 FARTHEST = 2.0
 """Spacings beyond which the step is no correction: there the surface is flat or has an edge."""
+CLOSER = 0.5
+"""Share of the chord's slope to the surface that a step may leave: more, and the surface bends otherwise there."""
 
 
 @njit(cache=True)
@@ -44,12 +46,20 @@ def touchdown(spline, X, uv, here, there, frames, where, point):
     if press <= 0.0 or abs(dip) > FARTHEST * press * far / abs(there - here):
         return 0.0
     step = -dip / press
+    u, v = where[0], where[1]
     where[0] += step * rate[0]
     where[1] = min(max(where[1] + step * rate[1], 0.0), 1.0)
     if not spline.periodic:
         where[0] = min(max(where[0], 0.0), 1.0)
     frame(spline, where[0], where[1], frames)
     point[0], point[1], point[2] = row(frames, S)
+    unit_normal(frames, normal_at)
+    rest = minus(row(X, there), row(frames, S))
+    left = dot(rest, (normal_at[0], normal_at[1], normal_at[2])) / max(np.sqrt(dot(rest, rest)), TINY)
+    if abs(left) > CLOSER * abs(dip):
+        where[0], where[1] = u, v
+        point[0], point[1], point[2] = start
+        return 0.0
     way, bend = minus(row(frames, S), start), press / max(dot(along, along), TINY)
     square = dot(way, way)
     return np.copysign(np.sqrt(square) * (1.0 + square * bend * bend / 24.0), step)
