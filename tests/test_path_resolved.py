@@ -99,6 +99,14 @@ def test_a_groove_between_particles_is_within_the_stated_error() -> None:
     assert paths.gap.max() + paths.position_error[0] >= 0.6 * min(deep, 0.6)  # half its width away from its walls
 
 
+def test_a_bridge_over_a_shallow_groove_is_as_long_as_it_states() -> None:
+    """At its edge the curvature changes within a spacing, so that no step leads to where the bridge lands."""
+    groove = bumps(np.array([110.609, 265.56]), np.array([1.95, 1.235]), np.array([-0.183, 3.624]))
+    surface = revolved(lambda z: groove(z) + 5.758 * np.sin(np.pi * z / LENGTH), 1457)
+    for particles in (97, 193, 385, None):
+        check(surface, particles)
+
+
 def test_particles_that_coincide_are_measured() -> None:
     surface = revolved(bumps(np.array([77.1]), np.array([2.0]), np.array([1.5])))
     paths = meridian(surface, 51)
