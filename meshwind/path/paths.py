@@ -11,6 +11,7 @@ from meshwind.path.advice import Advice, advise
 from meshwind.path.asked import Asked
 from meshwind.path.kernels.status import Status as Status
 from meshwind.path.length import Laid, Measured, measured
+from meshwind.path.other_rests import OtherRests, look_for_other_rests
 from meshwind.surface.surface import Surface
 
 EDGE = 1.2
@@ -185,6 +186,25 @@ class Paths:
         Above 1.2 the segment cuts an edge, and the path is right to the distance of its particles only.
         """
         return sharpest_turn(self.normal, self.on_surface)
+
+    @cached_property
+    def other_rests(self) -> OtherRests:
+        """Other states of rest that lie close to those of the paths, under friction.
+
+        A little less or more friction, or a starting curve a little to the side, mostly moves a path a little; some
+        leap to another state far away, or slide off.  They are looked for when first asked for, which takes up to
+        twice as long as solving the paths.
+
+        Examples
+        --------
+        >>> import meshwind as mw
+        >>> bottle = mw.fit(mw.flatten(mw.annulus(mw.read("data/bottle.obj"))))
+        >>> ends = mw.families(bottle, paths=3, revolutions=0.45)
+        >>> paths = mw.solve(bottle, ends.start, ends.end, family=ends.family, friction=0.12)
+        >>> paths.other_rests.found
+        array([False, False, False,  True, False, False])
+        """
+        return look_for_other_rests(self)
 
     @cached_property
     def holding(self) -> Advice:

@@ -27,6 +27,7 @@ from meshwind.results.layup_figures import (
     spacing_figures,
     windability_figures,
 )
+from meshwind.results.other_rest_figures import other_rest_figures
 from meshwind.results.report_types import (
     AdviceFigures,
     Distances,
@@ -165,7 +166,7 @@ def _winding(paths: Paths, revolutions: float) -> WindingFigures:
 
 def _paths(paths: Paths) -> PathsFigures:
     figures = path_figures(paths)
-    return {
+    result: PathsFigures = {
         "converged": figures.converged,
         "not_converged": failures(paths),
         "advice": _advice(paths),
@@ -186,6 +187,9 @@ def _paths(paths: Paths) -> PathsFigures:
         "max_slip": figures.max_slip,
         "max_residual": figures.max_residual,
     }
+    if paths.friction > 0.0:
+        result["other_rests"] = other_rest_figures(paths)
+    return result
 
 
 def failures(paths: Paths) -> list[Failure]:

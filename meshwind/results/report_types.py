@@ -124,11 +124,39 @@ class UnresolvedFigures(TypedDict):
     max_gap: float
 
 
+class OtherRestFigures(TypedDict):
+    """Another state close to one of the paths: how far apart they lie and its length, None where the fibre slides off.
+
+    status, name: how the path ends there; friction: the relative change of the friction with which it does; shift: that
+    of the starting curve, to the left positive; one of them is 0.
+    """
+
+    path: int
+    apart: float | None
+    length: float | None
+    status: int
+    name: str
+    friction: float
+    shift: float
+
+
+class OtherRestsFigures(TypedDict):
+    """Other states close to the paths, looked for with these largest changes of friction and starting curve.
+
+    largest_move: of the paths without one; None where all have one, or no slide had an answer.
+    """
+
+    friction: float
+    shift: float
+    largest_move: float | None
+    found: list[OtherRestFigures]
+
+
 class PathsFigures(TypedDict):
     """The paths; lengths, bridges and maxima are over those that `figures_over` names, residuals over the tension.
 
     length_error: what the total may be off by; position_error: how far a fibre may be from the polyline through its
-    particles: both for the particles, not for the fit.
+    particles: both for the particles, not for the fit; other_rests: with friction only.
     """
 
     converged: int
@@ -145,6 +173,7 @@ class PathsFigures(TypedDict):
     max_gap: float
     max_slip: float
     max_residual: float
+    other_rests: NotRequired[OtherRestsFigures]
 
 
 class CrossingFigures(TypedDict):

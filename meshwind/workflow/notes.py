@@ -13,6 +13,7 @@ from meshwind.mesh.opening.branches import BRANCHES, CUT
 from meshwind.mesh.opening.choose_ends import position_text
 from meshwind.mesh.opening.flat_ends import has_flat_ends
 from meshwind.path.lengths import lengths, unresolved_share
+from meshwind.path.other_rests import OtherRests
 from meshwind.path.paths import EDGE, Paths, Status, converged_or_all
 from meshwind.planning.alternatives import FRICTION
 from meshwind.planning.revolutions import Revolutions
@@ -102,6 +103,34 @@ def about_contact(paths: Paths, units: str = "") -> tuple[Note, ...]:
     limit = paths.surface.threshold
     less = "the surface's uncertainty" if limit is None else f"the threshold of {quantity(limit, units, 2)}"
     return (Note(f"{100.0 * share:.1f} % of the fibre is off the surface by less than {less}, and counts as contact"),)
+
+
+def about_other_rests(paths: Paths, units: str = "") -> tuple[Note, ...]:
+    """Note on paths that would rest elsewhere, or slide off, with a little less or more friction or a little aside."""
+    rests = paths.other_rests
+    found = np.flatnonzero(rests.found)
+    if not len(found):
+        return ()
+    listed = [_elsewhere(rests, int(path), units) for path in found[:_MAX_LISTED]]
+    left = len(found) - _MAX_LISTED
+    listed += [f"{left} more {'path' if left == 1 else 'paths'} in the report"] if left > 0 else []
+    rest = "rests" if len(found) == 1 else "rest"
+    return (Note(f"{len(found)} of {len(paths)} paths {rest} close to another state: {'; '.join(listed)}"),)
+
+
+def _elsewhere(rests: OtherRests, path: int, units: str) -> str:
+    """Where a path would lie with which change."""
+    status, change, shift = Status(int(rests.status[path])), rests.friction[path], rests.shift[path]
+    if np.isnan(rests.apart[path]):
+        where = f"would not rest ({status.meaning})"
+    else:
+        where = f"would lie {quantity(rests.apart[path], units, 2)} away"
+    if shift == 0.0:
+        return (
+            f"path {path} {where} if friction were {100.0 * abs(change):.2g} % {'lower' if change < 0.0 else 'higher'}"
+        )
+    side = "left" if shift > 0.0 else "right"
+    return f"path {path} {where} if it were laid {quantity(abs(shift), units, 2)} further to the {side} at first"
 
 
 def about_layup(layup: Layup) -> tuple[Note, ...]:
