@@ -34,8 +34,6 @@ FAR = 0.025
 LEAP = 0.6, 0.6, 0.5
 """Least shares of a move that are made in one half of a change, in one quarter and in one eighth, where it leaps; in
 proportion they would be 1/2, 1/4 and 1/8."""
-CONFIRMED = 0.5
-"""Share of FAR that a state is away with all particles, at least."""
 AT_REST = int(Status.CONVERGED), int(Status.TOO_COARSE)
 OFF = int(Status.SLID_OFF_START), int(Status.SLID_OFF_END), int(Status.LEFT_CHART)
 
@@ -129,9 +127,14 @@ def look_for_other_rests(paths: "Paths") -> OtherRests:
         states = [slides.run(index, way) for way in WAYS]
         moves = np.stack([between(slides.rest(index, state), state) for state in states])
         result.moved[index] = moves.max(axis=0)  # NaN where one has no answer
-        for k, path in enumerate(index):
-            for way in np.argsort(-moves[:, k]):  # NaN last
-                if moves[way, k] > slides.far and slides.note(int(path), WAYS[way], states[way].row(k), result):
+        for k in np.flatnonzero((moves > slides.far).any(axis=0)):
+            path = int(index[k])
+            rest = slides.run(index[k : k + 1], _Change(0.0, 0.0))  # few particles alone may move a path
+            tops = [state.row(k) for state in states]
+            moved = np.array([between(rest, top)[0] for top in tops])
+            result.moved[path] = moved.max()
+            for way in np.argsort(-moved):  # NaN last
+                if moved[way] > slides.far and slides.note(path, WAYS[way], (rest, tops[way]), result):
                     break
     arrays = {name: frozen(each) for name, each in result._asdict().items()}
     return OtherRests(found=frozen(result.status >= 0), most_shifted=ASIDE * paths.surface.size, **arrays)
@@ -186,7 +189,7 @@ class _Slides:
         n, options = self.curves.shape[1], self.asked.options
         starts = self.shifted(index, change.shift)
         level = min((halvings(curve, n) for curve in self.curves[index]), default=0)
-        batch = fresh(starts, ((n - 1) >> (level + 1)) + 1)
+        batch = fresh(starts, max(((n - 1) >> (level + 1)) + 1, 3))
         surface, friction = self.paths.surface, self.friction(change.friction)
         Solver(surface, friction, options.bridging, options.tolerance, options.iterations).coarse.slide(batch)
         return _State(batch.X + surface.middle, batch.status)
@@ -204,9 +207,9 @@ class _Slides:
         """The friction with a change."""
         return Friction(frozen(self.asked.options.friction.table * (1.0 + LOOSER * change)))
 
-    def note(self, path: int, change: _Change, top: _State, found: _Found) -> bool:
-        """Write what a path does with a change, which brings it to `top`, if it leaps; returns whether it does."""
-        share = self.leaps(path, change, top)
+    def note(self, path: int, change: _Change, ends: tuple[_State, _State], found: _Found) -> bool:
+        """Write what a path does with a change, which moves it from one state to another, if it leaps; True if so."""
+        share = self.leaps(path, change, *ends)
         for near in (share, 1.0) if share else ():
             small, index = change.times(near), np.array([path])
             given = replace(self.asked.rows(index), initial=frozen(self.shifted(index, small.shift)))
@@ -215,7 +218,7 @@ class _Slides:
             other = given.again(self.paths.surface, options, np.array([0]))
             state = _State(other.points, other.status)
             apart = between(self.rest(index, state), state)[0]
-            if not apart > CONFIRMED * self.far:  # with all its particles it stays, or has no answer
+            if not apart > self.far:  # with all its particles it stays, or has no answer
                 continue
             if np.isfinite(apart):
                 found.apart[path], found.length[path] = apart, other.length[0]
@@ -225,10 +228,9 @@ class _Slides:
             return True
         return False
 
-    def leaps(self, path: int, change: _Change, top: _State) -> float:
+    def leaps(self, path: int, change: _Change, low: _State, top: _State) -> float:
         """Share of a change with which a path has leapt; 0 where it moves in proportion, or slides have no answer."""
         index = np.array([path])
-        low = self.rest(index, top)
         whole = between(low, top)[0]
         share, step = 1.0, 0.5
         for least in LEAP:

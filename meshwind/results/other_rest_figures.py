@@ -4,7 +4,7 @@ import numpy as np
 
 from meshwind.path.other_rests import LOOSER, OtherRests
 from meshwind.path.paths import Paths, Status
-from meshwind.results.report_types import OtherRestFigures, OtherRestsFigures
+from meshwind.results.report_types import OtherRestsFigures, OtherStateFigures
 
 
 def other_rest_figures(paths: Paths) -> OtherRestsFigures:
@@ -19,7 +19,7 @@ def other_rest_figures(paths: Paths) -> OtherRestsFigures:
     }
 
 
-def _figures(rests: OtherRests, path: int) -> OtherRestFigures:
+def _figures(rests: OtherRests, path: int) -> OtherStateFigures:
     status = Status(int(rests.status[path]))
     return {
         "path": path,

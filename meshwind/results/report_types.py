@@ -124,7 +124,7 @@ class UnresolvedFigures(TypedDict):
     max_gap: float
 
 
-class OtherRestFigures(TypedDict):
+class OtherStateFigures(TypedDict):
     """Another state close to one of the paths: how far apart they lie and its length, None where the fibre slides off.
 
     status, name: how the path ends there; friction: the relative change of the friction with which it does; shift: that
@@ -149,7 +149,7 @@ class OtherRestsFigures(TypedDict):
     friction: float
     shift: float
     largest_move: float | None
-    found: list[OtherRestFigures]
+    found: list[OtherStateFigures]
 
 
 class PathsFigures(TypedDict):
