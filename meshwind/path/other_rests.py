@@ -34,6 +34,8 @@ FAR = 0.025
 LEAP = 0.6, 0.6, 0.5
 """Least shares of a move that are made in one half of a change, in one quarter and in one eighth, where it leaps; in
 proportion they would be 1/2, 1/4 and 1/8."""
+TRIED = 2
+"""Number of ways, those that move a path most, that are looked at more closely."""
 AT_REST = int(Status.CONVERGED), int(Status.TOO_COARSE)
 OFF = int(Status.SLID_OFF_START), int(Status.SLID_OFF_END), int(Status.LEFT_CHART)
 
@@ -127,13 +129,13 @@ def look_for_other_rests(paths: "Paths") -> OtherRests:
         states = [slides.run(index, way) for way in WAYS]
         moves = np.stack([between(slides.rest(index, state), state) for state in states])
         result.moved[index] = moves.max(axis=0)  # NaN where one has no answer
-        for k in np.flatnonzero((moves > slides.far).any(axis=0)):
+        for k in np.flatnonzero((moves > slides.far).any(axis=0)).tolist():
             path = int(index[k])
             rest = slides.run(index[k : k + 1], _Change(0.0, 0.0))  # few particles alone may move a path
             tops = [state.row(k) for state in states]
             moved = np.array([between(rest, top)[0] for top in tops])
             result.moved[path] = moved.max()
-            for way in np.argsort(-moved):  # NaN last
+            for way in np.argsort(-moved)[:TRIED]:  # NaN last
                 if moved[way] > slides.far and slides.note(path, WAYS[way], (rest, tops[way]), result):
                     break
     arrays = {name: frozen(each) for name, each in result._asdict().items()}

@@ -192,8 +192,13 @@ class Paths:
         """Other states of rest that lie close to those of the paths, under friction.
 
         A little less or more friction, or a starting curve a little to the side, mostly moves a path a little; some
-        leap to another state far away, or slide off.  They are looked for when first asked for, which takes up to
-        twice as long as solving the paths.
+        leap to another state far away, or slide off.  They are looked for when first asked for, which takes one to
+        two times as long as solving the paths, and more where many of them move far.
+
+        Returns
+        -------
+        OtherRests
+            For each path whether there is one, how far away, and what leads to it.
 
         Examples
         --------
