@@ -34,8 +34,6 @@ FAR = 0.025
 LEAP = 0.6, 0.6, 0.5
 """Least shares of a move that are made in one half of a change, in one quarter and in one eighth, where it leaps; in
 proportion they would be 1/2, 1/4 and 1/8."""
-TRIED = 2
-"""Number of ways, those that move a path most, that are looked at more closely."""
 AT_REST = int(Status.CONVERGED), int(Status.TOO_COARSE)
 OFF = int(Status.SLID_OFF_START), int(Status.SLID_OFF_END), int(Status.LEFT_CHART)
 
@@ -135,7 +133,7 @@ def look_for_other_rests(paths: "Paths") -> OtherRests:
             tops = [state.row(k) for state in states]
             moved = np.array([between(rest, top)[0] for top in tops])
             result.moved[path] = moved.max()
-            for way in np.argsort(-moved)[:TRIED]:  # NaN last
+            for way in np.argsort(-moved):  # NaN last
                 if moved[way] > slides.far and slides.note(path, WAYS[way], (rest, tops[way]), result):
                     break
     arrays = {name: frozen(each) for name, each in result._asdict().items()}
