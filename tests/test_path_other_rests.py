@@ -71,6 +71,12 @@ def test_a_state_that_a_shift_leads_to_is_found(bottle: mw.Surface) -> None:
     assert (rests.moved[others] < FAR * bottle.size).all()
 
 
+def test_a_path_that_moves_far_in_proportion_has_none(bottle: mw.Surface) -> None:
+    rests = wound(bottle, 6, 0.45, 0.3).other_rests
+    assert rests.moved.max() > FAR * bottle.size
+    assert not rests.found.any()
+
+
 def test_a_path_that_would_slide_off_is_found(bottle: mw.Surface) -> None:
     paths = wound(bottle, 6, 0.8, 0.1)
     rests = paths.other_rests
