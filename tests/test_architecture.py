@@ -19,6 +19,7 @@ ORDER = [
     "methods",
     "planning",
     "layup",
+    "filament",
     "results",
     "appearance",
     "workflow",
