@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 import meshwind as mw
 from meshwind.core.cast import Floats
-from meshwind.path import Paths
+from meshwind.path import Paths, Status
 
 DATA = Path(__file__).parents[1] / "data"
 Shape = Callable[[Floats, Floats], Floats]
@@ -139,3 +139,16 @@ def test_parts_have_one_answer(part: str, turns: float, mu: float) -> None:
     for other in found[1:]:
         assert np.array_equal(other.status, found[0].status) and (other.status == 0).all()
         assert max(apart(*both) for both in zip(other.points, found[0].points, strict=True)) <= 1e-3
+
+
+@pytest.mark.parametrize("particles", [51, 101])
+def test_a_slide_that_stalls_is_shown_where_it_lies(particles: int) -> None:
+    """Its anchors are on a curve of its own; taken as those of the starting curve, they lay far off the part."""
+    surface = mw.shapes.revolution(lambda z: 1.0 - 0.3 * (z - 1.0) ** 2, 0.0, 2.0)
+    t = np.linspace(0.0, 1.0, 41)
+    wavy = np.column_stack([0.25 * t, t + 0.05 * np.sin(4.0 * np.pi * t)])
+    start, end = [(0.0, 0.0)], [(0.25, 1.0)]
+    stopped = mw.solve(surface, start, end, initial=[wavy], friction=0.1, particles=particles, iterations=1)
+    rested = mw.solve(surface, start, end, initial=[wavy], friction=0.1, particles=particles)
+    assert stopped.status[0] == Status.STALLED and rested.status[0] == Status.CONVERGED
+    assert stopped.length[0] == pytest.approx(rested.length[0], rel=1e-3)

@@ -177,9 +177,13 @@ def ascend(solver: Solver, batch: Batch, particles: int) -> Batch:
 def draw(solver: Solver, batch: Batch, index: Ints) -> None:
     """Complete paths that have no answer, as they lie, in place; how they ended stays."""
     drawn = batch.rows(index)
+    drawn.status[:] = REST  # one that stalled would slide on
+    if not solver.friction.none:  # held to where they lie: their anchors may be on another curve
+        drawn = drawn._replace(starts=drawn.uv.copy())
+        drawn.anchor[:], drawn.mode[:] = np.arange(batch.particles), 0
     replace(solver, iterations=0).relax(drawn, resume=True)
     drawn.status[:], drawn.residual[:] = batch.status[index], batch.residual[index]
-    batch.put(index, drawn)
+    batch.put(index, drawn._replace(starts=batch.starts[index]))
 
 
 def failing(batch: Batch) -> Bools:

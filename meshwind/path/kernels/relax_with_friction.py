@@ -167,7 +167,7 @@ def certified_with_friction(rough, limits, final, resume, stalled, fibre, requir
         restore_grip(body.spline, fibre, body.size, counters)
     if status == CONVERGED and inside > 0:
         status = STALLED
-    if status != CONVERGED and not (resume and final):
+    if status != CONVERGED and not (resume and final and limits.iterations > 0):
         return residual, status
     resist = resistance(len(state.X), 0.0, ROOM * energy(before.X)[1], 0.0)
     anew = status != CONVERGED

@@ -151,6 +151,7 @@ def slide(rough, limits, state, lain, counters):
         if status == NEEDS_TREE:
             break
         if counters[EVALUATIONS] > spent:
+            copy(before, state)
             status = STALLED
             break
         if (status == STALLED or not settled) and time > SHORTEST:
@@ -158,6 +159,7 @@ def slide(rough, limits, state, lain, counters):
             time *= SHORTER
             continue
         if status == STALLED:
+            copy(before, state)
             break
         steps += 1
         lain[steps] = state.uv
