@@ -16,6 +16,9 @@ from friction_checks import bent, wavy
 
 from meshwind.core.cast import Floats
 from meshwind.path import Counters, Paths, Status, solve
+from meshwind.path.friction import friction_of
+from meshwind.path.nested import slide_finer, solve_with
+from meshwind.path.solver import Solver
 
 
 def length(paths: Paths) -> Floats:
@@ -42,6 +45,24 @@ def test_the_accuracy_asked_for_is_met_under_friction(name: str) -> None:
     paths = choose(TABLE[name], 1e-5)
     assert paths.status[0] == Status.CONVERGED
     assert TABLE[name].error(float(length(paths)[0])) <= 1e-5
+
+
+@pytest.mark.parametrize("name", ["catenary-0.2", "stick-slip"])
+def test_a_slide_that_stalls_is_taken_from_one_with_twice_the_particles(name: str) -> None:
+    """Said to have stalled, a path comes back to where it rests, with every second particle of the finer slide."""
+    problem = TABLE[name]
+    curve = np.ascontiguousarray(problem.initial(201)[None] if problem.initial else [[problem.start, problem.end]])
+    surface = problem.surface()
+    solver = Solver(surface, friction_of(surface, problem.friction), True, 1e-10, 1000)
+    batch = solve_with(solver, curve, 101)
+    lost = batch.copied()
+    lost.status[:] = Status.STALLED
+    slide_finer(solver, lost, curve)
+    assert lost.status[0] == Status.CONVERGED and lost.residual[0] <= 1e-10
+    assert lost.X.shape == batch.X.shape and lost.starts.shape == batch.starts.shape
+    assert (lost.counters > batch.counters).any()
+    across = np.linalg.norm(lost.X - batch.X, axis=2).max()
+    assert across <= 1e-3 * np.linalg.norm(np.diff(batch.X, axis=1), axis=2).sum()
 
 
 def test_no_more_particles_than_needed() -> None:

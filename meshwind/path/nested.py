@@ -31,6 +31,8 @@ def solve_nested(solver: Solver, curves: Floats, particles: int | None, accuracy
     batch = solve_with(solver, curves, particles)
     if solver.friction.none:
         resolve(solver, batch)
+    else:
+        slide_finer(solver, batch, curves)
     return batch
 
 
@@ -71,6 +73,23 @@ def resolve(solver: Solver, batch: Batch) -> None:
         done = np.where(fine.status == REST, few.status == REST, fine.status != CUT)
         batch.put(index[done], few.rows(np.flatnonzero(done)))
         index, fine = index[~done], fine.rows(np.flatnonzero(~done))
+
+
+def slide_finer(solver: Solver, batch: Batch, curves: Floats) -> None:
+    """Slide paths that stall with twice the particles, and leave them every second, in place."""
+    index = np.flatnonzero(batch.status == Status.STALLED)
+    if not len(index):
+        return
+    fine = solve_with(solver, curves[index], 2 * batch.particles - 1)
+    few = fine.halved()
+    few.counters[:] += batch.counters[index]
+    rest, gone = fine.status == REST, failing(fine) & (fine.status != Status.STALLED)
+    taut = few.rows(np.flatnonzero(rest))
+    solver.relax(taut, resume=True)
+    few.put(np.flatnonzero(rest), taut)
+    done = (rest & (few.status == REST)) | gone
+    batch.counters[index] = few.counters
+    batch.put(index[done], few.rows(np.flatnonzero(done)))
 
 
 def solve_from_level(solver: Solver, batch: Batch, level: int, last: bool = False) -> Batch:
