@@ -9,11 +9,11 @@ from numba import njit
 
 from meshwind.path.kernels.certificate import DEEPEST, leaps, required_friction
 from meshwind.path.kernels.glide import FEW, MAX_LAST_STEPS, MAX_STEPS, Factors, glide, resample, spread_along
-from meshwind.path.kernels.mend import any_wanting
+from meshwind.path.kernels.mend import NOTICED, any_wanting
 from meshwind.path.kernels.refine import refine
 from meshwind.path.kernels.rest import relax_and_certify, restore_contact, start_on_curve
 from meshwind.path.kernels.state import CONVERGED, Limits, blank, energy, state_of
-from meshwind.path.kernels.survey import blank_survey, survey
+from meshwind.path.kernels.survey import blank_survey, rises, survey
 from meshwind.surface.evaluate import S, unit_normal
 
 FEWEST = 96
@@ -66,10 +66,13 @@ def solve_on_surface(body, limits, curve, state, factors, required, counters):
         unit_normal(frames[i], normal[i])
         for k in range(3):
             X[i, k] = frames[i, S, k]
-    found = blank_survey(n)
-    deep, spacing = survey(body, state, found, counters), energy(X)[1] / (n - 1)
-    if deep > DEEPEST * spacing or any_wanting(found, spacing) or leaps(state, spline.periodic):
+    spacing = energy(X)[1] / (n - 1)
+    if leaps(state, spline.periodic):
         return residual, False
+    if rises(body, state, NOTICED * spacing, counters):
+        heights = blank_survey(n)
+        if survey(body, state, heights, counters) > DEEPEST * spacing or any_wanting(heights, spacing):
+            return residual, False
     for i in range(1, n - 1):
         required[i] = required_friction(X, normal, i)
     return residual, True

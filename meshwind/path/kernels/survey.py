@@ -26,6 +26,8 @@ SMOOTH, FLAT = 0.1, 3e-4
 """What the control net may differ from the frames' prediction: this share of it, and of the segment."""
 FACET = 0.25
 """And this share of its second differences."""
+EVEN_ARC = 8.0 / 27.0
+"""Rise over the sum of the slopes at both ends, with a margin of two: a cubic's is 4/27 at most."""
 STEEP = 0.25
 """Share of a segment that an even bow stays below: a prediction above it means nothing."""
 SHORTEST_STEP = 1.0 / 3.0
@@ -85,6 +87,29 @@ def survey(body, state, found, counters):
         dip[i] = 0.0 if air else low
         most = max(most, high)
     return most
+
+
+@njit(cache=True)
+def rises(body, state, least, counters):
+    """Whether the surface stands out by more than `least` of any segment of a path that touches all along.
+
+    Most segments need no survey: where one passes a knot at most, the slopes at its ends bound what stands out of it.
+    """
+    X, normal = state.X, state.normal
+    work = np.empty((6, 3))
+    for i in range(len(X) - 1):
+        if knots_passed(body.spline, state.uv, i) <= 1.0:
+            slopes = 0.0
+            for j in range(i, i + 2):
+                slope = 0.0
+                for k in range(3):
+                    slope += (X[i + 1, k] - X[i, k]) * normal[j, k]
+                slopes += abs(slope)
+            if EVEN_ARC * slopes < least:
+                continue
+        if over_segment(body, state, i, False, work, counters)[0] > least:
+            return True
+    return False
 
 
 @njit(cache=True)
