@@ -4,12 +4,13 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
-from comparison.attempt import Attempt, Outcome
+from comparison.attempt import STATUSES, Attempt, Outcome
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
 from charts.style import CLASSES, SIGNS
+from meshwind.path import Status
 
 KEYS = list(CLASSES)
 SHADES = ListedColormap(["#BFE3D5" if key == "ok" else colour for key, (_, colour) in CLASSES.items()])
@@ -26,6 +27,14 @@ def classify(found: Attempt, error: float, allowed: float) -> str:
     if found.outcome == Outcome.REST:
         return "ok" if error <= allowed else "wrong"
     return {Outcome.STALLED: "stalled", Outcome.DIVERGED: "diverged"}.get(found.outcome, "refused")
+
+
+def settled(status: int, right: bool) -> str:
+    """Class of a path of ours with this status: at rest right or wrong, otherwise as the status says."""
+    outcome = STATUSES.get(Status(int(status)), Outcome.REFUSED)
+    if outcome == Outcome.REST:
+        return "ok" if right else "wrong"
+    return "stalled" if outcome == Outcome.STALLED else "refused"
 
 
 def sweep(y: Iterable[Y], x: Sequence[X], cell: Callable[[Y, X], Row]) -> tuple[list[list[str]], list[Row]]:
@@ -57,7 +66,8 @@ def paint(
     for j, row in enumerate(classes):
         for i, cell in enumerate(row):
             if SIGNS[cell]:
-                axes.text(x[i], y[j], SIGNS[cell], ha="center", va="center", fontsize=6.5, color="white", weight="bold")
+                axes.text(x[i], y[j], SIGNS[cell], ha="center", va="center", fontsize=6.5, weight="bold",
+                          color="black" if cell == "warned" else "white")  # fmt: skip
     axes.grid(visible=False)
     if log_x:
         axes.set_xscale("log")

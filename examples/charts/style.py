@@ -39,6 +39,7 @@ class Look:
 
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 BLUE, RED, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#777777"
+YELLOW = "#F0E442"
 LOOKS = {
     "meshwind": Look("meshwind (Newton, this work)", RED, "o"),
     "backward-euler": Look("backward Euler (4.16, 4.17)", BLUE, "s"),
@@ -60,13 +61,25 @@ LOOKS = {
 
 CLASSES = {
     "ok": ("right", GREEN),
+    "vague": ("within its stated error, which is large", PURPLE),
+    "warned": ("elsewhere, by what other_rests states", YELLOW),
+    "understated": ("right place, length off by more than stated", BLUE),
     "wrong": ("wrong answer without a warning", RED),
     "refused": ("refused, with the reason", SKY),
     "stalled": ("not at rest after the last step", ORANGE),
     "diverged": ("diverged", BLACK),
 }
 """How an attempt can end, with its text in legends and its colour."""
-SIGNS = {"ok": "", "wrong": "!", "refused": "r", "stalled": "~", "diverged": "x"}
+SIGNS = {
+    "ok": "",
+    "vague": "?",
+    "warned": "w",
+    "understated": "u",
+    "wrong": "!",
+    "refused": "r",
+    "stalled": "~",
+    "diverged": "x",
+}
 """What maps draw beside the colour."""
 
 
