@@ -4,7 +4,9 @@ from functools import partial
 
 import numpy as np
 import pytest
+from charts import folds, rest_states, ribs, rough_meshes
 from comparison.attempt import Outcome, attempt
+from comparison.parts import PARTS, irregular
 from comparison.problem import TURN, Problem
 from comparison.problems import TABLE, barrel_length, barrel_radius
 from comparison.sliding import Sliding
@@ -95,3 +97,31 @@ def test_an_equator_past_its_conjugate_point_is_never_given(ratio: float) -> Non
             assert paths.status[0] == Status.CONVERGED and same
         else:
             assert paths.status[0] != Status.CONVERGED or not same
+
+
+@pytest.mark.parametrize("width", [0.25, 1.0, 16.0])
+@pytest.mark.parametrize("particles", [26, 101, None])
+def test_ribs_far_narrower_than_the_particles_distance(width: float, particles: int | None) -> None:
+    row = ribs.ours(width, particles)
+    assert row["result"] == "ok" or (row["result"] in ("vague", "refused") and width < 2.0 and particles is not None)
+
+
+@pytest.mark.parametrize(("height", "friction", "particles"), [(6.0, 0.2, 401), (8.0, 0.3, 101), (8.0, 0.3, 401)])
+def test_a_bump_that_just_catches_a_fibre_is_named(height: float, friction: float, particles: int) -> None:
+    ends = np.array(rest_states.BUMPY_ENDS)
+    course = rest_states.Course(rest_states.bumpy(height), ends[0], ends[1], friction, 1601)
+    assert rest_states.Reference.of(course).compare(particles)["result"] == "warned"
+
+
+@pytest.mark.parametrize(("noise", "kept"), [(0.0, 0.05), (0.03, 0.03)])
+def test_lengths_from_the_worst_meshes_are_within_what_is_stated(noise: float, kept: float) -> None:
+    mesh = rough_meshes.roughened(*irregular(PARTS["vase"], 4000), noise, kept)
+    row = rough_meshes.cell("vase", mesh, noise, kept)
+    assert row["result"] == "ok" and row["share"] > 0.01  # off by more than nothing
+
+
+def test_no_path_runs_through_a_collar_that_hangs_over() -> None:
+    surface = folds.fitted(0.3, 2.0, 8000)
+    assert isinstance(surface, Surface)
+    row = folds.cell(surface, folds.Depths(surface), 101)
+    assert row["result"] == "ok" and row["deep"] > 1e-5 * surface.size
