@@ -100,7 +100,7 @@ def test_an_equator_past_its_conjugate_point_is_never_given(ratio: float) -> Non
 
 
 @pytest.mark.parametrize("width", [0.25, 1.0, 16.0])
-@pytest.mark.parametrize("particles", [26, 101, None])
+@pytest.mark.parametrize("particles", [51, 101, None])
 def test_ribs_far_narrower_than_the_particles_distance(width: float, particles: int | None) -> None:
     row = ribs.ours(width, particles)
     assert row["result"] == "ok" or (row["result"] in ("vague", "refused") and width < 2.0 and particles is not None)

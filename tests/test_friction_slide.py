@@ -138,6 +138,8 @@ def test_parts_have_one_answer(part: str, turns: float, mu: float) -> None:
     found = [mw.solve(surface, ends.start, ends.end, particles=n, friction=mu) for n in (401, 101, 193, 769)]
     for other in found[1:]:
         assert np.array_equal(other.status, found[0].status) and (other.status == 0).all()
+        stated = other.length_error + found[0].length_error
+        assert (np.abs(other.length - found[0].length) <= stated).all()
         assert max(apart(*both) for both in zip(other.points, found[0].points, strict=True)) <= 1e-3
 
 
