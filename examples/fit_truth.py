@@ -8,7 +8,7 @@ noise.  Distances are rms over the part's diagonal, away from the rims; those of
 
 import igl
 import numpy as np
-from comparison.parts import PARTS, Revolved, irregular
+from comparison.parts import PARTS, Revolved, decimated, irregular
 from scipy.spatial import cKDTree
 
 import meshwind as mw
@@ -57,12 +57,11 @@ def measure(part: Revolved, vertices: Floats, faces: Ints) -> tuple[mw.Surface, 
     return surface, figures | {"within": float((true <= stated).mean())}
 
 
-def decimated(name: str, part: Revolved) -> None:
+def print_decimated(name: str, part: Revolved) -> None:
     """Print a line for each share of the faces that is kept."""
     vertices, faces = irregular(part, FINE)
     for kept in KEPT:
-        found = igl.qslim(vertices, faces.astype(np.int32), int(kept * len(faces)))
-        points, corners = found[1:3] if isinstance(found[0], bool | np.bool_) else found[:2]
+        points, corners = decimated(vertices, faces, kept)
         surface, each = measure(part, points, corners)
         print(
             f"{name:12}{kept:6.2f}{len(corners):8d}  {_led(surface):14}"
@@ -72,7 +71,7 @@ def decimated(name: str, part: Revolved) -> None:
         )
 
 
-def noisy(name: str, part: Revolved) -> None:
+def print_noisy(name: str, part: Revolved) -> None:
     """Print a line for each noise."""
     vertices, faces = irregular(part, 2 * VERTICES)
     edges = np.linalg.norm(vertices[faces] - np.roll(vertices[faces], 1, axis=1), axis=2)
@@ -100,12 +99,12 @@ def main() -> None:
         f"{'decimated':12}{'kept':>6}{'faces':>8}  {'led by':14}{'facets':>10}{'surface':>10}{'stated':>10}  within it"
     )
     for name, part in PARTS.items():
-        decimated(name, part)
+        print_decimated(name, part)
     print(
         f"\n{'noisy':12}{'noise':>6}  {'led by':14}{'found':>10}{'facets':>10}{'surface':>10}{'stated':>10}  within it"
     )
     for name, part in PARTS.items():
-        noisy(name, part)
+        print_noisy(name, part)
 
 
 if __name__ == "__main__":

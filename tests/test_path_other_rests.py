@@ -158,7 +158,7 @@ def test_the_note_names_three_paths_and_counts_the_others(bottle: mw.Surface) ->
     paths = wound(bottle, 6, 0.55, 0.15)
     rests, five = paths.other_rests, np.array([10] * 5)
     many = replace(rests, **{
-        name: getattr(rests, name)[five] for name in ("found", "apart", "length", "status", "friction", "shift")
+        name: getattr(rests, name)[five] for name in ("apart", "length", "status", "friction", "shift")
     })  # fmt: skip
     paths = paths.subset(five)
     vars(paths)["other_rests"] = many

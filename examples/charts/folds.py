@@ -11,7 +11,7 @@ from comparison.problem import TURN
 from scipy.spatial import cKDTree
 
 import meshwind as mw
-from charts.maps import Row, key, paint, settled
+from charts.maps import Row, filled, key, paint, settled, worst_of
 from charts.record import Results
 from charts.style import note, save
 from meshwind.core.cast import Bools, Floats
@@ -100,9 +100,7 @@ class Depths:
 
     def deepest(self, paths: Paths, allowed: Floats) -> Floats:
         """Largest depth (p,) of each path, at points between its particles too."""
-        share = np.arange(BETWEEN)[:, None] / BETWEEN
-        points = paths.points
-        dense = (points[:, :-1, None] + share * np.diff(points, axis=1)[:, :, None]).reshape(len(points), -1, 3)
+        dense = filled(paths.points, BETWEEN)
         depth = self.of(dense.reshape(-1, 3)).reshape(dense.shape[:2])
         doubted = (depth > allowed[:, None]) & (paths.status == Status.CONVERGED)[:, None]
         if doubted.any():
@@ -148,9 +146,8 @@ def cell(surface: Surface | str, depths: Depths | None, particles: int | None) -
     results = [settled(status, bool(each)) for status, each in zip(paths.status, right, strict=True)]
     rest = paths.status == Status.CONVERGED
     k = int(np.argmax(np.where(rest, deep - stated, -np.inf)))
-    worst = next((each for each in ("wrong", "stalled", "refused") if each in results), "ok")
-    return dict(method=OURS, asked=particles, particles=paths.points.shape[1], result=worst, deep=deep[k],
-                stated_position_error=stated[k], size=surface.size, at_rest=int(rest.sum()),
+    return dict(method=OURS, asked=particles, particles=paths.points.shape[1], result=worst_of(results),
+                deep=deep[k], stated_position_error=stated[k], size=surface.size, at_rest=int(rest.sum()),
                 why="" if rest.all() else Status(int(paths.status[np.argmin(rest)])).name)  # fmt: skip
 
 

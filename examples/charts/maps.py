@@ -10,6 +10,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
 from charts.style import CLASSES, SIGNS
+from meshwind.core.cast import Floats
 from meshwind.path import Status
 
 KEYS = list(CLASSES)
@@ -24,17 +25,30 @@ X = TypeVar("X")
 
 def classify(found: Attempt, error: float, allowed: float) -> str:
     """Class of an attempt: one at rest with an error above `allowed` is a wrong answer that nobody notices."""
-    if found.outcome == Outcome.REST:
-        return "ok" if error <= allowed else "wrong"
-    return {Outcome.STALLED: "stalled", Outcome.DIVERGED: "diverged"}.get(found.outcome, "refused")
+    return _class(found.outcome, error <= allowed)
 
 
 def settled(status: int, right: bool) -> str:
     """Class of a path of ours with this status: at rest right or wrong, otherwise as the status says."""
-    outcome = STATUSES.get(Status(int(status)), Outcome.REFUSED)
+    return _class(STATUSES.get(Status(int(status)), Outcome.REFUSED), right)
+
+
+def _class(outcome: Outcome, right: bool) -> str:
     if outcome == Outcome.REST:
         return "ok" if right else "wrong"
-    return "stalled" if outcome == Outcome.STALLED else "refused"
+    return {Outcome.STALLED: "stalled", Outcome.DIVERGED: "diverged"}.get(outcome, "refused")
+
+
+def worst_of(results: list[str]) -> str:
+    """The class of several paths of ours together."""
+    return next((each for each in ("wrong", "stalled", "refused") if each in results), "ok")
+
+
+def filled(points: Floats, many: int) -> Floats:
+    """Polylines (..., n, 3) with so many points (..., (n - 1) many, 3) of each segment, from its start on."""
+    share = np.arange(many)[:, None] / many
+    dense = points[..., :-1, None, :] + share * np.diff(points, axis=-2)[..., None, :]
+    return np.asarray(dense.reshape(*points.shape[:-2], -1, 3))
 
 
 def sweep(y: Iterable[Y], x: Sequence[X], cell: Callable[[Y, X], Row]) -> tuple[list[list[str]], list[Row]]:

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from scipy.spatial import cKDTree
 
 import meshwind as mw
-from charts.maps import Row, classify, key, paint, settled, sweep
+from charts.maps import Row, classify, filled, key, paint, settled, sweep
 from charts.record import Results
 from charts.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, save
 from meshwind.core.cast import Floats
@@ -70,9 +70,7 @@ class Reference:
         """Solve it."""
         paths = course.lay(course.particles)
         points = paths.points[0]
-        share = np.arange(DENSE)[:, None] / DENSE
-        dense = points[:-1, None] + share * np.diff(points, axis=0)[:, None]
-        return cls(course, paths, cKDTree(np.concatenate([dense.reshape(-1, 3), points[-1:]])))
+        return cls(course, paths, cKDTree(np.concatenate([filled(points, DENSE), points[-1:]])))
 
     def compare(self, particles: int | None) -> Row:
         """A row of ours: right where it lies as the reference does, and both lengths agree as they state."""

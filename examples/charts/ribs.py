@@ -9,7 +9,7 @@ from comparison.attempt import OURS, Attempt, attempt
 from comparison.problem import Problem
 from scipy.spatial import ConvexHull
 
-from charts.maps import Row, classify, key, paint, settled, sweep
+from charts.maps import Row, classify, filled, key, paint, settled, sweep
 from charts.record import Results
 from charts.style import note, save
 from meshwind.core.cast import Floats
@@ -52,9 +52,7 @@ class Ribbed:
 
     def off(self, points: Floats) -> float:
         """Largest distance of a polyline (n, 3) from the taut meridian, which is all but level."""
-        share = np.arange(BETWEEN) / BETWEEN
-        dense = points[:-1, None] + share[:, None] * np.diff(points, axis=0)[:, None]
-        x, y, z = np.moveaxis(dense, -1, 0)
+        x, y, z = filled(points, BETWEEN).T
         return float(np.abs(np.hypot(x, y) - np.interp(z, self.z, self.r)).max())
 
 

@@ -2,15 +2,14 @@
 
 from functools import cache
 
-import igl
 import matplotlib.pyplot as plt
 import numpy as np
 from comparison.attempt import OURS
-from comparison.parts import PARTS, Revolved, irregular
+from comparison.parts import PARTS, Revolved, decimated, irregular
 from comparison.problem import TURN
 
 import meshwind as mw
-from charts.maps import Row, key, paint, settled
+from charts.maps import Row, key, paint, settled, worst_of
 from charts.record import Results
 from charts.style import save
 from meshwind.core.cast import Floats, Ints
@@ -33,21 +32,11 @@ BEYOND = 0.1
 """How far the exact part goes on beyond its rims, over its height: noise moves rims."""
 
 
-def decimated(vertices: Floats, faces: Ints, kept: float) -> tuple[Floats, Ints]:
-    """The mesh with a share of its faces, by quadric error."""
-    if kept >= 1.0:
-        return vertices, faces
-    found = igl.qslim(vertices, faces.astype(np.int32), int(kept * len(faces)))
-    points, corners = found[1:3] if isinstance(found[0], bool | np.bool_) else found[:2]
-    return np.asarray(points), np.asarray(corners, np.int64)
-
-
 def roughened(vertices: Floats, faces: Ints, level: float, kept: float, seed: int = 3) -> tuple[Floats, Ints]:
     """The mesh with noise of a level over its mean radius, and then with a share of its faces."""
     radius = float(np.hypot(vertices[:, 0], vertices[:, 1]).mean())
-    return decimated(
-        vertices + level * radius * np.random.default_rng(seed).standard_normal(vertices.shape), faces, kept
-    )
+    moved = vertices + level * radius * np.random.default_rng(seed).standard_normal(vertices.shape)
+    return decimated(moved, faces, kept) if kept < 1.0 else (moved, faces)
 
 
 @cache
@@ -93,11 +82,10 @@ def cell(name: str, mesh: tuple[Floats, Ints], level: float, kept: float) -> Row
     bound = allowed(paths, truth)
     off = np.abs(paths.length - truth.length)
     results = [settled(status, bool(right)) for status, right in zip(paths.status, off <= bound, strict=True)]
-    worst = next((each for each in ("wrong", "stalled", "refused") if each in results), "ok")
     k = int(np.argmax(off / bound))
     error = surface.error
     return row | dict(
-        result=worst,
+        result=worst_of(results),
         why=Status(int(paths.status.max())).name,
         led_by=error.data if error else "",
         error=off[k],

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import igl
 import numpy as np
 from scipy.spatial import Delaunay
 
@@ -76,6 +77,13 @@ def irregular(part: Revolved, faces: int, seed: int = 0) -> tuple[Floats, Ints]:
     kept = (middle >= 0) & (middle < 1) & (np.abs(area) > FLAT / len(u))
     found = np.where(area[:, None] < 0, found[:, ::-1], found)[kept]
     return part.points(u, v), vertex[found].astype(np.int64)
+
+
+def decimated(vertices: Floats, faces: Ints, kept: float) -> tuple[Floats, Ints]:
+    """The mesh with a share of its faces, by quadric error."""
+    found = igl.qslim(vertices, faces.astype(np.int32), int(kept * len(faces)))
+    points, corners = found[1:3] if isinstance(found[0], bool | np.bool_) else found[:2]
+    return np.asarray(points), np.asarray(corners, np.int64)
 
 
 def write_ply(path: Path, vertices: Floats, faces: Ints) -> None:

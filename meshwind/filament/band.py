@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from meshwind.core.errors import BadInputError
+from meshwind.path.solve import check_count
 
 
 @dataclass(frozen=True)
@@ -46,8 +47,7 @@ class Roving:
             value = getattr(self, name)
             if not 0.0 < value < float("inf"):
                 raise BadInputError(f"{name} is {value:g}; give a number above 0")
-        if self.tows < 1:
-            raise BadInputError(f"tows is {self.tows}; give a whole number, at least 1")
+        check_count(self.tows, "tows", 1)
         if not 0.0 < self.fibre_volume <= 1.0:
             raise BadInputError(f"fibre_volume is {self.fibre_volume:g}; give a share above 0 and up to 1, as in 0.6")
 

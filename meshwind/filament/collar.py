@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.integrate import cumulative_trapezoid
+from scipy.integrate import trapezoid
 
 from meshwind.core.cast import Floats, floats, frozen
 from meshwind.core.errors import BadInputError
@@ -130,9 +130,8 @@ def overrun(curve: Section, start: float, angle: float, slip: float, samples: in
     turned = np.linspace(0.0, turned_to_hoop(angle, slip), samples)
     around = curve.passed_after(start, turned)
     along = angle_after(angle, slip, turned)
-    axial = cumulative_trapezoid(1.0 / np.tan(along), around)[-1] if samples > 1 else 0.0
-    fibre = cumulative_trapezoid(1.0 / np.sin(along), around)[-1] if samples > 1 else 0.0
-    return Overrun(float(axial), float(fibre))
+    axial, fibre = (float(trapezoid(1.0 / ratio(along), around)) for ratio in (np.tan, np.sin))
+    return Overrun(axial, fibre)
 
 
 def _check(angle: float, slip: float) -> None:

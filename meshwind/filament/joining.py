@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats, Ints, floats, frozen
 from meshwind.core.errors import BadInputError
-from meshwind.filament.pattern import Pattern
+from meshwind.filament.pattern import Pattern, check_filaments
 
 _ROUND_OFF = 1e-9
 """Turns that are round-off."""
@@ -145,8 +145,8 @@ def join(
     count = len(there.start)
     if len(back.start) != count:
         raise BadInputError(f"{count} paths there but {len(back.start)} back; join as many of each")
-    if filaments is not None and (filaments < 1 or count % filaments):
-        raise BadInputError(f"{filaments} filaments cannot share out {count} circuits; give a divisor of these")
+    if filaments is not None:
+        check_filaments(filaments, count)
     over = [_Rim(there.end, back.start, end_dwell), _Rim(back.end, there.start, start_dwell)]
     whole = float((there.end - there.start).sum() + (back.end - back.start).sum())
     least = [rim.least for rim in over]

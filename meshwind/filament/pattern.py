@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from math import ceil, floor, gcd, isfinite
 
 from meshwind.core.errors import BadInputError
+from meshwind.path.solve import check_count
 
 SEARCHED = 1.0
 """Turns a circuit beyond the least within which patterns are looked for."""
@@ -156,8 +157,7 @@ def nearest_pattern(circuits: int, wanted: float, filaments: int = 1) -> Pattern
     0.604167
     """
     _check(circuits, wanted)
-    if filaments < 1 or circuits % filaments:
-        raise BadInputError(f"{filaments} filaments cannot share out {circuits} circuits; give a divisor of these")
+    check_filaments(filaments, circuits)
     middle = round(wanted * circuits)
     for away in range(circuits + 1):
         near = [turns for turns in {middle - away, middle + away} if gcd(turns, circuits) == filaments]
@@ -166,8 +166,13 @@ def nearest_pattern(circuits: int, wanted: float, filaments: int = 1) -> Pattern
     raise AssertionError("one of as many numbers in a row as there are circuits has any divisor of theirs")
 
 
+def check_filaments(filaments: int, circuits: int) -> None:
+    """Raise BadInputError where so many filaments cannot share out the circuits."""
+    if filaments < 1 or circuits % filaments:
+        raise BadInputError(f"{filaments} filaments cannot share out {circuits} circuits; give a divisor of these")
+
+
 def _check(circuits: int, turns: float) -> None:
-    if circuits < 1:
-        raise BadInputError(f"circuits is {circuits}; give a whole number, at least 1")
+    check_count(circuits, "circuits", 1)
     if not (isfinite(turns) and turns >= 0.0):
         raise BadInputError(f"a circuit of {turns:g} turns cannot be wound; give a number from 0 up")

@@ -7,8 +7,8 @@ are made on half the particles that decide where a path rests: the four cost lit
 they find is solved with all particles before it counts.
 """
 
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -47,8 +47,6 @@ class OtherRests:
 
     Attributes
     ----------
-    found : ndarray of bool, shape (p,)
-        Whether the path would come to rest elsewhere, or slide off.
     apart : ndarray of float, shape (p,)
         Largest distance of the other state from the path, across it, in the surface's units; NaN where there is none
         or it is no state of rest.
@@ -81,7 +79,6 @@ class OtherRests:
     array([False])
     """
 
-    found: Bools
     apart: Floats
     length: Floats
     status: Ints
@@ -89,6 +86,11 @@ class OtherRests:
     shift: Floats
     moved: Floats
     most_shifted: float
+
+    @property
+    def found(self) -> Bools:
+        """Whether each path (p,) would come to rest elsewhere, or slide off."""
+        return frozen(self.status >= 0)
 
 
 class _Change(NamedTuple):
@@ -119,7 +121,7 @@ def look_for_other_rests(paths: "Paths") -> OtherRests:
     """Look for other states close to those of a batch."""
     p = len(paths)
     none, zero = np.full((3, p), np.nan), np.zeros((2, p))
-    result = _Found(none[0], none[1], np.full(p, -1), zero[0], zero[1], none[2])
+    result = OtherRests(none[0], none[1], np.full(p, -1), zero[0], zero[1], none[2], ASIDE * paths.surface.size)
     asked = _asked(paths)
     index = np.flatnonzero(paths.status == Status.CONVERGED)
     if asked is not None and len(index):
@@ -136,19 +138,10 @@ def look_for_other_rests(paths: "Paths") -> OtherRests:
             for way in np.argsort(-moved):  # NaN last
                 if moved[way] > slides.far and slides.note(path, WAYS[way], (rest, tops[way]), result):
                     break
-    arrays = {name: frozen(each) for name, each in result._asdict().items()}
-    return OtherRests(found=frozen(result.status >= 0), most_shifted=ASIDE * paths.surface.size, **arrays)
-
-
-class _Found(NamedTuple):
-    """The arrays of `OtherRests` that are filled in."""
-
-    apart: Floats
-    length: Floats
-    status: Ints
-    friction: Floats
-    shift: Floats
-    moved: Floats
+    arrays: dict[str, Any] = {
+        each.name: frozen(getattr(result, each.name)) for each in fields(result) if each.name != "most_shifted"
+    }
+    return replace(result, **arrays)
 
 
 def _asked(paths: "Paths") -> Asked | None:
@@ -207,7 +200,7 @@ class _Slides:
         """The friction with a change."""
         return Friction(frozen(self.asked.options.friction.table * (1.0 + LOOSER * change)))
 
-    def note(self, path: int, change: _Change, ends: tuple[_State, _State], found: _Found) -> bool:
+    def note(self, path: int, change: _Change, ends: tuple[_State, _State], found: OtherRests) -> bool:
         """Write what a path does with a change, which moves it from one state to another, if it leaps; True if so."""
         share = self.leaps(path, change, *ends)
         for near in (share, 1.0) if share else ():

@@ -58,13 +58,8 @@ def meets(body, state, i, segment, t, work, counters):
         foot[k] = (1.0 - t) * state.uv[i, k] + t * state.uv[i + 1, k]
     position(body.spline, foot[0], foot[1], point)
     along = dot(minus((point[0], point[1], point[2]), segment.start), segment.way) / segment.length / segment.length
-    for k in range(3):
-        point[k] = segment.start[k] + min(max(along, 0.0), 1.0) * segment.way[k]
-    counters[FEET] += 1
-    counters[EVALUATIONS] += 1 + nearest_foot(body, point, foot, work)
-    unit_normal(work, normal)
-    away = minus((point[0], point[1], point[2]), row(work, S))
-    return dot(away, (normal[0], normal[1], normal[2])) < 0.0 and 0.0 < foot[1] < 1.0
+    counters[EVALUATIONS] += 1
+    return into(body, segment, min(max(along, 0.0), 1.0), point, foot, normal, work, counters) > 0.0
 
 
 @njit(cache=True)
@@ -94,22 +89,22 @@ def followed(body, state, i, segment, stride, work, counters):
         s += max(gap, least)
         if s >= end:
             break
-        inside = into(body, segment, s, point, foot, normal, work, counters)
+        inside = into(body, segment, s / segment.length, point, foot, normal, work, counters)
         gap = abs(inside)
         if inside > deep:
             deep, where = inside, s
         entering = -dot(ahead, (normal[0], normal[1], normal[2]))
-    return deep, where / max(segment.length, TINY)
+    return deep, where / segment.length
 
 
 @njit(cache=True)
-def into(body, segment, s, point, foot, normal, work, counters):
-    """How deep a segment is inside the body at distance s from its start, negative outside.
+def into(body, segment, share, point, foot, normal, work, counters):
+    """How deep a segment is inside the body at a share of it, negative outside.
 
     Writes the point, its foot, from the one before, and the normal and frame there.
     """
     for k in range(3):
-        point[k] = segment.start[k] + s / segment.length * segment.way[k]
+        point[k] = segment.start[k] + share * segment.way[k]
     counters[FEET] += 1
     counters[EVALUATIONS] += nearest_foot(body, point, foot, work)
     unit_normal(work, normal)

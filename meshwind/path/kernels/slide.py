@@ -150,17 +150,15 @@ def slide(rough, limits, state, lain, counters):
             press_anew(resist, rough, state, contacts)
         if status == NEEDS_TREE:
             break
+        shorter = time > SHORTEST
         if counters[EVALUATIONS] > spent:
+            status, shorter = STALLED, False
+        if status == STALLED or (shorter and not settled):
             copy(before, state)
-            status = STALLED
-            break
-        if (status == STALLED or not settled) and time > SHORTEST:
-            copy(before, state)
+            if not shorter:
+                break
             time *= SHORTER
             continue
-        if status == STALLED:
-            copy(before, state)
-            break
         steps += 1
         lain[steps] = state.uv
         leant = leant + 1 if status != CONVERGED else 0

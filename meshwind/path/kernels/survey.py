@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 
 from meshwind.core.cast import Floats
-from meshwind.path.kernels.geometry import derivative, dot, minus, times
+from meshwind.path.kernels.geometry import derivative, dot, minus, row, times
 from meshwind.path.kernels.segment import SHORTEST_STEP, followed, meets, segment_of
 from meshwind.path.kernels.state import EVALUATIONS, distance
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, S, position, spans_of
@@ -78,13 +78,8 @@ def rises(body, state, least, counters):
     work = np.empty((6, 3))
     for i in range(len(X) - 1):
         if knots_passed(body.spline, state.uv, i) <= 1.0:
-            slopes = 0.0
-            for j in range(i, i + 2):
-                slope = 0.0
-                for k in range(3):
-                    slope += (X[i + 1, k] - X[i, k]) * normal[j, k]
-                slopes += abs(slope)
-            if EVEN_ARC * slopes < least:
+            way = minus(row(X, i + 1), row(X, i))
+            if EVEN_ARC * (abs(dot(way, row(normal, i))) + abs(dot(way, row(normal, i + 1)))) < least:
                 continue
         if over_segment(body, state, i, False, work, counters)[0] > least:
             return True
