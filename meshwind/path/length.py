@@ -64,7 +64,7 @@ def bend(X, i):
     square = 0.0
     for k in range(3):
         square += ((X[i + 1, k] - X[i, k]) / after - (X[i, k] - X[i - 1, k]) / before) ** 2
-    return 4.0 * square / (before + after) ** 2
+    return (2.0 * np.sqrt(square) / (before + after)) ** 2  # where three coincide the square of TINY would be 0
 
 
 @njit(cache=True)

@@ -1,0 +1,84 @@
+"""The course of a fibre in the order in which it is wound: over the part, in the air, and through the turnarounds."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from enum import IntEnum
+
+import numpy as np
+
+from meshwind.core.cast import Floats, Ints, frozen
+
+
+class Kind(IntEnum):
+    """What a point of a fibre does.
+
+    Attributes
+    ----------
+    LAID : int
+        0: it lies on the part.
+    BRIDGE : int
+        1: it is in the air, between two places where the fibre lies on the part.
+    TURN : int
+        2: it is in a turnaround, on its way to the next path or back from it.
+    DWELL : int
+        3: it waits in a turnaround, as a hoop, for the start of the next path.
+    JOIN : int
+        4: it leads from one layer to the next.
+    """
+
+    LAID = 0
+    BRIDGE = 1
+    TURN = 2
+    DWELL = 3
+    JOIN = 4
+
+
+@dataclass(frozen=True)
+class Course:
+    """A stretch of fibre of n points in order of winding; two stretches in a row share the point where they meet.
+
+    Attributes
+    ----------
+    points : ndarray of float, shape (n, 3)
+        Points of the fibre, in the surface's units.
+    normal : ndarray of float, shape (n, 3)
+        Outward unit normals of what the fibre lies on or, in the air, of its foot there.
+    angle : ndarray of float, shape (n,)
+        Winding angle in radians, from the direction along the part: 0 along it, pi/2 for a hoop.
+    slip : ndarray of float, shape (n,)
+        Friction that it needs, |kg|/kn; NaN in the air.
+    kind : ndarray of int, shape (n,)
+        What each point does, as `Kind`.
+    circuit, passed, path : ndarray of int, shape (n,)
+        The circuit and the pass, counted from 0 in the order of winding, and the path, -1 where it is none.
+    """
+
+    points: Floats
+    normal: Floats
+    angle: Floats
+    slip: Floats
+    kind: Ints
+    circuit: Ints
+    passed: Ints
+    path: Ints
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    @property
+    def arc_length(self) -> Floats:
+        """Length (n,) of the polyline up to each point."""
+        steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+        return frozen(np.concatenate([[0.0], np.cumsum(steps)]))
+
+
+def joined(courses: Sequence[Course]) -> Course:
+    """One course from several in a row, each of which starts where the one before ends.
+
+    The first point of each stretch but the first is left out, as the stretch before it has it already.
+    """
+    parts = {
+        each.name: np.concatenate([getattr(course, each.name)[k > 0 :] for k, course in enumerate(courses)])
+        for each in fields(Course)
+    }
+    return Course(**{name: frozen(part) for name, part in parts.items()})
