@@ -10,7 +10,8 @@ from scipy.integrate import solve_ivp
 
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
-from meshwind.filament.collar import angle_after, overrun, section, turned_to_hoop
+from meshwind.filament.collar import angle_after, overrun, turned_to_hoop
+from meshwind.filament.section import section
 
 property_test = settings(max_examples=60, deadline=None, derandomize=True, database=None)
 

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from meshwind.core.cast import Floats
 from meshwind.path import Paths, Status, solve
+from meshwind.path.length import bend
 from meshwind.surface import Surface
 
 SMOOTH = [p for p in (*PROBLEMS, *LONG, *FREEFORM) if not p.name.startswith(("hyperboloid", "elbow"))]
@@ -70,3 +71,7 @@ def test_no_shorter_than_its_chords_nor_changed_by_unit_and_sense(
     if ahead.status[0] == back.status[0] == Status.CONVERGED:
         assert ahead.length[0] == pytest.approx(back.length[0], rel=1e-9)
         assert ahead.length[0] >= chords(ahead)[0] * (1.0 - 1e-6)
+
+
+def test_particles_that_coincide_do_not_bend() -> None:
+    assert bend(np.zeros((3, 3)), 1) == 0.0

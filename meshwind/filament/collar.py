@@ -13,6 +13,7 @@ from scipy.integrate import trapezoid
 
 from meshwind.core.cast import Floats, floats, frozen
 from meshwind.core.errors import BadInputError
+from meshwind.filament.section import Section
 
 
 def turned_to_hoop(angle: float, slip: float) -> float:
@@ -51,55 +52,6 @@ def angle_after(angle: float, slip: float, turned: ArrayLike) -> Floats:
 
 
 @dataclass(frozen=True)
-class Section:
-    """A convex section of a prism: a closed curve on points (n, 2), the last of which is not the first again.
-
-    turned, passed (n,): the angle of its normal, growing, and the length up to each point; perimeter.
-    """
-
-    points: Floats
-    turned: Floats
-    passed: Floats
-    perimeter: float
-
-    def passed_after(self, start: float, turned: Floats) -> Floats:
-        """Length of the section from where its normal has the angle `start` to where it has turned on by (n,)."""
-        loop, length = np.append(self.turned, self.turned[0] + 2.0 * np.pi), np.append(self.passed, self.perimeter)
-
-        def reached(angles: Floats) -> Floats:
-            whole, rest = np.divmod(angles - loop[0], 2.0 * np.pi)
-            return np.asarray(whole * self.perimeter + np.interp(rest + loop[0], loop, length))
-
-        return np.asarray(reached(start + turned) - reached(np.array([start])))
-
-
-def section(points: ArrayLike) -> Section:
-    """Take a convex section from points (n, 2) on it, in the sense in which it is passed.
-
-    Raises
-    ------
-    BadInputError
-        If there are too few points, or the section is not convex.
-    """
-    ring = floats(points, "points", -1, 2)
-    if len(ring) < 3:
-        raise BadInputError(f"a section of {len(ring)} points is no curve; give at least 3")
-    way = np.roll(ring, -1, axis=0) - ring
-    size = np.hypot(way[:, 0], way[:, 1])
-    if not (size > 0.0).all():
-        raise BadInputError("two points of the section coincide; give each once")
-    heading = np.arctan2(way[:, 1], way[:, 0])
-    bend = (heading - np.roll(heading, 1) + np.pi) % (2.0 * np.pi) - np.pi
-    if abs(bend.sum() - 2.0 * np.pi) > 1e-6:
-        raise BadInputError("the section is not passed once against the clock; give its points in that sense")
-    if bend.min() < -1e-9:
-        raise BadInputError("the section is hollow somewhere; a fibre that turns on its collar would not press there")
-    # the normal at a point is half-way between those of its two edges
-    at_edge = heading[0] - 0.5 * np.pi + np.concatenate([[0.0], np.cumsum(bend[1:])])
-    return Section(frozen(ring), frozen(at_edge - 0.5 * bend), frozen(np.append(0.0, np.cumsum(size[:-1]))), size.sum())
-
-
-@dataclass(frozen=True)
 class Overrun:
     """How far a fibre runs over a rim until it is a hoop: along the axis, and its own length."""
 
@@ -128,7 +80,7 @@ def overrun(curve: Section, start: float, angle: float, slip: float, samples: in
         (R / slip) cot(angle).
     """
     turned = np.linspace(0.0, turned_to_hoop(angle, slip), samples)
-    around = curve.passed_after(start, turned)
+    around = curve.passed_at(start + turned)
     along = angle_after(angle, slip, turned)
     axial, fibre = (float(trapezoid(1.0 / ratio(along), around)) for ratio in (np.tan, np.sin))
     return Overrun(axial, fibre)

@@ -3,9 +3,11 @@
 Positions around a rim are in turns, unwrapped in the sense of turning: the part never turns back.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from math import ceil, gcd
+from math import ceil, floor, gcd
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +18,10 @@ from meshwind.filament.pattern import Pattern, check_filaments
 
 _ROUND_OFF = 1e-9
 """Turns that are round-off."""
+_LONGEST = 1000.0
+"""Turns of dwell that no turnaround is worth."""
+Surplus: TypeAlias = Callable[[Ints, Ints, Floats], Floats]
+"""Turns (N,) by which dwells (N,) are longer than needed, of paths that arrive (N,) and those that leave next (N,)."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +113,12 @@ def passes(start: ArrayLike, end: ArrayLike) -> Passes:
 
 
 def join(
-    there: Passes, back: Passes, *, end_dwell: float = 0.0, start_dwell: float = 0.0, filaments: int | None = 1
+    there: Passes,
+    back: Passes,
+    *,
+    end_dwell: float | Surplus = 0.0,
+    start_dwell: float | Surplus = 0.0,
+    filaments: int | None = 1,
 ) -> Joining:
     """Join paths there and paths back to filaments, with as little dwell as closes them.
 
@@ -118,8 +129,9 @@ def join(
     ----------
     there, back : Passes
         As many paths there, from the start rim to the end rim, as back.
-    end_dwell, start_dwell : float, default 0
-        Least dwell at each rim, in turns.
+    end_dwell, start_dwell : float or callable, default 0
+        Least dwell at each rim, in turns; or a function of the paths that arrive (N,), those that leave after them
+        (N,) and the dwells (N,) between, that says how much longer than needed each dwell is, in turns.
     filaments : int or None, default 1
         Number of filaments to close the layer to, a divisor of the paths; None takes what the least dwell gives.
 
@@ -131,7 +143,8 @@ def join(
     Raises
     ------
     BadInputError
-        If there are more paths one way than the other, or the filaments cannot share out the circuits.
+        If there are more paths one way than the other, the filaments cannot share out the circuits, or no dwell is
+        long enough.
 
     Examples
     --------
@@ -147,48 +160,70 @@ def join(
         raise BadInputError(f"{count} paths there but {len(back.start)} back; join as many of each")
     if filaments is not None:
         check_filaments(filaments, count)
-    over = [_Rim(there.end, back.start, end_dwell), _Rim(back.end, there.start, start_dwell)]
+    end, start = _Rim(there.end, back.start, end_dwell), _Rim(back.end, there.start, start_dwell)
     whole = float((there.end - there.start).sum() + (back.end - back.start).sum())
-    least = [rim.least for rim in over]
-    turns = round(whole + sum(float(rim.joined(places)[1].sum()) for rim, places in zip(over, least, strict=True)))
-    more = 0
-    if filaments is not None:
-        while gcd(turns + more, count) != filaments:
-            more += 1
-    (to_back, at_end), (to_there, at_start) = (
-        over[0].joined(least[0] + more // 2),
-        over[1].joined(least[1] + more - more // 2),
-    )
-    return Joining(frozen(to_back), frozen(to_there), frozen(at_end), frozen(at_start), turns + more)
+    at_end, at_start = end.enough(0), start.enough(0)
+    while True:
+        turns = round(whole + end.total(at_end) + start.total(at_start))
+        if filaments is None or gcd(turns, count) == filaments:
+            break
+        # one place more where less dwell is spare: it counts as one turn of the layer at either rim
+        if end.spare(at_end) <= start.spare(at_start):
+            at_end = end.enough(at_end + 1)
+        else:
+            at_start = start.enough(at_start + 1)
+    (to_back, over_end), (to_there, over_start) = end.joined(at_end), start.joined(at_start)
+    return Joining(frozen(to_back), frozen(to_there), frozen(over_end), frozen(over_start), turns)
 
 
 class _Rim:
     """A rim at which paths arrive, at `arriving` (N,), and leave, at `leaving` (N,)."""
 
-    def __init__(self, arriving: Floats, leaving: Floats, dwell: float) -> None:
-        self.arriving, self.leaving = arriving, leaving
+    def __init__(self, arriving: Floats, leaving: Floats, dwell: float | Surplus) -> None:
         self.into, self.out = _order(arriving), _order(leaving)
         self.at, self.off = _within_a_turn(arriving[self.into]), _within_a_turn(leaving[self.out])
+        self.dwell = dwell
         shortest = float((self.off - self.at).min())
-        # a place more lets each leave where the next did: whole turns first, then place by place
-        places = len(arriving) * (ceil(dwell - shortest - _ROUND_OFF) - 1)
-        while self._dwell(places).min() < dwell - _ROUND_OFF:
-            places += 1
-        self.least = places
+        self.first = len(arriving) * (ceil(-shortest - _ROUND_OFF) - 1)
+        """Places with which at least one path leaves where it arrived or before."""
 
-    def _dwell(self, places: int) -> Floats:
-        """Dwells (N,) in the order of arrival, where each leaves so many places on."""
+    def _dwell(self, places: int) -> tuple[Ints, Floats]:
+        """Numbers of those that leave, and dwells (N,), in the order of arrival, so many places beyond the first."""
         count = len(self.at)
-        turned, index = np.divmod(np.arange(count) + places, count)
-        return np.asarray(self.off[index] + turned - self.at)
+        turned, index = np.divmod(np.arange(count) + self.first + places, count)
+        return index, np.asarray(self.off[index] + turned - self.at)
+
+    def total(self, places: int) -> float:
+        """All dwells together."""
+        return float(np.maximum(self._dwell(places)[1], 0.0).sum())
+
+    def spare(self, places: int) -> float:
+        """How much longer than needed the scarcest dwell is, in turns; negative where it is too short."""
+        index, dwell = self._dwell(places)
+        if not callable(self.dwell):
+            return float(dwell.min()) - self.dwell
+        # where a path would have to turn back, no other demand counts
+        return float(np.minimum(self.dwell(self.into, self.out[index], np.maximum(dwell, 0.0)), dwell).min())
+
+    def enough(self, places: int) -> int:
+        """The least number of places, from one on, with which every dwell is long enough."""
+        count = len(self.at)
+        while (spare := self.spare(places)) < -_ROUND_OFF:
+            if not spare > -_LONGEST:
+                raise BadInputError(
+                    f"a turnaround would need a dwell of more than {_LONGEST:g} turns; give another winding angle, or "
+                    "another turnaround"
+                )
+            places += max(count * floor(-spare - 1.0), 1)  # whole turns first, then place by place
+        return places
 
     def joined(self, places: int) -> tuple[Ints, Floats]:
         """Which path (N,) leaves after each that arrives, and the dwell (N,) between."""
-        count = len(self.at)
-        after, dwell = np.empty(count, dtype=np.int64), np.empty(count)
-        after[self.into] = self.out[(np.arange(count) + places) % count]
-        dwell[self.into] = np.maximum(self._dwell(places), 0.0)
-        return after, dwell
+        index, dwell = self._dwell(places)
+        after, between = np.empty(len(index), dtype=np.int64), np.empty(len(index))
+        after[self.into] = self.out[index]
+        between[self.into] = np.maximum(dwell, 0.0)
+        return after, between
 
 
 def _order(positions: Floats) -> Ints:
