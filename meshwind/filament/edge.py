@@ -156,10 +156,11 @@ def legs(on: Edge, paths: Paths, v: float, family: int) -> Legs:
     """The fibres of a family where they cross the rim at v: those of +1 arrive at v=1 and leave at v=0."""
     surface, rows = paths.surface, np.flatnonzero(paths.family == family)
     last = slice(None, -5, -1) if v else slice(0, 4)
-    points, touching = paths.points[rows][:, last], paths.on_surface[rows][:, last].all(axis=1)
+    points = paths.points[rows][:, last]
+    touching: Bools = np.all(paths.on_surface[rows][:, last], axis=1, keepdims=True)
     uv = paths.uv[rows, -1 if v else 0]
     # outwards: from the part over the rim
-    ahead = np.where(touching[:, None], np.einsum("k,nkc->nc", _ONE_SIDED, points), points[:, 0] - points[:, 1])
+    ahead = np.where(touching, np.einsum("k,nkc->nc", _ONE_SIDED, points), points[:, 0] - points[:, 1])
     sense = family if v else -family
     rim = sense * unit(surface.frames(np.ascontiguousarray(uv))[:, SU])
     from_rim = np.arccos(np.clip((unit(ahead) * rim).sum(axis=1), -1.0, 1.0))

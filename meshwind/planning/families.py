@@ -44,11 +44,11 @@ class Families:
     family: Ints
 
 
-def families(surface: Surface, paths: int, revolutions: float) -> Families:
+def families(surface: Surface, paths: int, revolutions: float, *, phase: float = 0.0) -> Families:
     """Spread the end points of two families evenly over the rims.
 
     The starts are spread by arc length over the start rim and the ends likewise over the end rim, for both families
-    the same. Where a rim's arc length is not even in u, the ends keep the mean turn of the whole rim.
+    the same but for a phase. Where a rim's arc length is not even in u, the ends keep the mean turn of the whole rim.
 
     Parameters
     ----------
@@ -58,6 +58,8 @@ def families(surface: Surface, paths: int, revolutions: float) -> Families:
         Number of paths per family, at least 1.
     revolutions : float
         Turns of u from end to end, at least 0: +revolutions for family +1 and -revolutions for family -1.
+    phase : float, default 0
+        Share of the start rim's length by which the starts of family -1 are ahead of those of family +1.
 
     Returns
     -------
@@ -89,12 +91,13 @@ def families(surface: Surface, paths: int, revolutions: float) -> Families:
     if not (np.isfinite(revolutions) and revolutions >= 0):
         raise BadInputError(f"revolutions is {revolutions}; give a number >= 0")
     turn = np.arange(paths) / paths
-    first = rim_parameters(surface, 0.0, turn)
-    start = np.stack([first, np.zeros(paths)], axis=1)
-    last = [rim_parameters(surface, 1.0, turn + turned) for turned in (revolutions, -revolutions)]
-    ends = [np.stack([u, np.ones(paths)], axis=1) for u in last]
-    family = np.repeat([1, -1], paths)
-    return Families(frozen(np.concatenate([start, start])), frozen(np.concatenate(ends)), frozen(family))
+    first = np.concatenate([turn, turn + phase])
+    last = np.concatenate([turn + revolutions, turn + phase - revolutions])
+    start, end = (
+        np.stack([rim_parameters(surface, v, share), np.full(2 * paths, v)], axis=1)
+        for v, share in ((0.0, first), (1.0, last))
+    )
+    return Families(frozen(start), frozen(end), frozen(np.repeat([1, -1], paths)))
 
 
 def families_between(start: Floats, end: Floats) -> Families:

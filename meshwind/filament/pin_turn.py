@@ -1,0 +1,175 @@
+"""Turnarounds over pins: the fibre goes straight on over the rim, round a pin, and along behind the pins.
+
+Behind the pins it is a hoop on the prism, which needs no friction; the pins carry what turns it.  With a shaft it goes
+from the pin inwards to a shaft on the axis, round it, and out again.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from meshwind.core.cast import Floats
+from meshwind.filament.course import Course, Kind
+from meshwind.filament.edge import Edge, Legs
+from meshwind.filament.turnaround import Stretch, course, straight
+
+_STEEPEST = np.radians(85.0)
+"""Winding angle above which a leg is taken to have this one: a hoop never comes up to the pins."""
+_BEND = 9
+"""Points of a fibre round a pin."""
+_STEP = np.radians(3.0)
+"""Turn of the fibre between points round the shaft."""
+
+
+@dataclass
+class Pins:
+    """Pins that stand out from the prism at one height.
+
+    Parameters
+    ----------
+    edge : Edge
+        The prism.
+    height : float
+        Height of the pins' middles over the rim's highest point.
+    radius : float
+        Radius of a pin.
+    pitch : float
+        Distance of the pins: a fibre is held by two of them at least.
+    """
+
+    edge: Edge
+    height: float
+    radius: float
+    pitch: float
+    name: str = field(default="pins", init=False)
+    rule: str = field(default="held by pins; the hoop behind them needs no friction", init=False)
+    slip: float = field(default=0.0, init=False)
+
+    @property
+    def reach(self) -> float:
+        """Height of the fibre behind the pins over the rim's highest point."""
+        return self.height + self.radius
+
+    def _legs(self, legs: Legs) -> tuple[Floats, Floats, Floats]:
+        """Angle of each leg, where it meets its pin, and where it has gone round it: (n,), from where it starts."""
+        angle = np.minimum(legs.angle, _STEEPEST)
+        climb = self.edge.highest + self.height + self.radius * np.sin(angle) - legs.height
+        meets = climb * np.tan(angle)
+        return angle, meets, meets + self.radius * np.cos(angle)
+
+    def surplus(self, arriving: Legs, leaving: Legs, later: Floats) -> Floats:
+        """Turns (n,) to spare beyond the ways to the pins and back."""
+        return np.asarray(
+            (later - arriving.around - self._legs(arriving)[2] - self._legs(leaving)[2] - self.pitch)
+            / self.edge.hull.perimeter
+        )
+
+    def courses(self, arriving: Legs, leaving: Legs, later: Floats) -> list[Course]:
+        """See `Turnaround.courses`."""
+        made = []
+        for k in range(len(later)):
+            into = self._over_pin(arriving.chosen(np.array([k])), float(arriving.around[k]))
+            away = [part.backwards for part in self._over_pin(leaving.chosen(np.array([k])), float(later[k]))[::-1]]
+            ends = [(float(one.around[i]), float(one.height[i])) for one, i in ((into[-1], -1), (away[0], 0))]
+            hoop = straight(ends[0], ends[1], self.edge, Kind.DWELL)
+            made.append(course(self.edge, [*into, hoop, *away], arriving.points[k], leaving.points[k]))
+        return made
+
+    def _over_pin(self, leg: Legs, start: float) -> list[Stretch]:
+        """The way of one leg from the rim, at `start` along the hull, until it is a hoop behind its pin."""
+        angle, meets, _ = (float(each[0]) for each in self._legs(leg))
+        sense, base = leg.sense, float(leg.height[0])
+        level = self.edge.highest + self.height
+        at_pin = (start + sense * meets, level + self.radius * np.sin(angle))
+        up = straight((start, base), at_pin, self.edge, Kind.TURN)
+        bend = np.linspace(angle, 0.5 * np.pi, _BEND)
+        middle = at_pin[0] + sense * self.radius * np.cos(angle)
+        around = middle - sense * self.radius * np.cos(bend)
+        return [up, Stretch(around, level + self.radius * np.sin(bend), bend, np.zeros(_BEND), Kind.TURN)]
+
+
+@dataclass
+class Shaft:
+    """A shaft on the axis, behind pins that the fibre passes between.
+
+    Parameters
+    ----------
+    edge : Edge
+        The prism.
+    height : float
+        Height, over the rim's highest point, at which the fibre passes the pins and goes round the shaft.
+    radius : float
+        Radius of the shaft, less than the hull's least.
+    """
+
+    edge: Edge
+    height: float
+    radius: float
+    name: str = field(default="shaft", init=False)
+    rule: str = field(default="held by pins and round a shaft, where it needs no friction", init=False)
+    slip: float = field(default=0.0, init=False)
+
+    @property
+    def reach(self) -> float:
+        """Height of the fibre round the shaft over the rim's highest point."""
+        return self.height
+
+    def _at_pins(self, legs: Legs, start: Floats) -> tuple[Floats, Floats, Floats]:
+        """Length along the hull (n,) where legs pass the pins, its polar angle, unwrapped, and the distance there."""
+        angle = np.minimum(legs.angle, _STEEPEST)
+        at = start + legs.sense * (self.edge.highest + self.height - legs.height) * np.tan(angle)
+        flat = self.edge.hull.at(at)
+        turn = 2.0 * np.pi * at / self.edge.hull.perimeter
+        polar = np.arctan2(flat[:, 1], flat[:, 0])
+        zero = float(np.arctan2(*self.edge.hull.points[0][::-1]))
+        polar = polar - zero
+        polar += 2.0 * np.pi * np.round((turn - polar) / (2.0 * np.pi))
+        return at, polar + zero, np.hypot(flat[:, 0], flat[:, 1])
+
+    def surplus(self, arriving: Legs, leaving: Legs, later: Floats) -> Floats:
+        """Turns (n,) to spare beyond it takes to reach the shaft and to leave it."""
+        _, first, near = self._at_pins(arriving, arriving.around)
+        _, last, far = self._at_pins(leaving, later)
+        least = np.arccos(self.radius / near) + np.arccos(self.radius / far)
+        return np.asarray((last - first - least) / (2.0 * np.pi))
+
+    def courses(self, arriving: Legs, leaving: Legs, later: Floats) -> list[Course]:
+        """See `Turnaround.courses`."""
+        at, first, near = self._at_pins(arriving, arriving.around)
+        end, last, far = self._at_pins(leaving, later)
+        level = self.edge.highest + self.height
+        made = []
+        for k in range(len(later)):
+            up, down = (
+                straight((float(leg.around[k] if leg is arriving else later[k]), float(leg.height[k])),
+                         (float(stop[k]), level), self.edge, Kind.TURN)
+                for leg, stop in ((arriving, at), (leaving, end))
+            )  # fmt: skip
+            over = [course(self.edge, [up], arriving.points[k], self.edge.points(up.around[-1:], up.height[-1:])[0])]
+            touch = [
+                float(first[k] + np.arccos(self.radius / near[k])),
+                float(last[k] - np.arccos(self.radius / far[k])),
+            ]
+            over.append(self._round(touch[0], max(touch[1], touch[0])))
+            home = self.edge.points(down.around[-1:], down.height[-1:])[0]
+            over.append(course(self.edge, [down.backwards], home, leaving.points[k]))
+            made.append(_in_a_row(over))
+        return made
+
+    def _round(self, first: float, last: float) -> Course:
+        """The way round the shaft between two polar angles."""
+        polar = np.linspace(first, last, int(np.ceil((last - first) / _STEP)) + 2)
+        flat = np.stack([np.cos(polar), np.sin(polar)], axis=1)
+        normal = flat @ self.edge.across
+        points = self.edge.origin + self.radius * normal + (self.edge.highest + self.height) * self.edge.axis
+        none = np.full(len(polar), -1)
+        kind = np.full(len(polar), Kind.DWELL)
+        kind[0] = Kind.TURN  # it comes in through the air
+        return Course(points, normal, np.full_like(polar, 0.5 * np.pi), np.zeros_like(polar), kind, none, none, none)
+
+
+def _in_a_row(courses: list[Course]) -> Course:
+    """Courses one after another, between which the fibre goes straight."""
+    first, *others = courses
+    arrays = ("points", "normal", "angle", "slip", "kind", "circuit", "passed", "path")
+    return Course(*(np.concatenate([getattr(each, name) for each in (first, *others)]) for name in arrays))
