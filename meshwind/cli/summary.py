@@ -5,7 +5,14 @@ from collections.abc import Sequence
 from meshwind.appearance.words import quantity, ratio, size
 from meshwind.core.units import reported_unit
 from meshwind.results.redesign_report_types import RedesignFigures, RedesignReport, RoundFigures
-from meshwind.results.report_types import Failure, PathsFigures, Report, SurfaceFigures
+from meshwind.results.report_types import (
+    AlternativeFigures,
+    Failure,
+    PathsFigures,
+    PatternFigures,
+    Report,
+    SurfaceFigures,
+)
 
 
 def run_lines(report: Report) -> list[str]:
@@ -18,6 +25,7 @@ def run_lines(report: Report) -> list[str]:
         *_surface(report["surface"], part["diagonal"], units),
         *_paths(report["paths"], units),
         *_layup(report, units),
+        *_patterns(report.get("pattern", []), units),
         *_not_converged(report["paths"]["not_converged"], report["paths"]["advice"]["text"]),
         *(f"repair    {act}" for act in part["repairs"]),
         *(note_line(note) for note in report["notes"]),
@@ -85,6 +93,37 @@ def _layup(report: Report, units: str) -> list[str]:
     if fibre["mass"] is not None:
         lines.append(f"fibre     {quantity(fibre['length'], units)}, mass {fibre['mass']:.4g}")
     return lines
+
+
+def _patterns(layers: Sequence[PatternFigures], units: str) -> list[str]:
+    """How each layer closes, and what else it could close in."""
+    lines = []
+    for layer in layers:
+        angle, dwell = layer["angle"], layer["dwell"]
+        lines += [
+            f"filament  {layer['words']}; {quantity(layer['fibre_length'], units)}, {layer['angle']['min']:.1f} to "
+            f"{angle['max']:.1f} degrees (median {angle['median']:.1f})",
+            f"turns     {_turn(layer, 0)}, dwell {dwell['start']['mean']:.3f}; {_turn(layer, 1)}, dwell "
+            f"{dwell['end']['mean']:.3f} turns (mean)",
+        ]
+        others = [_alternative(each, angle["median"] or 0.0) for each in layer["alternatives"]]
+        if others:
+            lines.append(f"or        {'; '.join(others)}")
+    return lines
+
+
+def _alternative(each: AlternativeFigures, angle: float) -> str:
+    side = "leading" if each["leading"] else "lagging"
+    dwell = "" if each["dwell"] is None else f", or dwell {each['dwell']:+.3f}"
+    return (
+        f"{each['circuits']} circuits in {each['turns']} turns, {each['pattern_number']} {side} "
+        f"({each['angle'] - angle:+.2f} degrees, cover {each['cover']:.3f}{dwell})"
+    )
+
+
+def _turn(layer: PatternFigures, k: int) -> str:
+    turn = layer["turnarounds"][k]
+    return f"{turn['kind']} at the {turn['end']}"
 
 
 def _not_converged(failures: Sequence[Failure], holds: str) -> list[str]:

@@ -39,6 +39,8 @@ _PIN_WIDE, _PIN_HIGH = 1 / 6, 1 / 2
 """Radius of a pin, and height of its middle over the rim, over the distance of the paths along the rim."""
 _SHAFT = 0.5
 """Radius of a shaft over the least distance of the hull from its axis."""
+_LONGEST_DWELL = 20.0
+"""Turns that a turnaround may take: the fibre of a longer one would be most of the layer."""
 _LONGEST_COLLAR = 1.0
 """Collar over the rim's mean diameter, above which pins are taken instead."""
 
@@ -178,6 +180,11 @@ class _Pairs:
             if short <= _ROOM:
                 break
             dwell += short
+            if not dwell < _LONGEST_DWELL:
+                raise BadInputError(
+                    f"the turnaround at the {'end' if self.end.v else 'start'} ({self.end.turnaround.name}) would take "
+                    f"more than {_LONGEST_DWELL:g} turns; give pins or a shaft, more friction, or a larger angle"
+                )
         return dwell + 2.0 * _ROOM
 
 
@@ -224,19 +231,35 @@ def close_layer(surface: Surface, plan: LayerPlan) -> ClosedLayer:
 class _Planned:
     """A pattern of N circuits in so many turns, and the dwells in turns at the start and at the end."""
 
-    circuits: int
+    plan: LayerPlan
     turns: int
     dwells: tuple[float, float]
 
     @property
     def revolutions(self) -> float:
         """Turns of a path from end to end."""
-        return 0.5 * (self.turns / self.circuits - sum(self.dwells))
+        return 0.5 * (self.turns / self.plan.paths - sum(self.dwells))
+
+    @property
+    def near(self) -> bool:
+        """Whether the revolutions are next to those that were asked for."""
+        return self.revolutions >= 0.0 and abs(self.revolutions - self.plan.revolutions) <= _FAR / self.plan.paths
 
     def with_room(self, needed: list[float]) -> "_Planned":
-        """The same pattern with dwells no shorter than needed."""
+        """The same pattern with dwells no shorter than needed; or, as the revolutions stay, with longer ones."""
         start, end = map(max, self.dwells, needed)
-        return replace(self, dwells=(start, end))
+        moved = replace(self, dwells=(start, end))
+        return moved if moved.near else _as_asked(self.plan, [start, end])
+
+
+def _as_asked(plan: LayerPlan, needed: list[float]) -> _Planned:
+    """The nearest pattern with the revolutions that were asked for: the filament waits as hoops until it closes."""
+    pattern = patterns(plan.paths, 2.0 * plan.revolutions + sum(needed))[0]
+    more = 0.5 * pattern.dwell
+    # round-off must not leave fewer revolutions than none
+    return _Planned(
+        plan, pattern.turns, (needed[0] + more, min(needed[1] + more, pattern.turns / plan.paths - needed[0] - more))
+    )
 
 
 def _planned(surface: Surface, plan: LayerPlan, ends: list[_End], scouts: Paths) -> _Planned:
@@ -247,10 +270,10 @@ def _planned(surface: Surface, plan: LayerPlan, ends: list[_End], scouts: Paths)
     """
     needed = [end.pairs(scouts).least_dwell() for end in ends]
     pattern = nearest_pattern(plan.paths, 2.0 * plan.revolutions + sum(needed))
-    planned = _Planned(plan.paths, pattern.turns, (needed[0], needed[1]))
+    planned = _Planned(plan, pattern.turns, (needed[0], needed[1]))
     short = np.inf
     for _ in range(_SETTLED_IN):
-        if planned.revolutions < 0.0 or abs(planned.revolutions - plan.revolutions) > _FAR / plan.paths:
+        if not planned.near:
             break
         tried, _ = _at_rest(_solved(surface, plan, len(scouts) // 2, planned.revolutions, -planned.dwells[0]))
         now = np.array([end.pairs(tried).least_dwell() for end in ends]) - planned.dwells
@@ -260,9 +283,7 @@ def _planned(surface: Surface, plan: LayerPlan, ends: list[_End], scouts: Paths)
         short = now.sum()
         start, end = np.array(planned.dwells) + factor * now
         planned = replace(planned, dwells=(float(start), float(end)))
-    pattern = patterns(plan.paths, 2.0 * plan.revolutions + sum(needed))[0]
-    more = 0.5 * pattern.dwell
-    return _Planned(plan.paths, pattern.turns, (needed[0] + more, needed[1] + more))
+    return _as_asked(plan, needed)
 
 
 def _solved(surface: Surface, plan: LayerPlan, count: int, revolutions: float, phase: float) -> Paths:

@@ -9,8 +9,6 @@ from meshwind.core.cast import Floats
 from meshwind.filament.course import Course, Kind
 from meshwind.filament.edge import Edge, Legs
 
-TURNAROUNDS = ("collar", "pins", "shaft")
-"""The turnarounds over a rim."""
 _STEP = np.radians(3.0)
 """Turn of the prism's normal between points of a straight stretch."""
 
@@ -39,8 +37,8 @@ class Stretch:
 class Turnaround(Protocol):
     """A turnaround at one end of the part.
 
-    name: its word among `TURNAROUNDS`; edge: the prism that it stands on; rule: how its hold is proved; slip: the
-    largest friction that it needs.
+    name: its word of `core.defaults.TURNAROUNDS`; edge: the prism that it stands on; rule: how its hold is proved;
+    slip: the largest friction that it needs.
     """
 
     name: str

@@ -12,6 +12,7 @@ import numpy as np
 from meshwind.chart.chart import Chart
 from meshwind.core.units import UNKNOWN
 from meshwind.core.version import version
+from meshwind.filament.closing import ClosedLayer
 from meshwind.layup.layup import Layup
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.path.paths import Paths, Status
@@ -28,6 +29,7 @@ from meshwind.results.layup_figures import (
     windability_figures,
 )
 from meshwind.results.other_rest_figures import other_rest_figures
+from meshwind.results.pattern_figures import pattern_figures
 from meshwind.results.report_types import (
     AdviceFigures,
     Distances,
@@ -48,7 +50,8 @@ class RunFacts:
     """Facts about a run, beside its layup, for the report.
 
     tolerance: that of the fit; seconds: wall time per stage; notes: messages for the user; chosen, spaced: how
-    revolutions and spacing were found, if they were; linear_density: mass of the fibre over its length.
+    revolutions and spacing were found, if they were; linear_density: mass of the fibre over its length;
+    closed: the layer, if it is wound as one filament.
     """
 
     revolutions: float
@@ -59,6 +62,7 @@ class RunFacts:
     chosen: Revolutions | None = None
     spaced: Spaced | None = None
     linear_density: float | None = None
+    closed: ClosedLayer | None = None
 
 
 def report(layup: Layup, mesh: Mesh, chart: Chart | None, run: RunFacts) -> Report:
@@ -86,6 +90,8 @@ def report(layup: Layup, mesh: Mesh, chart: Chart | None, run: RunFacts) -> Repo
     }
     if run.chosen is not None:
         figures["revolutions"] = revolution_figures(run.chosen)
+    if run.closed is not None:
+        figures["pattern"] = [pattern_figures(run.closed)]
     result: Report = plain(figures)
     return result
 

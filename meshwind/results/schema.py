@@ -63,6 +63,12 @@ ANGLE = Field("angle", DEGREES)
 
 # the fibres
 
+WINDING_ANGLE = Field("angle", DEGREES)
+"""From the direction along the part: 0 along it, 90 for a hoop."""
+KIND = Field("kind", dtype="uint8")
+"""0 laid on the part, 1 bridge, 2 turnaround, 3 dwell, 4 join between layers."""
+LAYER, CIRCUIT, PASS = (Field(name, dtype="int64") for name in ("layer", "circuit", "pass"))
+FILAMENT_ID = Field("filament", dtype="int64")
 SLIP = Field("slip")
 """Required friction |kg| / kn: geodesic over normal curvature."""
 ARC_LENGTH = Field("arc_length", LENGTHS)
@@ -79,6 +85,14 @@ PATHS = File(
 RESOLVED = Field("resolved", dtype="uint8")
 """Whether a bridge lies further off the surface somewhere than the threshold, or than this may lie off the part."""
 BRIDGES = File("bridges.vtp", point_data=(GAP,), cell_data=(PATH, LENGTH, MAX_GAP, RESOLVED))
+
+THICKNESS = Field("thickness", LENGTHS)
+FILAMENT = File(
+    "filament.vtp",
+    point_data=(KIND, LAYER, CIRCUIT, PASS, PATH, ARC_LENGTH, WINDING_ANGLE, SLIP, NORMAL, THICKNESS),
+    cell_data=(FILAMENT_ID, LENGTH),
+)
+"""Present where the winding is continuous."""
 
 PATH_A = Field("path_a", dtype="int64")
 PATH_B = Field("path_b", dtype="int64")
@@ -189,7 +203,7 @@ def family_fields(family: int) -> FamilyFields:
     )
 
 
-U, V, THICKNESS = Field("u"), Field("v"), Field("thickness", LENGTHS)
+U, V = Field("u"), Field("v")
 _FIBRE_FIELD = (*family_fields(1), *family_fields(-1), THICKNESS, NORMAL)
 FIBERS, FIBERS_LEGACY = (File(name, point_data=(U, V), cell_data=_FIBRE_FIELD) for name in ("fibers.vtu", "fibers.vtk"))
 """Fields of families that the run does not have are missing."""
@@ -220,7 +234,22 @@ EXPORTS = re.compile(
 """Names of exported files except VIEWER; they are removed when the run is replaced."""
 
 RESULTS = frozenset(
-    (PATHS, BRIDGES, CROSSINGS, QUADS, QUADS_OBJ, SURFACE, SPLINE, CHART, EDITED, EDITED_PLY, REPORT, CONFIG, VIEWER)
+    (
+        PATHS,
+        BRIDGES,
+        FILAMENT,
+        CROSSINGS,
+        QUADS,
+        QUADS_OBJ,
+        SURFACE,
+        SPLINE,
+        CHART,
+        EDITED,
+        EDITED_PLY,
+        REPORT,
+        CONFIG,
+        VIEWER,
+    )
     + (FIT_PICTURE, REVOLUTIONS_PICTURE, BEFORE, AFTER)
     + tuple(picture(name) for name in (*PICTURES, REDESIGN, SHEET))
     + tuple(movie(kind) for kind in MOVIES)

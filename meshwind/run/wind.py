@@ -19,10 +19,11 @@ from meshwind.pictures.subject import subject_in
 from meshwind.planning.pins import check_pins
 from meshwind.results import folder
 from meshwind.results.config_file import write_config
+from meshwind.results.filament_file import filaments_of, write_filaments
 from meshwind.results.layup_figures import parted
 from meshwind.results.report import RunFacts, report, write_report
 from meshwind.results.report_types import Report
-from meshwind.results.schema import CONFIG, FIT_PICTURE, REPORT, REVOLUTIONS_PICTURE, SHEET, WINDING, picture
+from meshwind.results.schema import CONFIG, FILAMENT, FIT_PICTURE, REPORT, REVOLUTIONS_PICTURE, SHEET, WINDING, picture
 from meshwind.results.write import write_files
 from meshwind.surface import Surface
 from meshwind.workflow.clock import Clock, Progress
@@ -56,6 +57,8 @@ class Result(Winding):
         How the revolutions were chosen, with revolutions="auto".
     spaced : Spaced or None
         How paths were added, with `spacing`.
+    closed : ClosedLayer or None
+        The layer as one filament, with `continuous`.
     source : Path or None
         File of the mesh, if it came from one.
 
@@ -96,7 +99,9 @@ class Result(Winding):
 
     @property
     def revolutions(self) -> float:
-        """Revolutions from end to end, as chosen where they were "auto"."""
+        """Revolutions from end to end, as chosen where they were "auto", and as they close where they are to."""
+        if self.closed is not None:
+            return self.closed.revolutions
         return float(self.options.revolutions) if self.chosen is None else self.chosen.choice
 
     def report(self) -> Report:
@@ -123,6 +128,7 @@ class Result(Winding):
             chosen=self.chosen,
             spaced=self.spaced,
             linear_density=self.options.linear_density,
+            closed=self.closed,
         )
         return report(self.layup, self.mesh, self.chart, run)
 
@@ -182,6 +188,9 @@ def wind(  # noqa: PLR0913
     band_width: float | None = Options.band_width,
     linear_density: float | None = Options.linear_density,
     pins: str | PathLike[str] | None = Options.pins,
+    continuous: bool = Options.continuous,
+    turn_start: str = Options.turn_start,
+    turn_end: str = Options.turn_end,
     out: str | PathLike[str] | None = None,
     overwrite: bool = False,
     render: bool = True,
@@ -236,6 +245,10 @@ def wind(  # noqa: PLR0913
         Mass of the fibre per unit of its length, from which its mass is computed.
     pins : str or PathLike, optional
         CSV file of the paths' ends, see `read_pins`.  By default they are spread evenly over the rims.
+    continuous : bool, default False
+        Whether to wind one closed filament, with its turnarounds at both ends; revolutions move to where it closes.
+    turn_start, turn_end : {"auto", "collar", "pins", "shaft"}, default "auto"
+        Turnaround at each end; "auto" takes a collar where friction holds on a short one, and pins elsewhere.
     out : str or PathLike, optional
         Folder for the results.  By default nothing is written.
     overwrite : bool, default False
@@ -273,6 +286,7 @@ def wind(  # noqa: PLR0913
     options = Options(
         paths, revolutions, particles, friction, component, ends, opening, side, opening_by,
         tolerance, threshold, worst_fit, units, spacing, band_width, linear_density, pinned,
+        continuous, turn_start, turn_end,
     )  # fmt: skip
     clock = Clock(progress)
     target = None if out is None else _folder(out)
@@ -308,6 +322,8 @@ def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: Cloc
             wall = result.chart.annulus.wall
             measured = result.mesh if wall is None else wall.skin
             write_files(staging, result.layup, measured, result.mesh.units)
+            if result.closed is not None:
+                write_filaments(staging / FILAMENT, filaments_of(result.closed), result.mesh.units)
             if result.chosen is not None and render:
                 draw_revolutions(staging / REVOLUTIONS_PICTURE, result.chosen, result.mesh.name)
         if render:

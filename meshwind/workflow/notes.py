@@ -7,6 +7,7 @@ import numpy as np
 from meshwind.appearance.words import power, quantity, ratio
 from meshwind.chart import Chart
 from meshwind.core.errors import BadInputError
+from meshwind.filament.closing import ClosedLayer
 from meshwind.layup.layup import Layup
 from meshwind.mesh import Annulus, Mesh
 from meshwind.mesh.opening.branches import BRANCHES, CUT
@@ -45,6 +46,12 @@ _CAPS = (
     "its flat ends meet the flank at sharp edges; leave the flat ends off the mesh, or open them up to the edge by "
     "--opening"
 )
+_SAME_TURNS = 1e-9
+"""Revolutions that differ by less are the same."""
+_STANDS_UP = 5.0
+"""Degrees by which a turnaround may stand up from the part at a rim without a warning."""
+_HOLLOW = 1e-3
+"""Share of the diagonal by which a rim may be hollow without a note."""
 _HELD = 0.2
 """Vertices that are off the surface by less than this share of what the facets are off by lie on it ..."""
 _ON_PART = 5e-3
@@ -131,6 +138,40 @@ def _elsewhere(rests: OtherRests, path: int, units: str) -> str:
         )
     side = "left" if shift > 0.0 else "right"
     return f"path {path} {where} if it were laid {quantity(abs(shift), units, 2)} further to the {side} at first"
+
+
+def about_filament(layer: ClosedLayer, units: str = "") -> tuple[Note, ...]:
+    """Notes on how a layer closes, what turns at its ends, and what does not hold there."""
+    asked, wound = layer.plan.revolutions, layer.revolutions
+    notes = []
+    if abs(wound - asked) >= _SAME_TURNS:
+        notes.append(Note(f"revolutions moved from {asked:.6g} to {wound:.6g}, with which the filament closes"))
+    if layer.left_out:
+        notes.append(
+            Note(f"{layer.left_out} paths are not in the filament, as some are not at rest: the layer has gaps", True)
+        )
+    for name, turn in zip(("start", "end"), layer.turnarounds, strict=True):
+        held = f"at slip {turn.slip:g}" if turn.slip > 0.0 else "without friction"
+        notes.append(
+            Note(f"{turn.name} at the {name}, {quantity(turn.reach, units, 3)} beyond the rim, {held}: {turn.rule}")
+        )
+        standing = -np.degrees(turn.edge.crease[0])
+        if standing > _STANDS_UP:
+            notes.append(
+                Note(
+                    f"at the {name} the rim flares: what continues it stands up from the part by up to {standing:.0f} "
+                    "degrees, and fibres lift off there; open the part further inside",
+                    True,
+                )
+            )
+        if turn.edge.hollow > _HOLLOW * layer.paths.surface.size:
+            notes.append(
+                Note(
+                    f"the rim at the {name} is hollow by up to {quantity(turn.edge.hollow, units, 2)}: turnarounds go "
+                    "straight over that"
+                )
+            )
+    return tuple(notes)
 
 
 def about_layup(layup: Layup) -> tuple[Note, ...]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, fields
 from math import isfinite
 from numbers import Integral, Real
 
-from meshwind.core.defaults import FIT_TOLERANCE, OPENED_BY, PARTICLES, SIDES, STEPS_PER_TURN
+from meshwind.core.defaults import FIT_TOLERANCE, OPENED_BY, PARTICLES, SIDES, STEPS_PER_TURN, TURNAROUNDS
 from meshwind.core.errors import BadInputError
 from meshwind.core.option import option
 from meshwind.core.parsing import AUTO, count, shortened, turns
@@ -150,6 +150,25 @@ class Options:
         ),
     )
 
+    continuous: bool = field(
+        default=False,
+        metadata=option("Wind each layer as one closed filament, with its turnarounds at both ends", FIBRES),
+    )
+    turn_start: str = field(
+        default=AUTO,
+        metadata=option(
+            "Turnaround at the start: collar, pins, shaft, or auto, a collar where friction holds on a short one and "
+            "pins elsewhere",
+            FIBRES,
+            metavar="KIND",
+            words=(AUTO, *TURNAROUNDS),
+        ),
+    )
+    turn_end: str = field(
+        default=AUTO,
+        metadata=option("Turnaround at the end, likewise", FIBRES, metavar="KIND", words=(AUTO, *TURNAROUNDS)),
+    )
+
     def __post_init__(self) -> None:
         from meshwind.mesh.opening.choose_ends import parse_ends  # late: help shows these fields without loading NumPy
 
@@ -177,6 +196,7 @@ class Options:
                 set_(self, name, _number(getattr(self, name), name, 0.0, above=True))
         if self.pins is not None and not (isinstance(self.pins, str) and self.pins.strip()):
             raise BadInputError(f"pins is {_text(self.pins)}; give the path of a CSV file of the paths' ends")
+        _check_turns(self)
         if self.pins is not None and self.spacing is not None:
             raise BadInputError("pins say where all paths end, and spacing adds paths between them; give one of both")
         _check_memory(
@@ -187,6 +207,19 @@ class Options:
         """The options by name, as they stand in files: "auto" for a number of particles that is to be chosen."""
         values = {each.name: getattr(self, each.name) for each in fields(self)}
         return values | {"particles": AUTO if self.particles is None else self.particles}
+
+
+def _check_turns(options: Options) -> None:
+    """Raise BadInputError for turnarounds without a filament, and for what cannot be wound as one."""
+    for name in ("turn_start", "turn_end"):
+        _check_word(getattr(options, name), name, (AUTO, *TURNAROUNDS))
+        if getattr(options, name) != AUTO and not options.continuous:
+            raise BadInputError(f"{name} is given without continuous; set continuous (--continuous) as well")
+    for name in ("spacing", "pins"):
+        if options.continuous and getattr(options, name) is not None:
+            raise BadInputError(
+                f"continuous needs paths that are spread evenly over the rims, and {name} sets others; give paths"
+            )
 
 
 def _check_resolution(revolutions: float | str, particles: int) -> None:

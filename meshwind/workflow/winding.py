@@ -5,6 +5,7 @@ from pathlib import Path
 
 from meshwind.chart import Chart
 from meshwind.core.parsing import AUTO
+from meshwind.filament.closing import ClosedLayer, LayerPlan, close_layer
 from meshwind.layup.layup import Layup, assess
 from meshwind.mesh import Mesh
 from meshwind.path import Paths, solve
@@ -19,6 +20,7 @@ from meshwind.workflow.notes import (
     Note,
     about_choice,
     about_contact,
+    about_filament,
     about_file,
     about_fit,
     about_layup,
@@ -45,6 +47,7 @@ class Winding:
     chosen: Revolutions | None = None
     spaced: Spaced | None = None
     source: Path | None = None
+    closed: ClosedLayer | None = None
 
 
 def wind_part(part: Part, options: Options, command: str, clock: Clock) -> Winding:
@@ -61,17 +64,19 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock) -> Windi
     chosen = chosen_revolutions(surface, options, clock, friction)
     revolutions = float(options.revolutions) if chosen is None else chosen.choice
     with clock.stage("wind"):
-        laid = lay(surface, options, revolutions, friction)
+        closed = close(surface, options, revolutions, friction) if options.continuous else None
+        laid = lay(surface, options, revolutions, friction) if closed is None else closed.paths
         spaced = None if options.spacing is None else space_out(laid, revolutions, options.spacing, friction)
         laid = laid if spaced is None else spaced.paths
         notes = (*notes, *about_paths(laid), *about_choice(chosen), *about_spacing(spaced, units))
+        notes = notes if closed is None else (*notes, *about_filament(closed, units))
         notes = (*notes, *about_contact(laid, units), *about_other_rests(laid, units))
     with clock.stage("assess"):
         layup = assess(laid, options.band_width)
         notes = (*notes, *about_layup(layup))
     source = part.source
     return Winding(
-        source.mesh, part.chart, layup, options, command, clock.seconds, notes, chosen, spaced, source.file
+        source.mesh, part.chart, layup, options, command, clock.seconds, notes, chosen, spaced, source.file, closed
     )  # fmt: skip
 
 
@@ -82,6 +87,12 @@ def lay(surface: Surface, options: Options, revolutions: float, friction: float 
     if laid.asked is None or options.pins is None or pin_table(options.pins).has(PARAMETRIC):
         return laid
     return replace(laid, asked=replace(laid.asked, turns=False))  # pins in space stay where they are
+
+
+def close(surface: Surface, options: Options, revolutions: float, friction: float | Friction = 0.0) -> ClosedLayer:
+    """Wind the layer as one filament."""
+    turns = (options.turn_start, options.turn_end)
+    return close_layer(surface, LayerPlan(options.paths, revolutions, friction, options.particles, turns))
 
 
 def _ends(surface: Surface, options: Options, revolutions: float) -> Families:

@@ -1,0 +1,61 @@
+"""The figures of closed layers for the report: pattern, turnarounds, angle and what else could be wound."""
+
+import numpy as np
+
+from meshwind.core.cast import Floats
+from meshwind.filament.alternatives import alternatives
+from meshwind.filament.closing import ClosedLayer
+from meshwind.path.winding_angle import winding_angle
+from meshwind.results.report_types import AlternativeFigures, MeanSpread, PatternFigures, TurnaroundFigures
+
+
+def pattern_figures(layer: ClosedLayer) -> PatternFigures:
+    """The figures of one closed layer."""
+    pattern, joining = layer.pattern, layer.joining
+    angle = np.degrees(winding_angle(layer.paths))
+    median = float(np.median(angle))
+    dwells = float(joining.start_dwell.mean() + joining.end_dwell.mean())
+    return {
+        "circuits": pattern.circuits,
+        "shift": pattern.shift,
+        "turns": pattern.turns,
+        "pattern_number": pattern.number,
+        "leading": pattern.leading,
+        "filaments": pattern.filaments,
+        "words": pattern.words,
+        "revolutions": {"asked": layer.plan.revolutions, "wound": layer.revolutions},
+        "dwell": {"start": mean_spread(joining.start_dwell), "end": mean_spread(joining.end_dwell)},
+        "angle": {"min": float(angle.min()), "median": median, "max": float(angle.max())},
+        "turnarounds": [_turnaround(layer, k) for k in (0, 1)],
+        "fibre_length": layer.length,
+        "left_out": layer.left_out,
+        "alternatives": [
+            AlternativeFigures(
+                circuits=each.pattern.circuits,
+                turns=each.pattern.turns,
+                pattern_number=each.pattern.number,
+                leading=each.pattern.leading,
+                revolutions=each.revolutions,
+                angle=each.angle,
+                cover=each.cover,
+                dwell=each.dwell,
+            )
+            for each in alternatives(pattern, layer.revolutions, dwells, median)
+        ],
+    }
+
+
+def mean_spread(values: Floats) -> MeanSpread:
+    """Minimum, mean and maximum of values (n,)."""
+    return {"min": float(values.min()), "mean": float(values.mean()), "max": float(values.max())}
+
+
+def _turnaround(layer: ClosedLayer, k: int) -> TurnaroundFigures:
+    each = layer.turnarounds[k]
+    return {
+        "end": ("start", "end")[k],
+        "kind": each.name,
+        "slip": each.slip,
+        "reach": each.reach,
+        "rule": each.rule,
+    }
