@@ -133,7 +133,7 @@ if TYPE_CHECKING:
     from meshwind.planning import space_out as space_out
     from meshwind.results.image_files import read_image as read_image
     from meshwind.run.redesign import write_redesign as write_redesign
-    from meshwind.run.wind import Result as Result
+    from meshwind.run.result import Result as Result
     from meshwind.run.wind import wind as wind
     from meshwind.surface import FitError as FitError
     from meshwind.surface import Surface as Surface
@@ -158,7 +158,7 @@ _HOME = {
     "Layup": "layup", "assess": "layup", "windability": "layup",
     "read_cad": "export.cad_surface",
     "Redesign": "editing.redesign", "redesign": "editing.redesign", "write_redesign": "run.redesign",
-    "Result": "run.wind", "wind": "run.wind",
+    "Result": "run.result", "wind": "run.wind",
     "render": "pictures.render", "Page": "pictures.page", "draw_redesign": "pictures.redesign_scene",
 }  # fmt: skip
 

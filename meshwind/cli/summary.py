@@ -4,15 +4,9 @@ from collections.abc import Sequence
 
 from meshwind.appearance.words import quantity, ratio, size
 from meshwind.core.units import reported_unit
+from meshwind.results.pattern_types import AlternativeFigures, PatternFigures
 from meshwind.results.redesign_report_types import RedesignFigures, RedesignReport, RoundFigures
-from meshwind.results.report_types import (
-    AlternativeFigures,
-    Failure,
-    PathsFigures,
-    PatternFigures,
-    Report,
-    SurfaceFigures,
-)
+from meshwind.results.report_types import Failure, PathsFigures, Report, SurfaceFigures
 
 
 def run_lines(report: Report) -> list[str]:

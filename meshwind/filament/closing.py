@@ -1,32 +1,23 @@
 """Closing a layer: revolutions, phase and turnarounds with which its paths join to one filament."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
-from meshwind.filament.collar_turn import Collar
 from meshwind.filament.course import Course, Kind, joined
-from meshwind.filament.edge import Edge, Legs, edge, legs
-from meshwind.filament.joining import Joining, Surplus, join, passes
+from meshwind.filament.ends import End, LayerPlan, Pairs, choose_end
+from meshwind.filament.joining import Joining, join, passes
 from meshwind.filament.pattern import Pattern, nearest_pattern, patterns
-from meshwind.filament.pin_turn import Pins, Shaft
 from meshwind.filament.turnaround import Turnaround
 from meshwind.path import Paths, Status, solve
-from meshwind.path.friction import Friction, friction_of
 from meshwind.path.winding_angle import winding_angle
 from meshwind.planning.families import families
-from meshwind.surface.rims import rim
 from meshwind.surface.surface import Surface
 
-AUTO = "auto"
-_SCOUTS = 24
+_SCOUTS = 12
 """Paths per family from which the turnarounds are chosen and their dwell is planned."""
-_ROUNDS = 4
-"""Windings at most until the turnarounds have room with the revolutions that they ask for."""
-_SETTLED = 60
-"""Rounds in which the least dwell is found."""
 _SETTLED_IN = 8
 """Rounds in which revolutions and dwells are to suit one another."""
 _FAR = 1.0
@@ -35,39 +26,6 @@ _CONTRACTS = 0.95
 """Share of a shortage of dwell that may be left after a round for the secant to be taken."""
 _ROOM = 1e-6
 """Turns of dwell beyond the least, so that round-off does not cost a place."""
-_PIN_WIDE, _PIN_HIGH = 1 / 6, 1 / 2
-"""Radius of a pin, and height of its middle over the rim, over the distance of the paths along the rim."""
-_SHAFT = 0.5
-"""Radius of a shaft over the least distance of the hull from its axis."""
-_LONGEST_DWELL = 20.0
-"""Turns that a turnaround may take: the fibre of a longer one would be most of the layer."""
-_LONGEST_COLLAR = 1.0
-"""Collar over the rim's mean diameter, above which pins are taken instead."""
-
-
-@dataclass(frozen=True)
-class LayerPlan:
-    """What a closed layer is to be.
-
-    Parameters
-    ----------
-    paths : int
-        Paths per family: circuits of the layer.
-    revolutions : float
-        Turns of a path from end to end; moved to where the layer closes.
-    friction : float or Friction, default 0
-        Coefficient of friction, as for `solve`.
-    particles : int or None, default 401
-        Particles per path.
-    turns : tuple of str, default ("auto", "auto")
-        Turnarounds at the start and at the end: "collar", "pins", "shaft" or "auto".
-    """
-
-    paths: int
-    revolutions: float
-    friction: float | Friction = 0.0
-    particles: int | None = 401
-    turns: tuple[str, str] = (AUTO, AUTO)
 
 
 @dataclass(frozen=True)
@@ -111,83 +69,6 @@ class ClosedLayer:
         return float(sum(each.arc_length[-1] for each in self.filaments))
 
 
-@dataclass(frozen=True)
-class _End:
-    """One end: the edge, what turns there, and its rim, in shares of which ends are spread."""
-
-    surface: Surface
-    v: float
-    edge: Edge
-    turnaround: Turnaround
-    shift: float = field(default=0.0)
-
-    def shares(self, paths: Paths, family: int) -> Floats:
-        """Shares of the rim's length, unwrapped, at which the paths of a family cross it."""
-        u = paths.uv[paths.family == family, -1 if self.v else 0, 0]
-        return rim(self.surface, self.v).shares(u)
-
-    def pairs(self, paths: Paths) -> "_Pairs":
-        """The legs that arrive and those that leave."""
-        families_ = (1, -1) if self.v else (-1, 1)
-        into, out = (legs(self.edge, paths, self.v, family) for family in families_)
-        at, off = (self.shares(paths, family) for family in families_)
-        return _Pairs(self, into, out, at, off)
-
-
-@dataclass(frozen=True)
-class _Pairs:
-    """At one end: legs that arrive and leave (N,), and the shares (N,) of the rim where they do."""
-
-    end: _End
-    arriving: Legs
-    leaving: Legs
-    at: Floats
-    off: Floats
-
-    def later(self, into: Ints, out: Ints, dwell: Floats) -> Floats:
-        """Lengths (n,) along the hull at which legs `out` leave, a dwell (n,) of the rim after legs `into` came."""
-        turns = np.round(self.at[into] + dwell - self.off[out])
-        return np.asarray(self.leaving.around[out] + turns * self.end.edge.hull.perimeter)
-
-    @property
-    def surplus(self) -> Surplus:
-        """What each dwell has to spare."""
-        return lambda into, out, dwell: self.end.turnaround.surplus(
-            self.arriving.chosen(into), self.leaving.chosen(out), self.later(into, out, dwell)
-        )
-
-    def least_dwell(self) -> float:
-        """Least dwell with which every arriving leg has room to a leg that leaves at just that dwell.
-
-        Legs that leave are taken from those that do, as periodic functions of where.
-        """
-        edge_ = self.end.edge
-        order = np.argsort(np.mod(self.off, 1.0))
-        place = np.mod(self.off, 1.0)[order]
-        perimeter = edge_.hull.perimeter
-
-        def between(values: Floats, share: Floats) -> Floats:
-            return np.asarray(np.interp(share, place, values[order], period=1.0))
-
-        ahead = self.leaving.around - perimeter * self.off
-        dwell = 0.0
-        for _ in range(_SETTLED):
-            share = self.at + dwell
-            later = perimeter * share + between(ahead, share)
-            leave = Legs(later, between(self.leaving.height, share), between(self.leaving.angle, share),
-                         self.leaving.points, -1)  # fmt: skip
-            short = -float(self.end.turnaround.surplus(self.arriving, leave, later).min())
-            if short <= _ROOM:
-                break
-            dwell += short
-            if not dwell < _LONGEST_DWELL:
-                raise BadInputError(
-                    f"the turnaround at the {'end' if self.end.v else 'start'} ({self.end.turnaround.name}) would take "
-                    f"more than {_LONGEST_DWELL:g} turns; give pins or a shaft, more friction, or a larger angle"
-                )
-        return dwell + 2.0 * _ROOM
-
-
 def close_layer(surface: Surface, plan: LayerPlan) -> ClosedLayer:
     """Wind a layer as one closed filament.
 
@@ -212,15 +93,11 @@ def close_layer(surface: Surface, plan: LayerPlan) -> ClosedLayer:
         If no path of a family is in equilibrium, or a turnaround cannot be made.
     """
     scouts, _ = _at_rest(_solved(surface, plan, min(plan.paths, _SCOUTS), plan.revolutions, 0.0))
-    ends = [_end(surface, v, plan, word, scouts) for v, word in zip((0.0, 1.0), plan.turns, strict=True)]
+    ends = [choose_end(surface, v, plan, word, scouts) for v, word in zip((0.0, 1.0), plan.turns, strict=True)]
     planned = _planned(surface, plan, ends, scouts)
-    for _ in range(_ROUNDS):
-        kept, left_out = _at_rest(_solved(surface, plan, plan.paths, planned.revolutions, -planned.dwells[0]))
-        pairs = [end.pairs(kept) for end in ends]
-        joining = _joined(pairs)
-        if left_out or joining.turns == planned.turns:
-            break
-        planned = planned.with_room([each.least_dwell() for each in pairs])
+    kept, left_out = _at_rest(_solved(surface, plan, plan.paths, planned.revolutions, -planned.dwells[0]))
+    pairs = [end.pairs(kept) for end in ends]
+    joining = _joined(pairs)
     turnarounds = (ends[0].turnaround, ends[1].turnaround)
     return ClosedLayer(
         plan, planned.revolutions, kept, joining, turnarounds, _filaments(kept, joining, pairs), left_out
@@ -245,12 +122,6 @@ class _Planned:
         """Whether the revolutions are next to those that were asked for."""
         return self.revolutions >= 0.0 and abs(self.revolutions - self.plan.revolutions) <= _FAR / self.plan.paths
 
-    def with_room(self, needed: list[float]) -> "_Planned":
-        """The same pattern with dwells no shorter than needed; or, as the revolutions stay, with longer ones."""
-        start, end = map(max, self.dwells, needed)
-        moved = replace(self, dwells=(start, end))
-        return moved if moved.near else _as_asked(self.plan, [start, end])
-
 
 def _as_asked(plan: LayerPlan, needed: list[float]) -> _Planned:
     """The nearest pattern with the revolutions that were asked for: the filament waits as hoops until it closes."""
@@ -262,7 +133,7 @@ def _as_asked(plan: LayerPlan, needed: list[float]) -> _Planned:
     )
 
 
-def _planned(surface: Surface, plan: LayerPlan, ends: list[_End], scouts: Paths) -> _Planned:
+def _planned(surface: Surface, plan: LayerPlan, ends: list[End], scouts: Paths) -> _Planned:
     """The pattern next to what was asked for, with dwells that are long enough at the revolutions that it leaves.
 
     Longer dwells leave fewer revolutions, with which collars need still longer ones: the secant of the two gives where
@@ -308,30 +179,7 @@ def _at_rest(paths: Paths) -> tuple[Paths, int]:
     return (paths if len(keep) == len(paths) else paths.subset(keep)), len(paths) - len(keep)
 
 
-def _end(surface: Surface, v: float, plan: LayerPlan, word: str, scouts: Paths) -> _End:
-    """An end with the turnaround that was asked for, or that suits it."""
-    on = edge(surface, v)
-    friction = float(friction_of(surface, plan.friction).table[:, -1 if v else 0].min())
-    pitch = on.hull.perimeter / plan.paths
-    pins = Pins(on, _PIN_HIGH * pitch, _PIN_WIDE * pitch, pitch)
-    if word == "pins":
-        return _End(surface, v, on, pins)
-    if word == "shaft":
-        least = float(np.linalg.norm(on.hull.points, axis=1).min())
-        return _End(surface, v, on, Shaft(on, _PIN_HIGH * pitch, _SHAFT * least))
-    if word == "collar" and not friction > 0.0:
-        raise BadInputError("a collar holds no fibre without friction; give friction, or pins or a shaft for this end")
-    if friction > 0.0:
-        collar = Collar(on, friction)
-        if word == "collar":
-            return _End(surface, v, on, collar)
-        tops = [collar.reached(legs(on, scouts, v, family), np.zeros(len(scouts) // 2))[1].max() for family in (1, -1)]
-        if max(tops) - on.highest <= _LONGEST_COLLAR * on.hull.perimeter / np.pi:
-            return _End(surface, v, on, collar)
-    return _End(surface, v, on, pins)
-
-
-def _joined(pairs: list[_Pairs]) -> Joining:
+def _joined(pairs: list[Pairs]) -> Joining:
     start, end = pairs
     there = passes(start.off, end.at)
     # family -1 is walked from the end rim to the start rim
@@ -339,7 +187,7 @@ def _joined(pairs: list[_Pairs]) -> Joining:
     return join(there, back, end_dwell=end.surplus, start_dwell=start.surplus)
 
 
-def _filaments(paths: Paths, joining: Joining, pairs: list[_Pairs]) -> tuple[Course, ...]:
+def _filaments(paths: Paths, joining: Joining, pairs: list[Pairs]) -> tuple[Course, ...]:
     """The courses of all filaments."""
     start, end = pairs
     count = len(joining.back)
@@ -365,7 +213,7 @@ def _filaments(paths: Paths, joining: Joining, pairs: list[_Pairs]) -> tuple[Cou
     return tuple(found)
 
 
-def _turns(pairs: _Pairs, into: Ints, out: Ints, dwell: Floats) -> list[Course]:
+def _turns(pairs: Pairs, into: Ints, out: Ints, dwell: Floats) -> list[Course]:
     arriving, leaving = pairs.arriving.chosen(into), pairs.leaving.chosen(out)
     return pairs.end.turnaround.courses(arriving, leaving, pairs.later(into, out, dwell))
 

@@ -66,26 +66,33 @@ class Pins:
 
     def courses(self, arriving: Legs, leaving: Legs, later: Floats) -> list[Course]:
         """See `Turnaround.courses`."""
+        into, away = self._over_pins(arriving, arriving.around), self._over_pins(leaving, later)
         made = []
         for k in range(len(later)):
-            into = self._over_pin(arriving.chosen(np.array([k])), float(arriving.around[k]))
-            away = [part.backwards for part in self._over_pin(leaving.chosen(np.array([k])), float(later[k]))[::-1]]
-            ends = [(float(one.around[i]), float(one.height[i])) for one, i in ((into[-1], -1), (away[0], 0))]
+            there, back = into[k], [part.backwards for part in away[k][::-1]]
+            ends = [(float(one.around[i]), float(one.height[i])) for one, i in ((there[-1], -1), (back[0], 0))]
             hoop = straight(ends[0], ends[1], self.edge, Kind.DWELL)
-            made.append(course(self.edge, [*into, hoop, *away], arriving.points[k], leaving.points[k]))
+            made.append(course(self.edge, [*there, hoop, *back], arriving.points[k], leaving.points[k]))
         return made
 
-    def _over_pin(self, leg: Legs, start: float) -> list[Stretch]:
-        """The way of one leg from the rim, at `start` along the hull, until it is a hoop behind its pin."""
-        angle, meets, _ = (float(each[0]) for each in self._legs(leg))
-        sense, base = leg.sense, float(leg.height[0])
-        level = self.edge.highest + self.height
-        at_pin = (start + sense * meets, level + self.radius * np.sin(angle))
-        up = straight((start, base), at_pin, self.edge, Kind.TURN)
-        bend = np.linspace(angle, 0.5 * np.pi, _BEND)
-        middle = at_pin[0] + sense * self.radius * np.cos(angle)
-        around = middle - sense * self.radius * np.cos(bend)
-        return [up, Stretch(around, level + self.radius * np.sin(bend), bend, np.zeros(_BEND), Kind.TURN)]
+    def _over_pins(self, legs: Legs, start: Floats) -> list[list[Stretch]]:
+        """The way of each leg from the rim, at `start` (n,) along the hull, until it is a hoop behind its pin."""
+        angle, meets, _ = self._legs(legs)
+        level, sense = self.edge.highest + self.height, legs.sense
+        pin = start + sense * meets
+        high = level + self.radius * np.sin(angle)
+        bend = angle[:, None] + (0.5 * np.pi - angle)[:, None] * np.linspace(0.0, 1.0, _BEND)
+        around = (pin + sense * self.radius * np.cos(angle))[:, None] - sense * self.radius * np.cos(bend)
+        height, none = level + self.radius * np.sin(bend), np.zeros(_BEND)
+        return [
+            [
+                straight(
+                    (float(start[k]), float(legs.height[k])), (float(pin[k]), float(high[k])), self.edge, Kind.TURN
+                ),
+                Stretch(around[k], height[k], bend[k], none, Kind.TURN),
+            ]
+            for k in range(len(legs))
+        ]
 
 
 @dataclass

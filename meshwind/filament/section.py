@@ -1,6 +1,7 @@
 """A convex section of a prism: what a fibre in a turnaround beyond a rim lies on."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -42,7 +43,7 @@ class Section:
         whole, rest = np.divmod(np.asarray(turned) - angles[0], 2.0 * np.pi)
         return np.asarray(whole * self.perimeter + np.interp(rest + angles[0], angles, loop))
 
-    @property
+    @cached_property
     def _loop(self) -> tuple[Floats, Floats]:
         """Lengths and angles of the normal (n + 1,) all around, the first point once more at the end."""
         return np.append(self.passed, self.perimeter), np.append(self.turned, self.turned[0] + 2.0 * np.pi)

@@ -9,6 +9,7 @@ from meshwind.layup.windability import CONCAVE, CONVEX, SADDLE, Windability
 from meshwind.planning.alternatives import FRICTION, WIDER
 from meshwind.planning.revolutions import Revolutions
 from meshwind.planning.spacing import Spaced
+from meshwind.results.pattern_types import Spread
 from meshwind.results.report_types import (
     CoverageFigures,
     CrossingFigures,
@@ -16,7 +17,6 @@ from meshwind.results.report_types import (
     QuadFigures,
     RevolutionFigures,
     SpacingFigures,
-    Spread,
     WindabilityFigures,
 )
 

@@ -6,7 +6,7 @@ from meshwind.core.cast import Floats
 from meshwind.filament.alternatives import alternatives
 from meshwind.filament.closing import ClosedLayer
 from meshwind.path.winding_angle import winding_angle
-from meshwind.results.report_types import AlternativeFigures, MeanSpread, PatternFigures, TurnaroundFigures
+from meshwind.results.pattern_types import AlternativeFigures, MeanSpread, PatternFigures, TurnaroundFigures
 
 
 def pattern_figures(layer: ClosedLayer) -> PatternFigures:

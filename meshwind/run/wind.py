@@ -1,171 +1,16 @@
 """Wind a mesh and write the results with their pictures into a folder."""
 
-from dataclasses import dataclass, fields, replace
-from os import PathLike, fsencode, fspath
-from pathlib import Path
-from tempfile import TemporaryDirectory
+from os import PathLike, fspath
 
-from meshwind.core.errors import BadInputError
-from meshwind.core.version import version
 from meshwind.mesh import check_file
-from meshwind.path import Paths, Status
 from meshwind.pictures import driver
-from meshwind.pictures.fit_scene import fit_scene
-from meshwind.pictures.gallery import placed, scenes_of, write_sheet
-from meshwind.pictures.page import Page
-from meshwind.pictures.revolutions_picture import draw_revolutions
-from meshwind.pictures.scenes import Drawing
-from meshwind.pictures.subject import subject_in
 from meshwind.planning.pins import check_pins
 from meshwind.results import folder
-from meshwind.results.config_file import write_config
-from meshwind.results.filament_file import filaments_of, write_filaments
-from meshwind.results.layup_figures import parted
-from meshwind.results.report import RunFacts, report, write_report
-from meshwind.results.report_types import Report
-from meshwind.results.schema import CONFIG, FILAMENT, FIT_PICTURE, REPORT, REVOLUTIONS_PICTURE, SHEET, WINDING, picture
-from meshwind.results.write import write_files
-from meshwind.surface import Surface
+from meshwind.run.result import Result, named_folder, write_result
 from meshwind.workflow.clock import Clock, Progress
-from meshwind.workflow.notes import Note
 from meshwind.workflow.options import Options
 from meshwind.workflow.part import MeshLike, fit_part, read_source
-from meshwind.workflow.winding import Winding, wind_part
-
-
-@dataclass(frozen=True, repr=False)
-class Result(Winding):
-    """A wound part: the results of all stages.
-
-    Attributes
-    ----------
-    mesh : Mesh
-        Repaired mesh.
-    chart : Chart
-        Flattened mesh.
-    layup : Layup
-        Paths with crossings, quads and coverage.
-    options : Options
-        Options that the part was wound with.
-    command : str
-        Command line, for the report.
-    seconds : dict of str to float
-        Wall time of each stage.
-    notes : tuple of Note
-        What a user should know beside the figures; warnings say that the results may not be what was wanted.
-    chosen : Revolutions or None
-        How the revolutions were chosen, with revolutions="auto".
-    spaced : Spaced or None
-        How paths were added, with `spacing`.
-    closed : ClosedLayer or None
-        The layer as one filament, with `continuous`.
-    source : Path or None
-        File of the mesh, if it came from one.
-
-    See Also
-    --------
-    wind : Wind a part.
-
-    Examples
-    --------
-    >>> import meshwind as mw
-    >>> mw.wind("data/tank.ply", paths=4, revolutions=0.3, particles=51)
-    <meshwind Result: tank.ply, 8 of 8 paths at rest>
-    """
-
-    @classmethod
-    def of(cls, winding: Winding) -> "Result":
-        """The result whose winding is given."""
-        return cls(**{each.name: getattr(winding, each.name) for each in fields(winding)})
-
-    def __repr__(self) -> str:
-        at_rest = int((self.paths.status == Status.CONVERGED).sum())
-        return f"<meshwind Result: {self.mesh.name}, {at_rest} of {len(self.paths)} paths at rest>"
-
-    @property
-    def surface(self) -> Surface:
-        """The fitted surface."""
-        return self.layup.paths.surface
-
-    @property
-    def paths(self) -> Paths:
-        """All paths, family +1 first."""
-        return self.layup.paths
-
-    @property
-    def settled(self) -> bool:
-        """Whether every path is in equilibrium."""
-        return bool((self.paths.status == Status.CONVERGED).all())
-
-    @property
-    def revolutions(self) -> float:
-        """Revolutions from end to end, as chosen where they were "auto", and as they close where they are to."""
-        if self.closed is not None:
-            return self.closed.revolutions
-        return float(self.options.revolutions) if self.chosen is None else self.chosen.choice
-
-    def report(self) -> Report:
-        """Collect the figures of the run.
-
-        Returns
-        -------
-        dict
-            Contents of `report.json`: lengths in the mesh's units, angles in degrees.
-
-        Examples
-        --------
-        >>> import meshwind as mw
-        >>> report = mw.wind("data/tank.ply", paths=4, revolutions=0.3, particles=51).report()
-        >>> report["paths"]["converged"], report["winding"]["paths_per_family"]
-        (8, 4)
-        """
-        run = RunFacts(
-            self.revolutions,
-            command=self.command,
-            tolerance=self.options.tolerance,
-            seconds=self.seconds,
-            notes=[str(note) for note in self.notes],
-            chosen=self.chosen,
-            spaced=self.spaced,
-            linear_density=self.options.linear_density,
-            closed=self.closed,
-        )
-        return report(self.layup, self.mesh, self.chart, run)
-
-    def write(self, out: str | PathLike[str], render: bool = True, overwrite: bool = False) -> "Result":
-        """Write all files of the run into a folder; all appear, or none.
-
-        `fit_error.png` is drawn where a note warns of the fit.
-
-        Parameters
-        ----------
-        out : str or PathLike
-            Folder for the files.
-        render : bool, default True
-            Whether to draw the pictures.
-        overwrite : bool, default False
-            Whether to replace results that the folder holds already.
-
-        Returns
-        -------
-        Result
-            The result, with the wall time of writing and, where pictures could not be drawn, a note on what to
-            install.
-
-        Raises
-        ------
-        BadInputError
-            If the folder cannot be written or, without `overwrite`, holds results.
-
-        Examples
-        --------
-        >>> from pathlib import Path
-        >>> import meshwind as mw
-        >>> result = mw.wind("data/tank.ply", paths=4, revolutions=0.3, particles=51).write("out", render=False)
-        >>> Path("out/paths.vtp").is_file()
-        True
-        """
-        return _write(self, _folder(out), render, overwrite, Clock())
+from meshwind.workflow.winding import wind_part
 
 
 def wind(  # noqa: PLR0913
@@ -289,7 +134,7 @@ def wind(  # noqa: PLR0913
         continuous, turn_start, turn_end,
     )  # fmt: skip
     clock = Clock(progress)
-    target = None if out is None else _folder(out)
+    target = None if out is None else named_folder(out)
     check_file(mesh)
     if pinned is not None:
         check_pins(pinned)  # before all the work
@@ -300,60 +145,4 @@ def wind(  # noqa: PLR0913
     with clock.stage("read"):
         source = read_source(mesh, options)
     result = Result.of(wind_part(fit_part(source, options, clock), options, command, clock))
-    return result if target is None else _write(result, target, render, overwrite, clock)
-
-
-def _folder(out: str | PathLike[str]) -> Path:
-    if not isinstance(out, str | PathLike) or not fspath(out).strip():
-        raise BadInputError(f"out is {out!r}; give the path of a folder for the results")
-    try:
-        named = b"\0" not in fsencode(out)
-    except UnicodeEncodeError:
-        named = False
-    if not named:
-        raise BadInputError(f"out is {fspath(out)[:40]!r}, which is not a possible name of a folder; give another")
-    return Path(out)
-
-
-def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: Clock) -> Result:
-    notes = result.notes
-    with folder.writing(out, overwrite) as staging:
-        with clock.stage("write"):
-            wall = result.chart.annulus.wall
-            measured = result.mesh if wall is None else wall.skin
-            write_files(staging, result.layup, measured, result.mesh.units)
-            if result.closed is not None:
-                write_filaments(staging / FILAMENT, filaments_of(result.closed), result.mesh.units)
-            if result.chosen is not None and render:
-                draw_revolutions(staging / REVOLUTIONS_PICTURE, result.chosen, result.mesh.name)
-        if render:
-            with clock.stage("render"):
-                missing = _draw(result, staging)
-            notes = (*notes, Note(missing, warning=True)) if missing else notes
-        notes = tuple(note.shown((staging / note.picture).is_file()) for note in notes)
-        result = replace(result, seconds=result.seconds | clock.seconds, notes=notes)
-        write_config(staging / CONFIG, out, _used(result, out, render), version())
-        write_report(staging / REPORT, result.report())
-    return result
-
-
-def _used(result: Result, out: Path, render: bool) -> dict[str, object]:
-    """All options, with which the run can be repeated."""
-    pins = None if result.options.pins is None else Path(result.options.pins)
-    return {"mesh": result.source, "out": out} | result.options.written() | {"pins": pins, "render": render}
-
-
-def _draw(result: Result, out: Path) -> str:
-    """Draw the winding, the picture of a warning and the contact sheet; return "" or what is missing for drawing."""
-    name, units = result.mesh.name, result.mesh.units
-    of = subject_in(out, result.layup, name, units, result.revolutions)
-    of = replace(of, partings=parted(result.layup, result.spaced))
-    with TemporaryDirectory(dir=out) as cells:  # within, so that a killed run leaves nothing elsewhere
-        pictures = placed(scenes_of(of), (WINDING, SHEET), Page(), out, Path(cells))
-        work = dict(pictures)
-        if any(note.picture == FIT_PICTURE for note in result.notes):
-            work[out / FIT_PICTURE] = Drawing(fit_scene(result.surface, result.chart.annulus, name, units))
-        missing = driver.paint(work)
-        if not missing:
-            write_sheet(out / picture(SHEET), list(pictures))
-    return missing
+    return result if target is None else write_result(result, target, render, overwrite, clock)

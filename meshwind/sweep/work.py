@@ -8,7 +8,7 @@ import numba
 from threadpoolctl import threadpool_limits
 
 from meshwind.core.errors import BadInputError
-from meshwind.run.wind import Result
+from meshwind.run.result import Result
 from meshwind.sweep.study import Case, CaseStatus, Row
 from meshwind.workflow.clock import Clock
 from meshwind.workflow.options import Options

@@ -5,7 +5,8 @@ from pathlib import Path
 
 from meshwind.chart import Chart
 from meshwind.core.parsing import AUTO
-from meshwind.filament.closing import ClosedLayer, LayerPlan, close_layer
+from meshwind.filament.closing import ClosedLayer, close_layer
+from meshwind.filament.ends import LayerPlan
 from meshwind.layup.layup import Layup, assess
 from meshwind.mesh import Mesh
 from meshwind.path import Paths, solve

@@ -1,0 +1,156 @@
+"""The two ends of a layer: which turnaround suits each, and how long the dwell there must be."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshwind.core.cast import Floats, Ints
+from meshwind.core.defaults import PARTICLES
+from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import AUTO
+from meshwind.filament.collar_turn import Collar
+from meshwind.filament.edge import Edge, Legs, edge, legs
+from meshwind.filament.joining import Surplus
+from meshwind.filament.pin_turn import Pins, Shaft
+from meshwind.filament.turnaround import Turnaround
+from meshwind.path import Paths
+from meshwind.path.friction import Friction, friction_of
+from meshwind.surface.rims import rim
+from meshwind.surface.surface import Surface
+
+_SETTLED = 60
+"""Rounds in which the least dwell is found."""
+_ROOM = 1e-6
+"""Turns of dwell beyond the least, so that round-off does not cost a place."""
+_PIN_WIDE, _PIN_HIGH = 1 / 6, 1 / 2
+"""Radius of a pin, and height of its middle over the rim, over the distance of the paths along the rim."""
+_SHAFT = 0.5
+"""Radius of a shaft over the least distance of the hull from its axis."""
+_LONGEST_DWELL = 20.0
+"""Turns that a turnaround may take: the fibre of a longer one would be most of the layer."""
+_LONGEST_COLLAR = 1.0
+"""Collar over the rim's mean diameter, above which pins are taken instead."""
+
+
+@dataclass(frozen=True)
+class LayerPlan:
+    """What a closed layer is to be.
+
+    Parameters
+    ----------
+    paths : int
+        Paths per family: circuits of the layer.
+    revolutions : float
+        Turns of a path from end to end; moved to where the layer closes.
+    friction : float or Friction, default 0
+        Coefficient of friction, as for `solve`.
+    particles : int or None, default 401
+        Particles per path.
+    turns : tuple of str, default ("auto", "auto")
+        Turnarounds at the start and at the end: "collar", "pins", "shaft" or "auto".
+    """
+
+    paths: int
+    revolutions: float
+    friction: float | Friction = 0.0
+    particles: int | None = PARTICLES
+    turns: tuple[str, str] = (AUTO, AUTO)
+
+
+@dataclass(frozen=True)
+class End:
+    """One end: the edge, what turns there, and its rim, in shares of which ends are spread."""
+
+    surface: Surface
+    v: float
+    edge: Edge
+    turnaround: Turnaround
+
+    def shares(self, paths: Paths, family: int) -> Floats:
+        """Shares of the rim's length, unwrapped, at which the paths of a family cross it."""
+        u = paths.uv[paths.family == family, -1 if self.v else 0, 0]
+        return rim(self.surface, self.v).shares(u)
+
+    def pairs(self, paths: Paths) -> "Pairs":
+        """The legs that arrive and those that leave."""
+        families_ = (1, -1) if self.v else (-1, 1)
+        into, out = (legs(self.edge, paths, self.v, family) for family in families_)
+        at, off = (self.shares(paths, family) for family in families_)
+        return Pairs(self, into, out, at, off)
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """At one end: legs that arrive and leave (N,), and the shares (N,) of the rim where they do."""
+
+    end: End
+    arriving: Legs
+    leaving: Legs
+    at: Floats
+    off: Floats
+
+    def later(self, into: Ints, out: Ints, dwell: Floats) -> Floats:
+        """Lengths (n,) along the hull at which legs `out` leave, a dwell (n,) of the rim after legs `into` came."""
+        turns = np.round(self.at[into] + dwell - self.off[out])
+        return np.asarray(self.leaving.around[out] + turns * self.end.edge.hull.perimeter)
+
+    @property
+    def surplus(self) -> Surplus:
+        """What each dwell has to spare."""
+        return lambda into, out, dwell: self.end.turnaround.surplus(
+            self.arriving.chosen(into), self.leaving.chosen(out), self.later(into, out, dwell)
+        )
+
+    def least_dwell(self) -> float:
+        """Least dwell with which every arriving leg has room to a leg that leaves at just that dwell.
+
+        Legs that leave are taken from those that do, as periodic functions of where.
+        """
+        edge_ = self.end.edge
+        order = np.argsort(np.mod(self.off, 1.0))
+        place = np.mod(self.off, 1.0)[order]
+        perimeter = edge_.hull.perimeter
+
+        def between(values: Floats, share: Floats) -> Floats:
+            return np.asarray(np.interp(share, place, values[order], period=1.0))
+
+        ahead = self.leaving.around - perimeter * self.off
+        dwell = 0.0
+        for _ in range(_SETTLED):
+            share = self.at + dwell
+            later = perimeter * share + between(ahead, share)
+            leave = Legs(later, between(self.leaving.height, share), between(self.leaving.angle, share),
+                         self.leaving.points, -1)  # fmt: skip
+            short = -float(self.end.turnaround.surplus(self.arriving, leave, later).min())
+            if short <= _ROOM:
+                break
+            dwell += short
+            if not dwell < _LONGEST_DWELL:
+                raise BadInputError(
+                    f"the turnaround at the {'end' if self.end.v else 'start'} ({self.end.turnaround.name}) would take "
+                    f"more than {_LONGEST_DWELL:g} turns; give pins or a shaft, more friction, or a larger angle"
+                )
+        return dwell + 2.0 * _ROOM
+
+
+def choose_end(surface: Surface, v: float, plan: LayerPlan, word: str, scouts: Paths) -> End:
+    """An end with the turnaround that was asked for, or that suits it."""
+    on = edge(surface, v)
+    friction = float(friction_of(surface, plan.friction).table[:, -1 if v else 0].min())
+    pitch = on.hull.perimeter / plan.paths
+    pins = Pins(on, _PIN_HIGH * pitch, _PIN_WIDE * pitch, pitch)
+    if word == "pins":
+        return End(surface, v, on, pins)
+    if word == "shaft":
+        least = float(np.linalg.norm(on.hull.points, axis=1).min())
+        return End(surface, v, on, Shaft(on, _PIN_HIGH * pitch, _SHAFT * least))
+    if word == "collar" and not friction > 0.0:
+        raise BadInputError("a collar holds no fibre without friction; give friction, or pins or a shaft for this end")
+    if friction > 0.0:
+        collar = Collar(on, friction)
+        if word == "collar":
+            return End(surface, v, on, collar)
+        tops = [collar.reached(legs(on, scouts, v, family), np.zeros(len(scouts) // 2))[1].max() for family in (1, -1)]
+        if max(tops) - on.highest <= _LONGEST_COLLAR * on.hull.perimeter / np.pi:
+            return End(surface, v, on, collar)
+    return End(surface, v, on, pins)
