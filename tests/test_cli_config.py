@@ -54,7 +54,8 @@ def test_a_run_leaves_all_its_options(first: Path) -> None:
     assert tomllib.loads(text) == {
         "mesh": "../../part.ply", "out": ".", "paths": 3, "revolutions": float(Fraction(5, 12)), "particles": 201,
         "friction": 0.0, "ends": "auto", "tolerance": 1e-5, "worst-fit": 0.1, "units": "cm",
-        "band-width": 20.0, "render": False, "side": "outer", "opening-by": "auto",
+        "band-width": 20.0, "render": False, "side": "outer", "opening-by": "auto", "continuous": False,
+        "turn-start": "auto", "turn-end": "auto",
     }  # fmt: skip
 
 

@@ -53,10 +53,10 @@ class Result(Winding):
         How the revolutions were chosen, with revolutions="auto".
     spaced : Spaced or None
         How paths were added, with `spacing`.
-    closed : ClosedLayer or None
-        The layer as one filament, with `continuous`.
     source : Path or None
         File of the mesh, if it came from one.
+    closed : ClosedLayer or None
+        The layer as one filament, with `continuous`.
 
     See Also
     --------

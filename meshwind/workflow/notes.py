@@ -160,7 +160,7 @@ def about_filament(layer: ClosedLayer, units: str = "") -> tuple[Note, ...]:
             notes.append(
                 Note(
                     f"at the {name} the rim flares: what continues it stands up from the part by up to {standing:.0f} "
-                    "degrees, and fibres lift off there; open the part further inside",
+                    "degrees, and fibres lift off there; leave the flare off the mesh if that matters",
                     True,
                 )
             )
