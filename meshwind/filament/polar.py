@@ -1,0 +1,378 @@
+"""Passes over caps: the fibre touches the opening of a closed end along its tangent and comes back, with no dwell.
+
+A solver between fixed ends cannot turn on a cap, as a fibre from equator to equator of a dome is no shortest one.  It
+lies there by friction all the same, for which the criterion is local: |kg| <= mu kn and kn > 0.  So passes are marched
+from where they touch, tangent to the opening, with as little constant slip on each half-leg as closes the layer.
+"""
+
+from dataclasses import dataclass, replace
+from math import gcd
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.core.defaults import PARTICLES
+from meshwind.core.errors import BadInputError
+from meshwind.filament.pattern import Pattern
+from meshwind.filament.polar_legs import End, Half, Legs, halves, opening
+from meshwind.filament.polar_natural import Natural, Tables, natural, slips, tables
+from meshwind.filament.polar_rows import Rows, Stretch, evenly
+from meshwind.march.traced import Stop
+from meshwind.path.paths import Counters, Paths, Status
+from meshwind.path.solve import check_count
+from meshwind.surface.evaluate import SU
+from meshwind.surface.surface import Surface
+
+Side: TypeAlias = Literal["start", "end"]
+
+_MEETS = 1e-10
+"""Miss of two half-legs, in turns and in radians, that is round-off of their marches."""
+_POLISHES = 8
+"""Most steps in which exact half-legs are brought to meet; the tables' derivatives leave a hundredth or less a step."""
+_SLACK = 1e-9
+"""Normal curvature times the part's size, below 0, that is round-off of a straight fibre."""
+_INSIDE = 1e-9
+"""How far out over its opening in v a fibre may be for round-off."""
+_SHARES = 4096
+"""Points of an opening between which its length is summed, to spread touch points evenly by it."""
+
+
+@dataclass(frozen=True)
+class PolarPasses:
+    """N circuits of a layer that turns on caps, in order of winding: pass there k, then pass back k, then there k + 1.
+
+    Attributes
+    ----------
+    paths : Paths
+        N passes there, family +1, then the N passes back, family -1, each from the start rim to the end rim; u of each
+        begins within [0, 1).  On a cap the pass before ends where the next begins.
+    slip : ndarray of float, shape (2 N, 2)
+        Slip |kg|/kn on the half-leg at the start and on that at the end of each pass, with its sign: positive to the
+        left of the fibre on its way.
+    miss : ndarray of float, shape (2 N,)
+        By how much the two half-legs miss each other half-way: turns, or radians of their angle, the larger.
+    pattern : Pattern or None
+        How the circuits close; None where one end is a rim, at which a dwell closes them.
+    natural : float or None
+        Turns a circuit that need the least slip; None where one end is a rim.
+    """
+
+    paths: Paths
+    slip: Floats
+    miss: Floats
+    pattern: Pattern | None = None
+    natural: float | None = None
+
+    @property
+    def worst(self) -> float:
+        """Largest slip of all passes."""
+        return float(np.abs(self.slip).max())
+
+    @property
+    def holds(self) -> bool:
+        """Whether friction holds all passes, and all press on the part all along."""
+        return bool((self.paths.status == Status.CONVERGED).all())
+
+    @property
+    def words(self) -> str:
+        """What the layer needs in a line and, where it does not hold, what would help."""
+        told = "" if self.pattern is None else f"{self.pattern.words}; "
+        told += f"passes over caps need a slip of {self.worst:.4f} at most, and friction is {self.paths.friction:g}"
+        bad = self.paths.status != Status.CONVERGED
+        if not bad.any():
+            return told
+        told += f"; {np.count_nonzero(bad)} of {len(bad)} passes do not hold"
+        if (self.paths.status == Status.STALLED).any():
+            return f"{told}, as the part is hollow under them or they run over the opening: another opening may help"
+        if self.pattern is None or self.natural is None:
+            return told
+        return (
+            f"{told}: more friction, another opening, or other circuits may, whose turns come nearer to"
+            f" {self.natural:.6f}, which these pass by {self.pattern.turns / self.pattern.circuits - self.natural:+.6f}"
+        )
+
+
+def natural_turns(surface: Surface, *, clearance: tuple[float, float] = (0.0, 0.0)) -> float:
+    """Find the turns a circuit that need the least slip, between two caps.
+
+    Parameters
+    ----------
+    surface : Surface
+        Surface whose two rims are the openings of caps.
+    clearance : tuple of float, default (0, 0)
+        Distance at which the fibre passes each opening, in the surface's units.
+
+    Returns
+    -------
+    float
+        Turns of the part from touching the start's opening to touching it again.
+
+    Raises
+    ------
+    BadInputError
+        If an end is not a cap, as fibres that touch its opening do not get away from it.
+
+    Examples
+    --------
+    Geodesics of a sphere close after one turn:
+
+    >>> import meshwind as mw
+    >>> from meshwind.filament.polar import natural_turns
+    >>> ball = mw.shapes.sphere_band(1.0, polar0=0.5, polar1=2.64159265, spans=(96, 48))
+    >>> round(natural_turns(ball), 5)
+    1.0
+    """
+    return natural(tables(_two_caps(surface, clearance))).turns
+
+
+def passes_between_caps(
+    surface: Surface,
+    circuits: int,
+    *,
+    turns: int | None = None,
+    clearance: tuple[float, float] = (0.0, 0.0),
+    friction: float = 0.0,
+    particles: int = PARTICLES,
+) -> PolarPasses:
+    """Wind a layer of one filament between two caps, closed by a small slip on the legs.
+
+    Touch points are spread evenly in the coordinate in which circuits advance evenly, so that a layer that closes by
+    itself takes no slip.
+
+    Parameters
+    ----------
+    surface : Surface
+        Surface whose two rims are the openings of caps.
+    circuits : int
+        Circuits N, at least 1.
+    turns : int, optional
+        Turns M of the whole layer, without a common divisor with N.  By default of those next to the natural ones, on
+        either side, the one with the least slip.
+    clearance : tuple of float, default (0, 0)
+        Distance at which the fibre passes each opening, in the surface's units: half a band, say.
+    friction : float, default 0
+        Coefficient of friction against which the slip is judged; the passes do not depend on it.
+    particles : int, default 401
+        Points of each pass, at least 3.
+
+    Returns
+    -------
+    PolarPasses
+        The passes; where friction does not hold them, or the part is hollow under them, their status says so.
+
+    Raises
+    ------
+    BadInputError
+        If an end is not a cap, or a number is out of range.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> from meshwind.filament.polar import passes_between_caps
+    >>> ball = mw.shapes.sphere_band(1.0, polar0=0.5, polar1=2.64159265, spans=(96, 48))
+    >>> layer = passes_between_caps(ball, 12, friction=0.2, particles=51)
+    >>> layer.pattern.turns, len(layer.paths), layer.holds
+    (13, 24, True)
+    """
+    check_count(circuits, "circuits", 1)
+    check_count(particles, "particles", 3)
+    _check_friction(friction)
+    if turns is not None and gcd(turns, circuits) != 1:
+        raise BadInputError(f"{turns} turns of {circuits} circuits are not one filament; give coprime numbers")
+    ends = _two_caps(surface, clearance)
+    legs = tables(ends)
+    free = natural(legs)
+    wanted = [turns] if turns is not None else _next_to(free.turns * circuits, circuits)
+    chosen, maps, legs = min((_at(ends, legs, free, each, circuits) for each in wanted), key=lambda one: one[1].worst)
+    theta = np.arange(circuits) * (chosen / circuits)
+    touch = maps.touches(theta)
+    touch[:, 2] = np.append(touch[1:, 0], touch[0, 0] + chosen)
+    slip, marched, miss = _polished(ends, legs, touch)
+    fibres = [
+        [Stretch(start, ends[0].half, False), Stretch(end, ends[1].half, True)]
+        for first, second in ((marched[0], marched[1]), (marched[3], marched[2]))
+        for start, end in zip(first.traces, second.traces, strict=True)
+    ]
+    paths = _as_paths(surface, ends, fibres, evenly(surface, fibres, particles), friction)
+    by_pass = np.concatenate([slip[:, :2], slip[:, [3, 2]]])
+    paths = replace(paths, residual=frozen(miss), status=_met(paths.status, miss))
+    return PolarPasses(paths, frozen(by_pass), frozen(miss), Pattern(circuits, chosen), free.turns)
+
+
+def passes_over_a_cap(
+    surface: Surface,
+    circuits: int,
+    *,
+    cap: Side = "end",
+    clearance: float = 0.0,
+    friction: float = 0.0,
+    particles: int = PARTICLES,
+) -> PolarPasses:
+    """Wind passes from a rim over the cap at the other end and back to the rim, as geodesics.
+
+    Touch points are spread evenly around the opening by its length.  The angle is that of the opening, as by Clairaut's
+    relation on a part of revolution: nothing is left to choose.  At the rim the fibre dwells as it is joined.
+
+    Parameters
+    ----------
+    surface : Surface
+        Surface one rim of which is the opening of a cap.
+    circuits : int
+        Circuits N, at least 1.
+    cap : {"start", "end"}, default "end"
+        Which end is the cap.
+    clearance : float, default 0
+        Distance at which the fibre passes the opening, in the surface's units.
+    friction : float, default 0
+        Coefficient of friction that the paths are said to have; geodesics need none.
+    particles : int, default 401
+        Points of each pass, at least 3.
+
+    Returns
+    -------
+    PolarPasses
+        The passes, without a pattern.
+
+    Raises
+    ------
+    BadInputError
+        If the end is not a cap, a fibre does not reach the rim, or a number is out of range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import meshwind as mw
+    >>> from meshwind.filament.polar import passes_over_a_cap
+    >>> bowl = mw.shapes.sphere_band(1.0, polar0=0.5 * np.pi, polar1=2.5, spans=(96, 48))
+    >>> layer = passes_over_a_cap(bowl, 5, particles=51)
+    >>> layer.paths.family.tolist()
+    [1, 1, 1, 1, 1, -1, -1, -1, -1, -1]
+    """
+    check_count(circuits, "circuits", 1)
+    check_count(particles, "particles", 3)
+    _check_friction(friction)
+    if cap not in ("start", "end"):
+        raise BadInputError(f"cap is {cap!r}; give 'start' or 'end'")
+    at_end = cap == "end"
+    end = End(Half(surface, 0.0, 1.0), opening(surface, int(at_end), clearance))
+    touch, none = _spread(surface, end, circuits), np.zeros(circuits)
+    there, back = (end.march(touch, none, leaving) for leaving in (not at_end, at_end))
+    lost = ~(there.arrived & back.arrived)
+    if lost.any():
+        raise BadInputError(
+            f"a fibre that touches the opening at the {cap} at u={touch[np.argmax(lost)] % 1.0:.3f} does not reach the"
+            " rim across from it: it turns back before; give an opening as narrow as the part is at its narrowest"
+        )
+    fibres = [[Stretch(trace, end.half, at_end)] for legs in (there, back) for trace in legs.traces]
+    paths = _as_paths(surface, (end,), fibres, evenly(surface, fibres, particles), friction)
+    return PolarPasses(paths, frozen(np.zeros((2 * circuits, 2))), frozen(np.zeros(2 * circuits)))
+
+
+def _two_caps(surface: Surface, clearance: tuple[float, float]) -> tuple[End, End]:
+    openings = [opening(surface, end, clearance[end]) for end in (0, 1)]
+    lower, upper = halves(surface)
+    return End(lower, openings[0]), End(upper, openings[1])
+
+
+def _check_friction(friction: float) -> None:
+    if not 0.0 <= friction < np.inf:
+        raise BadInputError(f"friction is {friction}; give a coefficient from 0 up")
+
+
+def _next_to(turns: float, circuits: int) -> list[int]:
+    """The whole turns below and above that have no common divisor with the circuits."""
+    below, above = int(np.floor(turns)), int(np.floor(turns)) + 1
+    while gcd(below, circuits) != 1:
+        below -= 1
+    while gcd(above, circuits) != 1:
+        above += 1
+    return [below, above]
+
+
+def _at(ends: tuple[End, End], legs: Tables, free: Natural, turns: int, circuits: int) -> tuple[int, Natural, Tables]:
+    """The maps at so many turns, with tables that reach as far as their slips."""
+    maps = natural(legs, turns / circuits, free)
+    if maps.worst > legs.reach:
+        legs = tables(ends, min(1.5 * maps.worst, 1.0))
+        maps = natural(legs, turns / circuits, maps)
+    return turns, maps, legs
+
+
+def _polished(ends: tuple[End, End], legs: Tables, touch: Floats) -> tuple[Floats, list[Legs], Floats]:
+    """Slips (n, 4) with which exact half-legs through touch points (n, 3) meet, these, and their misses (2 n,)."""
+    slip = slips(legs, touch)
+    by_slip = legs.mismatch(touch, slip)[2]
+    kinds = (ends[0], 0, True), (ends[1], 1, False), (ends[1], 1, True), (ends[0], 2, False)
+    best: tuple[Floats, list[Legs], Floats] | None = None
+    for _ in range(_POLISHES):
+        marched = [end.march(touch[:, at], slip[:, k], leaving) for k, (end, at, leaving) in enumerate(kinds)]
+        where = np.array([[each.u, each.angle] for each in marched])
+        miss = np.stack([where[0] - where[1], where[2] - where[3]]).transpose(2, 0, 1)
+        off = np.abs(miss).max(axis=2).T.ravel()
+        off = np.where(np.isfinite(off), off, np.inf)
+        if best is not None and not off.max() < best[2].max():
+            break
+        best = slip.copy(), marched, off
+        if off.max() <= _MEETS or not np.isfinite(off).all():
+            break
+        slip = slip - np.linalg.solve(by_slip, miss[..., None])[..., 0].reshape(-1, 4)
+    assert best is not None
+    return best
+
+
+def _spread(surface: Surface, end: End, count: int) -> Floats:
+    """Touch points (n,) that share out the length of the opening."""
+    u = np.linspace(0.0, 1.0, _SHARES + 1)
+    frames, way = surface.frames(end.opening.at(u)), end.opening.tangent(u)
+    speed = np.linalg.norm(way[:, :1] * frames[:, SU] + way[:, 1:] * frames[:, SU + 1], axis=1)
+    passed = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))])
+    return np.asarray(np.interp(np.arange(count) / count, passed / passed[-1], u))
+
+
+def _as_paths(
+    surface: Surface, ends: tuple[End, ...], fibres: list[list[Stretch]], rows: Rows, friction: float
+) -> Paths:
+    """Paths with the status that the local criterion gives them."""
+    uv = rows.uv.copy()
+    uv[:, :, 0] -= np.floor(uv[:, :1, 0])
+    shape = uv.shape[:2]
+    flat = uv.reshape(-1, 2)
+    points, normal = surface.points(flat).reshape(*shape, 3), surface.normals(flat).reshape(*shape, 3)
+    slip = np.abs([[stretch.slip for stretch in fibre] for fibre in fibres])
+    at = np.take_along_axis(slip, rows.stretch, axis=1)
+    at[:, [0, -1]] = np.nan
+    half = len(fibres) // 2
+    steps = sum(stretch.trace.evaluations for fibre in fibres for stretch in fibre)
+    return Paths(
+        surface=surface,
+        points=frozen(points),
+        uv=frozen(uv),
+        on_surface=frozen(np.ones(shape, dtype=bool)),
+        gap=frozen(np.zeros(shape)),
+        normal=frozen(normal),
+        slip=frozen(at),
+        family=frozen(np.repeat([1, -1], half)),
+        status=_status(surface, ends, fibres, uv, slip > friction + _MEETS),
+        residual=frozen(np.zeros(len(fibres))),
+        friction=friction,
+        counters=Counters(steps, 0, 0, 0),
+    )
+
+
+def _status(
+    surface: Surface, ends: tuple[End, ...], fibres: list[list[Stretch]], uv: Floats, beyond: Bools
+) -> Ints:
+    status = np.full(len(fibres), int(Status.CONVERGED))
+    status[beyond[:, -1]] = Status.SLID_OFF_END
+    status[beyond[:, 0]] = Status.SLID_OFF_START
+    press = np.array([min(stretch.trace.normal_curvature.min() for stretch in fibre) for fibre in fibres])
+    out = np.min([end.opening.inside(uv).min(axis=1) for end in ends], axis=0)
+    stopped = np.array([any(s.trace.stop == Stop.STEP_LIMIT for s in fibre) for fibre in fibres])
+    status[(press * surface.size < -_SLACK) | (out < -_INSIDE) | stopped] = Status.STALLED
+    return frozen(status)
+
+
+def _met(status: Ints, miss: Floats) -> Ints:
+    """The status of passes, also those whose half-legs do not meet."""
+    return frozen(np.where(miss <= 1e3 * _MEETS, status, int(Status.STALLED)))

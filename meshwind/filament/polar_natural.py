@@ -1,0 +1,285 @@
+"""The natural spread of touch points on two caps: where a fibre turns that needs the least slip and goes on evenly.
+
+Circuit after circuit a fibre's touch points wander round the two openings.  A coordinate theta in which each circuit
+advances by the same turns is sought as smooth maps a = theta + ..., b = theta + ... of a few waves, such that the sum
+of squares of the slips on all half-legs is least.  On integrable shapes, such as those of revolution with equal
+openings, or a triaxial ellipsoid opened along lines of curvature, no slip is left, and theta is the canonical
+coordinate of their geodesics.  With other turns a circuit than the natural ones the same maps share out the slip.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
+from meshwind.filament.polar_legs import End
+
+_AROUND = 128
+"""Touch points around an opening from which half-legs are tabulated: the table is a start, exact legs follow it."""
+_ROUGH = 1e-9
+"""Tolerance of the marches for the table, far below what it is off by between its touch points."""
+_FINER = 8
+"""Places of the table's spline between two of them, by Fourier series: it is then as good as these."""
+_NODES = np.array([-1.0, 0.0, 1.0])
+"""Slips of the table, over its reach: half-legs are nearly linear in the slip."""
+_REACH = 0.1
+"""Slip up to which half-legs are tabulated at first."""
+_FURTHEST = 1.0
+"""Slip up to which they are tabulated where more is needed: more than any friction on a mould."""
+_SMALLEST = 0.01
+"""Slip up to which half-legs must get away from their opening at the least."""
+_WAVES = 24
+"""Waves around an opening in the maps from theta: smooth enough to pass over resonances, which would bunch circuits."""
+_SAMPLES = 128
+"""Values of theta at which slips are summed: more than twice the waves."""
+_DAMPING = 1e-4
+"""Share of the answer to a step, squared, by which the step is damped at first."""
+_GAIN = 1e-3
+"""Share of the sum of squares of slips below which a further step is not worth it."""
+_CIRCUITS = 200
+"""Circuits that the start is averaged over."""
+_STEPS = 40
+"""Most steps of Gauss and Newton; ten do where the maps exist."""
+_DONE = 1e-11
+"""Steps, in turns, that are round-off."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """Half-legs of a kind by touch point and slip: u and angle at the level half-way, as smooth functions."""
+
+    spline: CubicSpline
+    reach: float
+
+    def at(self, u: Floats, slip: Floats) -> tuple[Floats, Floats, Floats]:
+        """u and angle (n, 2) at touch points u (n,) and slips (n,), and their derivatives by both."""
+        x = slip / self.reach
+        powers = np.stack([np.ones_like(x), x, x * x], axis=1)[:, :, None]
+        rates = np.stack([np.zeros_like(x), np.ones_like(x), 2.0 * x], axis=1)[:, :, None] / self.reach
+        around = u - np.floor(u)
+        value, by_u = self.spline(around), self.spline(around, 1)
+        found, slope = (value * powers).sum(axis=1), (by_u * powers).sum(axis=1)
+        found[:, 0] += u
+        slope[:, 0] += 1.0
+        return found, slope, (value * rates).sum(axis=1)
+
+
+@dataclass(frozen=True)
+class Tables:
+    """The four kinds of half-legs: leaving the start, arriving at the end, leaving the end, arriving at the start."""
+
+    kinds: tuple[Table, Table, Table, Table]
+
+    @property
+    def reach(self) -> float:
+        """Slip up to which all are tabulated."""
+        return min(table.reach for table in self.kinds)
+
+    def mismatch(self, touch: Floats, slip: Floats) -> tuple[Floats, Floats, Floats]:
+        """How far the two half-legs of each pass miss each other, in u and angle, and derivatives.
+
+        touch (n, 3): the touch points a, b, a' of circuits; slip (n, 4).  Returns (n, 2, 2) by pass and quantity; by
+        touch point (n, 2, 2, 3); and by the two slips of each pass (n, 2, 2, 2).
+        """
+        miss, by_touch = np.empty((len(touch), 2, 2)), np.zeros((len(touch), 2, 2, 3))
+        by_slip = np.empty((len(touch), 2, 2, 2))
+        for p in range(2):
+            first, u1, s1 = self.kinds[2 * p].at(touch[:, p], slip[:, 2 * p])
+            second, u2, s2 = self.kinds[2 * p + 1].at(touch[:, p + 1], slip[:, 2 * p + 1])
+            miss[:, p] = first - second
+            by_touch[:, p, :, p], by_touch[:, p, :, p + 1] = u1, -u2
+            by_slip[:, p, :, 0], by_slip[:, p, :, 1] = s1, -s2
+        return miss, by_touch, by_slip
+
+
+def tables(ends: tuple[End, End], reach: float = _REACH) -> Tables:
+    """Tabulate half-legs up to a slip, or up to a smaller one where they would not get away from the opening."""
+    return Tables(
+        (
+            _table(ends[0], True, reach),
+            _table(ends[1], False, reach),
+            _table(ends[1], True, reach),
+            _table(ends[0], False, reach),
+        )
+    )
+
+
+def _table(end: End, leaving: bool, reach: float) -> Table:
+    u = np.arange(_AROUND) / _AROUND
+    while True:
+        around, slip = np.repeat(u, len(_NODES)), np.tile(reach * _NODES, _AROUND)
+        legs = end.march(around, slip, leaving, _ROUGH)
+        there = legs.arrived.reshape(_AROUND, -1)
+        if there.all():
+            break
+        reach *= 0.5
+        if reach < _SMALLEST or not there[:, 1].all():
+            lost = u[np.argmin(there.all(axis=1))]
+            raise BadInputError(
+                f"a fibre that touches the opening at the {end.name} does not get from there to the middle of the part,"
+                f" at u={lost:.3f}: the part is not a closed cap there; cut another opening, or give a clearance"
+            )
+    values = np.stack([legs.u - around, legs.angle], axis=1).reshape(_AROUND, len(_NODES), 2)
+    powers = np.linalg.solve(np.vander(_NODES, increasing=True), values.swapaxes(0, 1).reshape(len(_NODES), -1))
+    powers = powers.reshape(len(_NODES), _AROUND, 2).swapaxes(0, 1)
+    fine = np.fft.irfft(np.fft.rfft(powers, axis=0), _FINER * _AROUND, axis=0) * _FINER
+    closed = np.concatenate([fine, fine[:1]])
+    return Table(CubicSpline(np.linspace(0.0, 1.0, len(closed)), closed, bc_type="periodic"), reach)
+
+
+@dataclass(frozen=True)
+class Natural:
+    """Maps from theta to touch points, and the turns a circuit.
+
+    waves (2, 1 + 2 m): a and b less theta: mean, cosines and sines; slip (n, 4): on the half-legs of a circuit at
+    evenly spread theta.
+    """
+
+    waves: Floats
+    turns: float
+    slip: Floats
+
+    @property
+    def worst(self) -> float:
+        """Largest slip."""
+        return float(np.abs(self.slip).max())
+
+    def touches(self, theta: Floats) -> Floats:
+        """Touch points (n, 3) of circuits that begin at theta (n,): at the start, the end, and the start again."""
+        a, b, after = (
+            theta + _waves_at(theta) @ self.waves[0],
+            theta + _waves_at(theta) @ self.waves[1],
+            theta + self.turns + _waves_at(theta + self.turns) @ self.waves[0],
+        )
+        return np.stack([a, b, after], axis=1)
+
+
+def _waves_at(theta: Floats) -> Floats:
+    angle = 2.0 * np.pi * np.outer(theta, np.arange(1, _WAVES + 1))
+    return np.concatenate([np.ones((len(theta), 1)), np.cos(angle), np.sin(angle)], axis=1)
+
+
+def natural(legs: Tables, turns: float | None = None, near: Natural | None = None) -> Natural:
+    """The maps with the least slip at so many turns a circuit, or at those that need the least, from `near`.
+
+    By the method of Levenberg and Marquardt, in which changes of a and b weigh more the more waves they have.
+    """
+    theta = np.arange(_SAMPLES) / _SAMPLES
+    first = near if near is not None else _guess(legs, theta)
+    first = Natural(first.waves, first.turns if turns is None else turns, first.slip)
+    now = _with_slips(legs, first, theta)
+    damping = _DAMPING
+    for _ in range(_STEPS):
+        answer = _answer(legs, now, theta, turns is None)
+        weight = _weights(turns is None) * np.linalg.norm(answer) / np.sqrt(answer.shape[1])
+        while True:
+            system = np.concatenate([answer, np.diag(np.sqrt(damping) * weight)])
+            step = np.linalg.lstsq(system, np.append(-now.slip.ravel(), np.zeros(len(weight))), rcond=None)[0]
+            trial = _with_slips(legs, _moved(now, step), theta)
+            better = float(np.square(trial.slip).sum()) < float(np.square(now.slip).sum())
+            small = float(np.abs(step).max()) < _DONE
+            if better or small:
+                break
+            damping *= 10.0
+        if better:
+            gain = 1.0 - float(np.square(trial.slip).sum() / np.square(now.slip).sum())
+            now, damping = trial, 0.1 * damping
+            small |= gain < _GAIN
+        if small:
+            break
+    return now
+
+
+def _with_slips(legs: Tables, maps: Natural, theta: Floats) -> Natural:
+    return Natural(maps.waves, maps.turns, slips(legs, maps.touches(theta), maps.slip))
+
+
+def _moved(maps: Natural, step: Floats) -> Natural:
+    """The maps with the waves of a (without its mean, which is where theta begins), those of b, and the turns moved."""
+    waves, many = maps.waves.copy(), 2 * _WAVES
+    waves[0, 1:] += step[:many]
+    waves[1] += step[many : 2 * many + 1]
+    return Natural(waves, maps.turns + float(step[2 * many + 1 :].sum()), maps.slip)
+
+
+def _weights(free: bool) -> Floats:
+    rank = np.tile(np.arange(1.0, _WAVES + 1), 2)
+    return np.concatenate([rank, [1.0], rank, [1.0] * free])
+
+
+def _answer(legs: Tables, maps: Natural, theta: Floats, free: bool) -> Floats:
+    """How the slips answer to a step: (4 n, steps)."""
+    many, after = 2 * _WAVES, theta + maps.turns
+    move = np.zeros((len(theta), 3, 2 * many + 2))
+    move[:, 0, :many], move[:, 1, many : 2 * many + 1] = _waves_at(theta)[:, 1:], _waves_at(theta)
+    move[:, 2, :many] = _waves_at(after)[:, 1:]
+    move[:, 2, 2 * many + 1] = 1.0 + _slope(after) @ maps.waves[0]
+    _, by_touch, by_slip = legs.mismatch(maps.touches(theta), maps.slip)
+    found = -np.einsum("npij,npjt,ntk->npik", np.linalg.inv(by_slip), by_touch, move)
+    found = found.reshape(-1, 2 * many + 2)
+    return np.asarray(found if free else found[:, :-1])
+
+
+def _slope(theta: Floats) -> Floats:
+    """Derivatives of the waves by theta."""
+    rank = 2.0 * np.pi * np.arange(1, _WAVES + 1)
+    angle = np.outer(theta, rank)
+    return np.concatenate([np.zeros((len(theta), 1)), -rank * np.sin(angle), rank * np.cos(angle)], axis=1)
+
+
+def _guess(legs: Tables, theta: Floats) -> Natural:
+    """A start: circuits whose half-legs without slip meet half-way in u, whatever their angles there.
+
+    Their map of the start's opening to itself is a rotation in the mean of a + its lead over that rotation, taken along
+    circuit after circuit, with weights that vanish with all derivatives at both ends (Das and Yorke, Super convergence
+    of ergodic averages for quasiperiodic orbits).
+    """
+    a = np.linspace(0.0, 1.0, _FINER * _AROUND + 1)
+    b = _over(legs.kinds[0], legs.kinds[1], a)
+    ahead = CubicSpline(a, _closed(_over(legs.kinds[2], legs.kinds[3], b) - a), bc_type="periodic")
+    share = (np.arange(_CIRCUITS) + 0.5) / _CIRCUITS
+    weight = np.exp(-1.0 / (share * (1.0 - share)))
+    weight /= weight.sum()
+    at, turned, leads = a, np.empty_like(a), np.empty((_CIRCUITS, len(a)))
+    orbit = np.empty((_CIRCUITS, len(a)))
+    for k in range(_CIRCUITS):
+        leads[k] = ahead(at - np.floor(at))
+        orbit[k] = at
+        at = at + leads[k]
+    turned = weight @ leads
+    turns = float(turned.mean())
+    natural_of_a = np.maximum.accumulate(weight @ (orbit - turns * np.arange(_CIRCUITS)[:, None]))
+    natural_of_a -= natural_of_a[0]
+    a_of_theta = np.interp(theta, natural_of_a / natural_of_a[-1], a)
+    b_of_a = CubicSpline(a, _closed(b - a), bc_type="periodic")
+    touch = np.stack([a_of_theta, a_of_theta + b_of_a(a_of_theta)])
+    waves = np.linalg.lstsq(_waves_at(theta), (touch - theta).T, rcond=None)[0].T
+    return Natural(waves, turns, np.zeros((len(theta), 4)))
+
+
+def _closed(values: Floats) -> Floats:
+    """Values (n,) around an opening, the last of which is the first to the last digit."""
+    return np.append(values[:-1], values[0])
+
+
+def _over(leave: Table, arrive: Table, u: Floats) -> Floats:
+    """Touch points (n,) at which fibres arrive, without slip, that leave at u (n,), unwrapped."""
+    wanted = leave.at(u, np.zeros_like(u))[0][:, 0]
+    fine = np.linspace(0.0, 1.0, _FINER * _AROUND + 1)
+    across = np.maximum.accumulate(arrive.at(fine, np.zeros_like(fine))[0][:, 0])  # legs of a family do not cross
+    whole = np.floor(wanted - across[0])
+    return np.asarray(whole + np.interp(wanted - whole, across, fine))
+
+
+def slips(legs: Tables, touch: Floats, near: Floats | None = None) -> Floats:
+    """Slips (n, 4) with which circuits pass through touch points (n, 3), by the tables."""
+    slip = np.zeros((len(touch), 4)) if near is None else near
+    for _ in range(_STEPS):
+        miss, _, by_slip = legs.mismatch(touch, slip)
+        step = np.linalg.solve(by_slip, miss[..., None])[..., 0].reshape(-1, 4)
+        slip = np.clip(slip - step, -4.0 * legs.reach, 4.0 * legs.reach)  # the tables go no further
+        if np.abs(step).max() < _DONE:
+            break
+    return slip
