@@ -15,8 +15,9 @@ from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
 from meshwind.filament.pattern import Pattern
-from meshwind.filament.polar_legs import End, Half, Legs, halves, opening
-from meshwind.filament.polar_natural import Natural, Tables, natural, slips, tables
+from meshwind.filament.polar_legs import End, Half, halves, opening
+from meshwind.filament.polar_meet import MEETS, met
+from meshwind.filament.polar_natural import Natural, Tables, natural, tables
 from meshwind.filament.polar_rows import Rows, Stretch, evenly
 from meshwind.march.traced import Stop
 from meshwind.path.paths import Counters, Paths, Status
@@ -26,10 +27,6 @@ from meshwind.surface.surface import Surface
 
 Side: TypeAlias = Literal["start", "end"]
 
-_MEETS = 1e-10
-"""Miss of two half-legs, in turns and in radians, that is round-off of their marches."""
-_POLISHES = 8
-"""Most steps in which exact half-legs are brought to meet; the tables' derivatives leave a hundredth or less a step."""
 _SLACK = 1e-9
 """Normal curvature times the part's size, below 0, that is round-off of a straight fibre."""
 _INSIDE = 1e-9
@@ -188,16 +185,13 @@ def passes_between_caps(
     theta = np.arange(circuits) * (chosen / circuits)
     touch = maps.touches(theta)
     touch[:, 2] = np.append(touch[1:, 0], touch[0, 0] + chosen)
-    slip, marched, miss = _polished(ends, legs, touch)
-    fibres = [
-        [Stretch(start, ends[0].half, False), Stretch(end, ends[1].half, True)]
-        for first, second in ((marched[0], marched[1]), (marched[3], marched[2]))
-        for start, end in zip(first.traces, second.traces, strict=True)
-    ]
+    found = met(ends, legs, touch)
+    order = [*found.legs[0], *(pair[::-1] for pair in found.legs[1])]
+    fibres = [[Stretch(at_start, ends[0].half, False), Stretch(at_end, ends[1].half, True)] for at_start, at_end in order]
     paths = _as_paths(surface, ends, fibres, evenly(surface, fibres, particles), friction)
-    by_pass = np.concatenate([slip[:, :2], slip[:, [3, 2]]])
+    slip, miss = np.concatenate([found.slip[0], found.slip[1][:, ::-1]]), found.miss.ravel()
     paths = replace(paths, residual=frozen(miss), status=_met(paths.status, miss))
-    return PolarPasses(paths, frozen(by_pass), frozen(miss), Pattern(circuits, chosen), free.turns)
+    return PolarPasses(paths, frozen(slip), frozen(miss), Pattern(circuits, chosen), free.turns)
 
 
 def passes_over_a_cap(
@@ -299,28 +293,6 @@ def _at(ends: tuple[End, End], legs: Tables, free: Natural, turns: int, circuits
     return turns, maps, legs
 
 
-def _polished(ends: tuple[End, End], legs: Tables, touch: Floats) -> tuple[Floats, list[Legs], Floats]:
-    """Slips (n, 4) with which exact half-legs through touch points (n, 3) meet, these, and their misses (2 n,)."""
-    slip = slips(legs, touch)
-    by_slip = legs.mismatch(touch, slip)[2]
-    kinds = (ends[0], 0, True), (ends[1], 1, False), (ends[1], 1, True), (ends[0], 2, False)
-    best: tuple[Floats, list[Legs], Floats] | None = None
-    for _ in range(_POLISHES):
-        marched = [end.march(touch[:, at], slip[:, k], leaving) for k, (end, at, leaving) in enumerate(kinds)]
-        where = np.array([[each.u, each.angle] for each in marched])
-        miss = np.stack([where[0] - where[1], where[2] - where[3]]).transpose(2, 0, 1)
-        off = np.abs(miss).max(axis=2).T.ravel()
-        off = np.where(np.isfinite(off), off, np.inf)
-        if best is not None and not off.max() < best[2].max():
-            break
-        best = slip.copy(), marched, off
-        if off.max() <= _MEETS or not np.isfinite(off).all():
-            break
-        slip = slip - np.linalg.solve(by_slip, miss[..., None])[..., 0].reshape(-1, 4)
-    assert best is not None
-    return best
-
-
 def _spread(surface: Surface, end: End, count: int) -> Floats:
     """Touch points (n,) that share out the length of the opening."""
     u = np.linspace(0.0, 1.0, _SHARES + 1)
@@ -353,7 +325,7 @@ def _as_paths(
         normal=frozen(normal),
         slip=frozen(at),
         family=frozen(np.repeat([1, -1], half)),
-        status=_status(surface, ends, fibres, uv, slip > friction + _MEETS),
+        status=_status(surface, ends, fibres, uv, slip > friction + MEETS),
         residual=frozen(np.zeros(len(fibres))),
         friction=friction,
         counters=Counters(steps, 0, 0, 0),
@@ -375,4 +347,4 @@ def _status(
 
 def _met(status: Ints, miss: Floats) -> Ints:
     """The status of passes, also those whose half-legs do not meet."""
-    return frozen(np.where(miss <= 1e3 * _MEETS, status, int(Status.STALLED)))
+    return frozen(np.where(miss <= 1e3 * MEETS, status, int(Status.STALLED)))

@@ -174,9 +174,9 @@ def natural(legs: Tables, turns: float | None = None, near: Natural | None = Non
     for _ in range(_STEPS):
         answer = _answer(legs, now, theta, turns is None)
         weight = _weights(turns is None) * np.linalg.norm(answer) / np.sqrt(answer.shape[1])
+        square = answer.T @ answer
         while True:
-            system = np.concatenate([answer, np.diag(np.sqrt(damping) * weight)])
-            step = np.linalg.lstsq(system, np.append(-now.slip.ravel(), np.zeros(len(weight))), rcond=None)[0]
+            step = -np.linalg.solve(square + np.diag(damping * weight**2), answer.T @ now.slip.ravel())
             trial = _with_slips(legs, _moved(now, step), theta)
             better = float(np.square(trial.slip).sum()) < float(np.square(now.slip).sum())
             small = float(np.abs(step).max()) < _DONE
