@@ -171,6 +171,26 @@ def test_a_mirrored_part_has_the_mirrored_program() -> None:
         assert b.mean() == pytest.approx(a.mean(), abs=1e-3)
 
 
+def test_a_tank_between_caps_and_a_dome_on_a_shaft() -> None:
+    """Passes touch the openings and come back; turns are counted in space."""
+    tank = mw.fit(mw.flatten(mw.annulus(mw.read("data/tank.ply"))))
+    layer = close_layer(tank, LayerPlan(31, 0.5, 0.2, 201, ("cap", "cap")))
+    assert (layer.paths.status == 0).all()
+    assert turned(layer) == pytest.approx(layer.pattern.turns, abs=1e-6)
+    assert len(layer.filaments) == 1
+    filament = layer.filaments[0]
+    assert (filament.kind == Kind.LAID).all()
+    assert np.linalg.norm(filament.points[0] - filament.points[-1]) <= 1e-9 * tank.size
+    assert layer.length == pytest.approx(float(layer.paths.length.sum()), rel=1e-4)
+    assert 0.0 < max(each.slip for each in layer.turnarounds) < 0.2
+    dome = mw.shapes.sphere_band(1.0, polar0=0.5 * pi, polar1=2.6, spans=(96, 48))
+    layer = close_layer(dome, LayerPlan(7, 0.5, particles=101, turns=("shaft", "cap")))
+    assert turned(layer) == pytest.approx(layer.pattern.turns, abs=1e-6)
+    assert len(layer.filaments) == 1
+    assert float(layer.joining.end_dwell.max()) == pytest.approx(0.0, abs=1e-9)
+    assert layer.joining.start_dwell.min() > 1.0 / 3.0  # to the shaft of half the radius and back
+
+
 def test_what_cannot_turn_is_said() -> None:
     tube = mw.shapes.cylinder(1.0, 3.0)
     with pytest.raises(BadInputError, match="holds no fibre without friction"):
@@ -202,7 +222,7 @@ def test_a_run_writes_its_filament(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("options", "line"), [
     ({"turn_start": "pins"}, "turn_start is given without continuous"),
-    ({"continuous": True, "turn_end": "hook"}, "turn_end is 'hook'; give auto, collar, pins or shaft"),
+    ({"continuous": True, "turn_end": "hook"}, "turn_end is 'hook'; give auto, collar, pins, shaft or cap"),
     ({"continuous": True, "spacing": 5.0}, "spacing sets others"),
 ])  # fmt: skip
 def test_options_that_cannot_be_used(options: dict[str, object], line: str) -> None:

@@ -10,5 +10,5 @@ SIDES = ("outer", "inner")
 """Skins of a part with a wall; the first is wound by default."""
 OPENED_BY = ("auto", "level", "plane")
 """How a closed end is opened: along a level line of the distance to its pole, or by a plane square to the axis."""
-TURNAROUNDS = ("collar", "pins", "shaft")
-"""Turnarounds over a rim."""
+TURNAROUNDS = ("collar", "pins", "shaft", "cap")
+"""Turnarounds: over a rim, and on the cap of a closed end."""

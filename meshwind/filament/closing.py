@@ -1,19 +1,22 @@
 """Closing a layer: revolutions, phase and turnarounds with which its paths join to one filament."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.core.cast import Bools, Floats, frozen
 from meshwind.core.errors import BadInputError
+from meshwind.filament.cap_turn import Cap, ends_with_caps, joined_on_caps, passes_on_caps
 from meshwind.filament.course import Course, Kind, joined
-from meshwind.filament.ends import End, LayerPlan, Pairs, choose_end
+from meshwind.filament.ends import CAP, End, LayerPlan, Pairs, choose_end
 from meshwind.filament.joining import Joining, join, passes
 from meshwind.filament.pattern import Pattern, nearest_pattern, patterns
 from meshwind.filament.turnaround import Turnaround
 from meshwind.path import Paths, Status, solve
 from meshwind.path.winding_angle import winding_angle
 from meshwind.planning.families import families
+from meshwind.surface.rims import rim
 from meshwind.surface.surface import Surface
 
 _SCOUTS = 12
@@ -42,21 +45,24 @@ class ClosedLayer:
         The paths that are joined, family +1 first, as many of each.
     joining : Joining
         Which path follows which.
-    turnarounds : tuple of Turnaround
+    turnarounds : tuple of Turnaround or Cap
         At the start and at the end.
     filaments : tuple of Course
         Each filament in the order of winding, from the start of its first path back to it.
     left_out : int
         Paths that are not in the filament, as they or others of their family are not in equilibrium.
+    words : str
+        What passes over caps need, and what would help where they do not hold; "" without a cap.
     """
 
     plan: LayerPlan
     revolutions: float
     paths: Paths
     joining: Joining
-    turnarounds: tuple[Turnaround, Turnaround]
+    turnarounds: tuple[Turnaround | Cap, Turnaround | Cap]
     filaments: tuple[Course, ...]
     left_out: int = 0
+    words: str = ""
 
     @property
     def pattern(self) -> Pattern:
@@ -92,16 +98,51 @@ def close_layer(surface: Surface, plan: LayerPlan) -> ClosedLayer:
     BadInputError
         If no path of a family is in equilibrium, or a turnaround cannot be made.
     """
+    if CAP in plan.turns:
+        return _on_caps(surface, plan)
     scouts, _ = _at_rest(_solved(surface, plan, min(plan.paths, _SCOUTS), plan.revolutions, 0.0))
     ends = [choose_end(surface, v, plan, word, scouts) for v, word in zip((0.0, 1.0), plan.turns, strict=True)]
     planned = _planned(surface, plan, ends, scouts)
     kept, left_out = _at_rest(_solved(surface, plan, plan.paths, planned.revolutions, -planned.dwells[0]))
     pairs = [end.pairs(kept) for end in ends]
     joining = _joined(pairs)
+    filaments = _filaments(kept, joining, *_turns(pairs, joining))
     turnarounds = (ends[0].turnaround, ends[1].turnaround)
+    return ClosedLayer(plan, planned.revolutions, kept, joining, turnarounds, filaments, left_out)
+
+
+def _on_caps(surface: Surface, plan: LayerPlan) -> ClosedLayer:
+    """The layer where one end or both turn on a cap."""
+    laid = passes_on_caps(surface, plan)
+    ends = ends_with_caps(surface, plan, laid)
+    pairs = [None if isinstance(end, Cap) else end.pairs(laid.paths) for end in ends]
+    joining = joined_on_caps(laid) if laid.pattern is not None else _joined_at_rim(surface, laid.paths, pairs)
+    filaments = _filaments(laid.paths, joining, *_turns(pairs, joining))
+    start, end = (end if isinstance(end, Cap) else end.turnaround for end in ends)
+    turned = np.abs(laid.paths.uv[:, -1, 0] - laid.paths.uv[:, 0, 0]).mean()
     return ClosedLayer(
-        plan, planned.revolutions, kept, joining, turnarounds, _filaments(kept, joining, pairs), left_out
-    )  # fmt: skip
+        plan,
+        float(turned),
+        laid.paths,
+        joining,
+        (start, end),
+        filaments,
+        words=laid.words.removeprefix(f"{joining.pattern.words}; "),
+    )
+
+
+def _joined_at_rim(surface: Surface, paths: Paths, pairs: list[Pairs | None]) -> Joining:
+    """The joining where passes turn on the cap at one end, and over the rim at the other."""
+    at: list[tuple[Floats, Floats]] = []
+    for v, each in zip((0, 1), pairs, strict=True):
+        if each is not None:
+            at.append((each.off, each.at) if v == 0 else (each.at, each.off))
+            continue
+        there, back = (rim(surface, float(v)).shares(paths.uv[paths.family == family, -v, 0]) for family in (1, -1))
+        at.append((there, back))
+    (start, home), (end, away) = at
+    dwells = [None if each is None else each.surplus for each in pairs]
+    return join(passes(start, end), passes(away, home), end_dwell=dwells[1], start_dwell=dwells[0])
 
 
 @dataclass(frozen=True)
@@ -187,13 +228,10 @@ def _joined(pairs: list[Pairs]) -> Joining:
     return join(there, back, end_dwell=end.surplus, start_dwell=start.surplus)
 
 
-def _filaments(paths: Paths, joining: Joining, pairs: list[Pairs]) -> tuple[Course, ...]:
+def _filaments(
+    paths: Paths, joining: Joining, over_start: list[Course | None], over_end: list[Course | None]
+) -> tuple[Course, ...]:
     """The courses of all filaments."""
-    start, end = pairs
-    count = len(joining.back)
-    each = np.arange(count)
-    over_end = _turns(end, each, joining.back, joining.end_dwell)
-    over_start = _turns(start, each, joining.there, joining.start_dwell)
     laid = _laid(paths)
     plus, minus = (np.flatnonzero(paths.family == family) for family in (1, -1))
     found, circuit = [], 0
@@ -207,15 +245,24 @@ def _filaments(paths: Paths, joining: Joining, pairs: list[Pairs]) -> tuple[Cour
                 (_reversed(laid[minus[back]]), 1),
                 (over_start[back], 1),
             ]
-            parts += [_numbered(part, circuit, 2 * circuit + passed) for part, passed in row]
+            parts += [_numbered(part, circuit, 2 * circuit + passed) for part, passed in row if part is not None]
             circuit += 1
         found.append(joined(parts))
     return tuple(found)
 
 
-def _turns(pairs: Pairs, into: Ints, out: Ints, dwell: Floats) -> list[Course]:
-    arriving, leaving = pairs.arriving.chosen(into), pairs.leaving.chosen(out)
-    return pairs.end.turnaround.courses(arriving, leaving, pairs.later(into, out, dwell))
+def _turns(pairs: Sequence[Pairs | None], joining: Joining) -> tuple[list[Course | None], list[Course | None]]:
+    """The turnarounds after each path back, at the start, and after each path there, at the end; None on a cap."""
+    each = np.arange(len(joining.back))
+    made: list[list[Course | None]] = []
+    ways = ((joining.there, joining.start_dwell), (joining.back, joining.end_dwell))
+    for pair, (out, dwell) in zip(pairs, ways, strict=True):
+        if pair is None:
+            made.append([None] * len(each))
+            continue
+        arriving, leaving = pair.arriving.chosen(each), pair.leaving.chosen(out)
+        made.append([*pair.end.turnaround.courses(arriving, leaving, pair.later(each, out, dwell))])
+    return made[0], made[1]
 
 
 def _laid(paths: Paths) -> list[Course]:

@@ -18,6 +18,7 @@ from meshwind.path.friction import Friction, friction_of
 from meshwind.surface.rims import rim
 from meshwind.surface.surface import Surface
 
+CAP = "cap"
 _SETTLED = 60
 """Rounds in which the least dwell is found."""
 _ROOM = 1e-6
@@ -47,7 +48,10 @@ class LayerPlan:
     particles : int or None, default 401
         Particles per path.
     turns : tuple of str, default ("auto", "auto")
-        Turnarounds at the start and at the end: "collar", "pins", "shaft" or "auto".
+        Turnarounds at the start and at the end: "collar", "pins", "shaft", "cap" or "auto".  On a cap the angle follows
+        from the opening, so that the revolutions are not kept.
+    clearance : float, default 0
+        Distance at which fibres pass the opening of a cap, in the surface's units.
     """
 
     paths: int
@@ -55,6 +59,7 @@ class LayerPlan:
     friction: float | Friction = 0.0
     particles: int | None = PARTICLES
     turns: tuple[str, str] = (AUTO, AUTO)
+    clearance: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -116,8 +116,8 @@ def join(
     there: Passes,
     back: Passes,
     *,
-    end_dwell: float | Surplus = 0.0,
-    start_dwell: float | Surplus = 0.0,
+    end_dwell: float | Surplus | None = 0.0,
+    start_dwell: float | Surplus | None = 0.0,
     filaments: int | None = 1,
 ) -> Joining:
     """Join paths there and paths back to filaments, with as little dwell as closes them.
@@ -129,9 +129,10 @@ def join(
     ----------
     there, back : Passes
         As many paths there, from the start rim to the end rim, as back.
-    end_dwell, start_dwell : float or callable, default 0
-        Least dwell at each rim, in turns; or a function of the paths that arrive (N,), those that leave after them
-        (N,) and the dwells (N,) between, that says how much longer than needed each dwell is, in turns.
+    end_dwell, start_dwell : float, callable or None, default 0
+        Least dwell at each rim, in turns; None where each path leaves where the one before arrives; or a function of
+        the paths that arrive (N,), those that leave after them (N,) and the dwells (N,) between, that says how much
+        longer than needed each dwell is, in turns.
     filaments : int or None, default 1
         Number of filaments to close the layer to, a divisor of the paths; None takes what the least dwell gives.
 
@@ -168,7 +169,9 @@ def join(
         if filaments is None or gcd(turns, count) == filaments:
             break
         # one place more where less dwell is spare: it counts as one turn of the layer at either rim
-        if end.spare(at_end) <= start.spare(at_start):
+        if end.fixed and start.fixed:
+            raise BadInputError(f"{count} circuits in {turns} turns are not {filaments} filaments; give other circuits")
+        if start.fixed or (not end.fixed and end.spare(at_end) <= start.spare(at_start)):
             at_end = end.enough(at_end + 1)
         else:
             at_start = start.enough(at_start + 1)
@@ -179,10 +182,10 @@ def join(
 class _Rim:
     """A rim at which paths arrive, at `arriving` (N,), and leave, at `leaving` (N,)."""
 
-    def __init__(self, arriving: Floats, leaving: Floats, dwell: float | Surplus) -> None:
+    def __init__(self, arriving: Floats, leaving: Floats, dwell: float | Surplus | None) -> None:
         self.into, self.out = _order(arriving), _order(leaving)
         self.at, self.off = _within_a_turn(arriving[self.into]), _within_a_turn(leaving[self.out])
-        self.dwell = dwell
+        self.fixed, self.dwell = dwell is None, dwell or 0.0
         shortest = float((self.off - self.at).min())
         self.first = len(arriving) * (ceil(-shortest - _ROUND_OFF) - 1)
         """Places with which at least one path leaves where it arrived or before."""

@@ -187,7 +187,9 @@ def passes_between_caps(
     touch[:, 2] = np.append(touch[1:, 0], touch[0, 0] + chosen)
     found = met(ends, legs, touch)
     order = [*found.legs[0], *(pair[::-1] for pair in found.legs[1])]
-    fibres = [[Stretch(at_start, ends[0].half, False), Stretch(at_end, ends[1].half, True)] for at_start, at_end in order]
+    fibres = [
+        [Stretch(at_start, ends[0].half, False), Stretch(at_end, ends[1].half, True)] for at_start, at_end in order
+    ]
     paths = _as_paths(surface, ends, fibres, evenly(surface, fibres, particles), friction)
     slip, miss = np.concatenate([found.slip[0], found.slip[1][:, ::-1]]), found.miss.ravel()
     paths = replace(paths, residual=frozen(miss), status=_met(paths.status, miss))
@@ -332,9 +334,7 @@ def _as_paths(
     )
 
 
-def _status(
-    surface: Surface, ends: tuple[End, ...], fibres: list[list[Stretch]], uv: Floats, beyond: Bools
-) -> Ints:
+def _status(surface: Surface, ends: tuple[End, ...], fibres: list[list[Stretch]], uv: Floats, beyond: Bools) -> Ints:
     status = np.full(len(fibres), int(Status.CONVERGED))
     status[beyond[:, -1]] = Status.SLID_OFF_END
     status[beyond[:, 0]] = Status.SLID_OFF_START

@@ -38,7 +38,7 @@ def pattern_figures(layer: ClosedLayer) -> PatternFigures:
                 revolutions=each.revolutions,
                 angle=each.angle,
                 cover=each.cover,
-                dwell=each.dwell,
+                dwell=each.dwell if dwells > 0.0 else None,
             )
             for each in alternatives(pattern, layer.revolutions, dwells, median)
         ],

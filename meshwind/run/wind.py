@@ -92,8 +92,9 @@ def wind(  # noqa: PLR0913
         CSV file of the paths' ends, see `read_pins`.  By default they are spread evenly over the rims.
     continuous : bool, default False
         Whether to wind one closed filament, with its turnarounds at both ends; revolutions move to where it closes.
-    turn_start, turn_end : {"auto", "collar", "pins", "shaft"}, default "auto"
-        Turnaround at each end; "auto" takes a collar where friction holds on a short one, and pins elsewhere.
+    turn_start, turn_end : {"auto", "collar", "pins", "shaft", "cap"}, default "auto"
+        Turnaround at each end; "auto" takes a collar where friction holds on a short one, and pins elsewhere.  On the
+        "cap" of a closed end the fibre touches the opening and comes back: that sets the angle, not `revolutions`.
     out : str or PathLike, optional
         Folder for the results.  By default nothing is written.
     overwrite : bool, default False

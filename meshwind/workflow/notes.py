@@ -146,15 +146,16 @@ def about_filament(layer: ClosedLayer, units: str = "") -> tuple[Note, ...]:
     notes = []
     if abs(wound - asked) >= _SAME_TURNS:
         notes.append(Note(f"revolutions moved from {asked:.6g} to {wound:.6g}, with which the filament closes"))
+    if layer.words:
+        held = (layer.paths.status == Status.CONVERGED).all()
+        notes.append(Note(layer.words, not held))
     if layer.left_out:
         notes.append(
             Note(f"{layer.left_out} paths are not in the filament, as some are not at rest: the layer has gaps", True)
         )
     for name, turn in zip(("start", "end"), layer.turnarounds, strict=True):
-        held = f"at slip {turn.slip:g}" if turn.slip > 0.0 else "without friction"
-        notes.append(
-            Note(f"{turn.name} at the {name}, {quantity(turn.reach, units, 3)} beyond the rim, {held}: {turn.rule}")
-        )
+        held = f"at slip {turn.slip:.3g}" if turn.slip > 0.0 else "without friction"
+        notes.append(Note(f"{turn.name} at the {name}{_reach(turn.reach, units)}, {held}: {turn.rule}"))
         standing = -np.degrees(turn.edge.crease[0])
         if standing > _STANDS_UP:
             notes.append(
@@ -172,6 +173,10 @@ def about_filament(layer: ClosedLayer, units: str = "") -> tuple[Note, ...]:
                 )
             )
     return tuple(notes)
+
+
+def _reach(reach: float, units: str) -> str:
+    return f", {quantity(reach, units, 3)} beyond the rim" if reach > 0.0 else ""
 
 
 def about_layup(layup: Layup) -> tuple[Note, ...]:

@@ -157,8 +157,8 @@ class Options:
     turn_start: str = field(
         default=AUTO,
         metadata=option(
-            "Turnaround at the start: collar, pins, shaft, or auto, a collar where friction holds on a short one and "
-            "pins elsewhere",
+            "Turnaround at the start: collar, pins, shaft, cap (a closed end, whose opening sets the angle), or auto, "
+            "a collar where friction holds on a short one and pins elsewhere",
             FIBRES,
             metavar="KIND",
             words=(AUTO, *TURNAROUNDS),

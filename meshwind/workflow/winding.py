@@ -93,7 +93,8 @@ def lay(surface: Surface, options: Options, revolutions: float, friction: float 
 def close(surface: Surface, options: Options, revolutions: float, friction: float | Friction = 0.0) -> ClosedLayer:
     """Wind the layer as one filament."""
     turns = (options.turn_start, options.turn_end)
-    return close_layer(surface, LayerPlan(options.paths, revolutions, friction, options.particles, turns))
+    clear = 0.0 if options.band_width is None else 0.5 * options.band_width
+    return close_layer(surface, LayerPlan(options.paths, revolutions, friction, options.particles, turns, clear))
 
 
 def _ends(surface: Surface, options: Options, revolutions: float) -> Families:
