@@ -183,7 +183,7 @@ def passes_between_caps(
     wanted = [turns] if turns is not None else _next_to(free.turns * circuits, circuits)
     chosen, maps, legs = min((_at(ends, legs, free, each, circuits) for each in wanted), key=lambda one: one[1].worst)
     theta = np.arange(circuits) * (chosen / circuits)
-    touch = maps.touches(theta)
+    touch = maps.touches(np.asarray(theta))
     touch[:, 2] = np.append(touch[1:, 0], touch[0, 0] + chosen)
     found = met(ends, legs, touch)
     order = [*found.legs[0], *(pair[::-1] for pair in found.legs[1])]

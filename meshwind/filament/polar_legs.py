@@ -75,7 +75,7 @@ def opening(surface: Surface, end: int, clearance: float = 0.0) -> Opening:
 
 @dataclass(frozen=True)
 class Half:
-    """A half of a surface, from one rim to a knot line half-way: the same spline in v' = (v - first) / (last - first)."""
+    """A half of a surface, from one rim to a knot line half-way: the same spline, v' = (v - first) / (last - first)."""
 
     surface: Surface
     first: float

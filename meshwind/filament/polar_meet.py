@@ -65,6 +65,6 @@ def _meet(
         if not going.any():
             break
         open_, rates, before = open_[going], rates[going], miss[going]
-        step = -np.linalg.solve(rates, before[..., None])[..., 0]
+        step = np.asarray(-np.linalg.solve(rates, before[..., None])[..., 0])
         slip[open_] += step
     return best, legs, off

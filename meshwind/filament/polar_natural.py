@@ -176,7 +176,7 @@ def natural(legs: Tables, turns: float | None = None, near: Natural | None = Non
         weight = _weights(turns is None) * np.linalg.norm(answer) / np.sqrt(answer.shape[1])
         square = answer.T @ answer
         while True:
-            step = -np.linalg.solve(square + np.diag(damping * weight**2), answer.T @ now.slip.ravel())
+            step = np.asarray(-np.linalg.solve(square + np.diag(damping * weight**2), answer.T @ now.slip.ravel()))
             trial = _with_slips(legs, _moved(now, step), theta)
             better = float(np.square(trial.slip).sum()) < float(np.square(now.slip).sum())
             small = float(np.abs(step).max()) < _DONE
@@ -255,7 +255,7 @@ def _guess(legs: Tables, theta: Floats) -> Natural:
     a_of_theta = np.interp(theta, natural_of_a / natural_of_a[-1], a)
     b_of_a = CubicSpline(a, _closed(b - a), bc_type="periodic")
     touch = np.stack([a_of_theta, a_of_theta + b_of_a(a_of_theta)])
-    waves = np.linalg.lstsq(_waves_at(theta), (touch - theta).T, rcond=None)[0].T
+    waves = np.asarray(np.linalg.lstsq(_waves_at(theta), (touch - theta).T, rcond=None)[0].T)
     return Natural(waves, turns, np.zeros((len(theta), 4)))
 
 

@@ -142,6 +142,8 @@ class Annulus(PicklableRecord):
         parts.
     warnings : tuple of str, default ()
         Branches and wide holes that were closed, in words.
+    caps : tuple of two bool, default (False, False)
+        Whether the start and the end are closed ends of the part, at which an opening was cut, rather than rims of it.
 
     Examples
     --------
@@ -160,3 +162,4 @@ class Annulus(PicklableRecord):
     notes: tuple[str, ...] = ()
     wall: Wall | None = None
     warnings: tuple[str, ...] = ()
+    caps: tuple[bool, bool] = (False, False)

@@ -156,7 +156,8 @@ def _assembled(mesh: Mesh, surface: CurvedFacets, pair: list[End], words: list[s
     # along the orientation of the faces the surface is on the left: u increases at the start and decreases at the end
     ordered = frozen(first), frozen(np.roll(second[::-1], 1))
     vertices, faces, trusted = frozen(surface.vertices), frozen(surface.faces), frozen(surface.trusted)
-    return Annulus(mesh, vertices, faces, ordered, trusted, "; ".join(words))
+    caps = pair[0].is_pole, pair[1].is_pole
+    return Annulus(mesh, vertices, faces, ordered, trusted, "; ".join(words), caps=caps)
 
 
 def _offset(rim: Floats, pair: list[End]) -> float:
