@@ -113,6 +113,20 @@ def test_slip_beyond_the_friction_is_said() -> None:
     assert "do not hold" in layer.words and "1.000000" in layer.words
 
 
+def test_the_slip_is_that_of_the_points() -> None:
+    """kg / kn from second differences of the points, to the left on the fibre's own way, on both half-legs."""
+    ball = mw.shapes.sphere_band(1.0, 0.4, np.pi - 0.3, spans=(128, 64))
+    layer = passes_between_caps(ball, 5, turns=6, particles=401)
+    points, normal = layer.paths.points, layer.paths.normal[:, 1:-1]
+    way = (points[:, 2:] - points[:, :-2]) * layer.paths.family[:, None, None]
+    bend = points[:, 2:] - 2.0 * points[:, 1:-1] + points[:, :-2]
+    left = np.cross(normal, way / np.linalg.norm(way, axis=-1, keepdims=True))
+    found = -(bend * left).sum(axis=-1) / (bend * normal).sum(axis=-1)
+    for leg, at in ((0, slice(10, 150)), (1, slice(250, 390))):
+        assert np.abs(found[:, at] - layer.slip[:, leg, None]).max() < 1e-3 * layer.worst + 1e-4
+    assert layer.worst > 0.01 and np.nanmax(layer.paths.slip) == layer.worst
+
+
 def test_a_clearance_is_kept() -> None:
     """On a sphere a geodesic that passes an opening at a distance is a great circle that far from its pole."""
     ball = mw.shapes.sphere_band(1.0, 0.3, np.pi - 0.3, spans=(128, 64))
