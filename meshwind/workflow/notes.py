@@ -8,6 +8,7 @@ from meshwind.appearance.words import power, quantity, ratio
 from meshwind.chart import Chart
 from meshwind.core.errors import BadInputError
 from meshwind.filament.closing import ClosedLayer
+from meshwind.filament.ends import CAP
 from meshwind.layup.layup import Layup
 from meshwind.mesh import Annulus, Mesh
 from meshwind.mesh.opening.branches import BRANCHES, CUT
@@ -140,12 +141,16 @@ def _elsewhere(rests: OtherRests, path: int, units: str) -> str:
     return f"path {path} {where} if it were laid {quantity(abs(shift), units, 2)} further to the {side} at first"
 
 
-def about_filament(layer: ClosedLayer, units: str = "") -> tuple[Note, ...]:
-    """Notes on how a layer closes, what turns at its ends, and what does not hold there."""
+def about_filament(layer: ClosedLayer, caps: tuple[bool, bool], units: str = "") -> tuple[Note, ...]:
+    """Notes on how a layer closes, what turns at its ends, and what does not hold there; caps: which ends are closed."""
     asked, wound = layer.plan.revolutions, layer.revolutions
     notes = []
     if abs(wound - asked) >= _SAME_TURNS:
         notes.append(Note(f"revolutions moved from {asked:.6g} to {wound:.6g}, with which the filament closes"))
+    if all(caps) and not any(turn.name == CAP for turn in layer.turnarounds):
+        notes.append(
+            Note("both ends are closed: with --turn-start cap --turn-end cap the fibre turns on them, at another angle")
+        )
     if layer.words:
         held = (layer.paths.status == Status.CONVERGED).all()
         notes.append(Note(layer.words, not held))

@@ -70,7 +70,7 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock) -> Windi
         spaced = None if options.spacing is None else space_out(laid, revolutions, options.spacing, friction)
         laid = laid if spaced is None else spaced.paths
         notes = (*notes, *about_paths(laid), *about_choice(chosen), *about_spacing(spaced, units))
-        notes = notes if closed is None else (*notes, *about_filament(closed, units))
+        notes = notes if closed is None else (*notes, *about_filament(closed, part.chart.annulus.caps, units))
         notes = (*notes, *about_contact(laid, units), *about_other_rests(laid, units))
     with clock.stage("assess"):
         layup = assess(laid, options.band_width)
