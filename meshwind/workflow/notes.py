@@ -142,7 +142,7 @@ def _elsewhere(rests: OtherRests, path: int, units: str) -> str:
 
 
 def about_filament(layer: ClosedLayer, caps: tuple[bool, bool], units: str = "") -> tuple[Note, ...]:
-    """Notes on how a layer closes, what turns at its ends, and what does not hold there; caps: which ends are closed."""
+    """Notes on how a layer closes, what turns at its ends, and what does not hold; caps: which ends are closed."""
     asked, wound = layer.plan.revolutions, layer.revolutions
     notes = []
     if abs(wound - asked) >= _SAME_TURNS:
