@@ -44,8 +44,10 @@ class Families:
     family: Ints
 
 
-def families(surface: Surface, paths: int, revolutions: float) -> Families:
-    """Spread the end points of two families evenly over the rims.
+def families(
+    surface: Surface, paths: int, revolutions: float, *, between: tuple[float, float] = (0.0, 1.0)
+) -> Families:
+    """Spread the end points of two families evenly over the rims, or over two level lines between them.
 
     The starts are spread by arc length over the start rim and the ends likewise over the end rim, for both families
     the same. Where a rim's arc length is not even in u, the ends keep the mean turn of the whole rim.
@@ -58,6 +60,8 @@ def families(surface: Surface, paths: int, revolutions: float) -> Families:
         Number of paths per family, at least 1.
     revolutions : float
         Turns of u from end to end, at least 0: +revolutions for family +1 and -revolutions for family -1.
+    between : tuple of float, default (0, 1)
+        v of the lines that the paths start and end on: the rims, or others for a layer over a part of the length.
 
     Returns
     -------
@@ -67,7 +71,7 @@ def families(surface: Surface, paths: int, revolutions: float) -> Families:
     Raises
     ------
     BadInputError
-        If the surface does not close in u, or `paths` or `revolutions` is out of range.
+        If the surface does not close in u, or `paths`, `revolutions` or `between` is out of range.
 
     See Also
     --------
@@ -88,11 +92,14 @@ def families(surface: Surface, paths: int, revolutions: float) -> Families:
     check_count(paths, "paths", 1)
     if not (np.isfinite(revolutions) and revolutions >= 0):
         raise BadInputError(f"revolutions is {revolutions}; give a number >= 0")
+    low, high = between
+    if not 0.0 <= low < high <= 1.0:
+        raise BadInputError(f"between is {low:g} and {high:g}; give two values of v from 0 to 1, the smaller first")
     turn = np.arange(paths) / paths
-    first = rim_parameters(surface, 0.0, turn)
-    start = np.stack([first, np.zeros(paths)], axis=1)
-    last = [rim_parameters(surface, 1.0, turn + turned) for turned in (revolutions, -revolutions)]
-    ends = [np.stack([u, np.ones(paths)], axis=1) for u in last]
+    first = rim_parameters(surface, low, turn)
+    start = np.stack([first, np.full(paths, low)], axis=1)
+    last = [rim_parameters(surface, high, turn + turned) for turned in (revolutions, -revolutions)]
+    ends = [np.stack([u, np.full(paths, high)], axis=1) for u in last]
     family = np.repeat([1, -1], paths)
     return Families(frozen(np.concatenate([start, start])), frozen(np.concatenate(ends)), frozen(family))
 
