@@ -174,11 +174,11 @@ def hoop(surface: Surface, plan: HoopPlan) -> Hoop:
     )  # fmt: skip
     lifted, weight = ~np.isfinite(bent.slip), _weights(bent.steps)
     worst = uv[int(np.argmax(np.where(lifted, np.inf, bent.slip)))]
-    return Hoop(
-        course, Tracks(frozen(uv[None]), frozen(bent.steps[None]), frozen(np.zeros((1, len(u))))), pitch, float(u[-1] - u[0]), _cover(lines, plan, ends),
-        float(np.max(bent.slip, initial=0.0, where=~lifted)), float(weight[lifted].sum() / weight.sum()),
-        (float(worst[0] % 1.0), float(worst[1])),
-    )  # fmt: skip
+    laid = Tracks(frozen(uv[None]), frozen(bent.steps[None]), frozen(np.zeros((1, len(u)))))
+    slip = float(np.max(bent.slip, initial=0.0, where=~lifted))
+    lifts = float(weight[lifted].sum() / weight.sum())
+    where = float(worst[0] % 1.0), float(worst[1])
+    return Hoop(course, laid, pitch, float(u[-1] - u[0]), _cover(lines, plan, ends), slip, lifts, where)
 
 
 def _weights(steps: Floats) -> Floats:

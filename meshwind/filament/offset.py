@@ -158,7 +158,7 @@ def _check_folds(thickness: Floats, smallest: Floats, uv: Floats) -> None:
     if depth[worst] >= 1.0:
         raise BadInputError(
             f"a layer {thickness[worst]:.3g} thick folds in a hollow of radius {-1.0 / smallest[worst]:.3g} at "
-            f"u={uv[worst, 0]:.3g}, v={uv[worst, 1]:.3g}; give a thinner band, fewer paths, or a part with a wider hollow"
+            f"u={uv[worst, 0]:.3g}, v={uv[worst, 1]:.3g}; give a thinner band or fewer paths"
         )
 
 

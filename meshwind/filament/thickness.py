@@ -10,7 +10,7 @@ from meshwind.core.vectors import TINY
 from meshwind.layup.bands import cells_for
 from meshwind.layup.coverage import add_lengths, between_centres, cell_areas
 from meshwind.path.paths import Paths
-from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV
+from meshwind.surface.evaluate import SU, SUU, SV, SVV
 from meshwind.surface.surface import Surface
 
 FLAT, LENS = SECTIONS = ("flat", "lens")
@@ -261,7 +261,8 @@ def _rates(surface: Surface, state: Floats) -> Floats:
     frames = surface.frames(np.ascontiguousarray(state[:, :2]))
     p, q = state[:, 2], state[:, 3]
     su, sv = frames[:, SU], frames[:, SV]
-    bend = frames[:, SUU] * (p * p)[:, None] + frames[:, SUV] * (2.0 * p * q)[:, None] + frames[:, SVV] * (q * q)[:, None]
+    squares = np.stack([p * p, 2.0 * p * q, q * q], axis=1)[:, :, None]
+    bend = (frames[:, SUU : SVV + 1] * squares).sum(axis=1)
     e, f, g = ((a * b).sum(axis=1) for a, b in ((su, su), (su, sv), (sv, sv)))
     x, y = (bend * su).sum(axis=1), (bend * sv).sum(axis=1)
     square = np.maximum(e * g - f * f, TINY)
