@@ -1,10 +1,11 @@
 """The thickness of the laminate: the volume of the bands, deposited on the cells of the surface."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from meshwind.core.cast import Floats, frozen
+from meshwind.core.cast import Bools, Floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import TINY
 from meshwind.layup.bands import cells_for
@@ -19,8 +20,6 @@ HOLLOW, FILLED = BRIDGED = ("hollow", "filled")
 """What becomes of the room below a bridge: it stays, or it is filled up to the fibre before the next layer."""
 _STRIPS = 24
 """Strips across a band: four to each of the cells, of which about six lie across."""
-_ROUND = 0.5
-"""Turns from the middle of a band to its edge, from which on it meets itself round the part."""
 
 
 @dataclass(frozen=True)
@@ -168,7 +167,7 @@ def deposit(surface: Surface, laid: Tracks, laying: Laying) -> Thickness:
     Raises
     ------
     BadInputError
-        If the surface is open in u, or the band is so wide somewhere that it meets itself round the part.
+        If the surface is open in u.
 
     Examples
     --------
@@ -188,12 +187,10 @@ def deposit(surface: Surface, laid: Tracks, laying: Laying) -> Thickness:
     length, raised, over = (np.zeros((nu, nv)) for _ in range(3))
     between = 0.5 * (laid.gap[:, 1:] + laid.gap[:, :-1])
     lifted = laying.bridges == FILLED and bool((between > 0.0).any())
-    for uv, share in _strips(surface, laid.uv, laying):
-        past = (uv[..., 1] < 0.0) | (uv[..., 1] > 1.0)
-        at = np.ascontiguousarray(np.stack([uv[..., 0], _mirrored(uv[..., 1])], axis=2))
+    for at, past, share in _strips(surface, laid.uv, laying):
         add_lengths(at, share * laid.steps, length)
         if past.any():
-            add_lengths(at, share * laid.steps * (0.5 * (past[:, 1:] + 0.0 + past[:, :-1])), over)
+            add_lengths(at, share * laid.steps * 0.5 * (past[:, 1:] + past[:, :-1]), over)
         if lifted:
             add_lengths(at, share * laid.steps * between, raised)
     section = laying.width * laying.thickness
@@ -203,34 +200,38 @@ def deposit(surface: Surface, laid: Tracks, laying: Laying) -> Thickness:
     return Thickness(frozen(cells), frozen(filler), frozen(area), float(section * over.sum()))
 
 
-def _mirrored(v: Floats) -> Floats:
-    """v, mirrored at the rims where it is past one."""
-    return np.clip(np.where(v > 1.0, 2.0 - v, np.abs(v)), 0.0, 1.0)
+def _strips(surface: Surface, uv: Floats, laying: Laying) -> Iterator[tuple[Floats, Floats, float]]:
+    """The strips of all bands: the parameters (p, n, 2) of each one's middle, where it is past a rim, and its share.
 
-
-def _strips(surface: Surface, uv: Floats, laying: Laying) -> list[tuple[Floats, float]]:
-    """The strips of all bands: the parameters (p, n, 2) of each one's middle, and its share of the volume."""
+    Past a rim (p, n) is 1 where the geodesic to the strip was mirrored at one, otherwise 0.
+    """
     shares, half = laying.shares(_STRIPS), _STRIPS // 2
     apart = laying.width / _STRIPS
-    out: list[tuple[Floats, float]] = []
     for side in (1.0, -1.0):
         state = _square(surface, uv, side)
+        past = np.zeros(uv.shape[:2], dtype=np.bool_)
         for k in range(half):
             state = _further(surface, state, apart if k else 0.5 * apart)
-            _check_reach(state, uv, laying.width)
+            state, met = _mirrored(surface, state)
+            past ^= met.reshape(past.shape)
             at = half + k if side > 0.0 else half - 1 - k
-            out.append((state[:, :2].reshape(uv.shape), float(shares[at])))
-    return out
+            yield np.ascontiguousarray(state[:, :2].reshape(uv.shape)), past.astype(np.float64), float(shares[at])
 
 
-def _check_reach(state: Floats, uv: Floats, width: float) -> None:
-    """Raise BadInputError where the edge of a band has gone round the part, or through a pole."""
-    turned = np.abs(state[:, 0] - uv[..., 0].ravel())
-    if not (np.isfinite(state).all() and turned.max(initial=0.0) < _ROUND):
-        worst = float(uv[..., 1].ravel()[np.argmax(np.where(np.isfinite(turned), turned, np.inf))])
-        raise BadInputError(
-            f"a band {width:g} wide reaches round the part at v={worst:.3g}; give a narrower band or a wider opening"
-        )
+def _mirrored(surface: Surface, state: Floats) -> tuple[Floats, Bools]:
+    """Geodesics (m, 4) that are past a rim, sent back from it as light from a mirror, and which these are (m,)."""
+    v = state[:, 1]
+    met = (v < 0.0) | (v > 1.0)
+    if not met.any():
+        return state, met
+    out = state.copy()
+    out[met, 1] = np.clip(np.where(v[met] > 1.0, 2.0 - v[met], -v[met]), 0.0, 1.0)
+    frames = surface.frames(np.ascontiguousarray(out[met, :2]))
+    su, sv = frames[:, SU], frames[:, SV]
+    slant = (su * sv).sum(axis=1) / np.maximum((su * su).sum(axis=1), TINY)  # s_v - slant s_u is square to the rim
+    out[met, 2] += 2.0 * slant * state[met, 3]
+    out[met, 3] = -state[met, 3]
+    return out, met
 
 
 def _square(surface: Surface, uv: Floats, side: float) -> Floats:

@@ -22,6 +22,8 @@ _TRIAL_PATHS, _TRIAL_PARTICLES = 6, 101
 """Paths a family, and their particles, with which the revolutions for an angle and the number of paths are found."""
 _TRIALS = 30
 """Trials for an angle; each brings it nearer by a factor of about ten on smooth parts."""
+_HANGING = 0.05
+"""Share of a layer past the rims that is worth a warning: usual bands have a tenth of it."""
 _NEAR = np.radians(0.05)
 """How near an angle is met."""
 
@@ -60,6 +62,12 @@ def _faults(layer: LaidLayer) -> list[str]:
         lines.append(line)
     if layer.left_out:
         lines.append(f"{layer.left_out} paths are not at rest and left out of the thickness; give other revolutions")
+    hanging = layer.thickness.over_rim / layer.thickness.volume
+    if hanging > _HANGING:
+        lines.append(
+            f"{100.0 * hanging:.2g} % of its bands hang over a rim and count as laid inside of it; give a narrower "
+            "band or wider openings"
+        )
     if layer.raised.tight:
         u, v = layer.raised.where
         lines.append(
