@@ -12,12 +12,14 @@ import numpy as np
 from meshwind.chart.chart import Chart
 from meshwind.core.units import UNKNOWN
 from meshwind.core.version import version
+from meshwind.filament.laminate import Laminate
 from meshwind.layup.layup import Layup
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.path.paths import Paths, Status
 from meshwind.planning.revolutions import Revolutions
 from meshwind.planning.spacing import Spaced
 from meshwind.results.figures import path_figures
+from meshwind.results.laminate_files import laminate_figures
 from meshwind.results.layup_figures import (
     coverage_figures,
     crossing_figures,
@@ -48,7 +50,8 @@ class RunFacts:
     """Facts about a run, beside its layup, for the report.
 
     tolerance: that of the fit; seconds: wall time per stage; notes: messages for the user; chosen, spaced: how
-    revolutions and spacing were found, if they were; linear_density: mass of the fibre over its length.
+    revolutions and spacing were found, if they were; linear_density: mass of the fibre over its length; laminate: the
+    layers, where the run has any.
     """
 
     revolutions: float
@@ -59,6 +62,7 @@ class RunFacts:
     chosen: Revolutions | None = None
     spaced: Spaced | None = None
     linear_density: float | None = None
+    laminate: Laminate | None = None
 
 
 def report(layup: Layup, mesh: Mesh, chart: Chart | None, run: RunFacts) -> Report:
@@ -86,6 +90,8 @@ def report(layup: Layup, mesh: Mesh, chart: Chart | None, run: RunFacts) -> Repo
     }
     if run.chosen is not None:
         figures["revolutions"] = revolution_figures(run.chosen)
+    if run.laminate is not None:
+        figures["laminate"] = laminate_figures(run.laminate, mesh.units)
     result: Report = plain(figures)
     return result
 

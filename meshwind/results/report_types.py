@@ -5,6 +5,8 @@ Lengths are in the mesh's units, angles in degrees, shares from 0 to 1; None is 
 
 from typing import NotRequired, TypedDict, final
 
+from meshwind.results.laminate_types import LayerFigures
+
 
 class Spread(TypedDict):
     """Minimum, median and maximum; None if there are no values."""
@@ -327,3 +329,4 @@ class Report(TypedDict):
     seconds: dict[str, float]
     notes: list[str]
     revolutions: NotRequired[RevolutionFigures]
+    laminate: NotRequired[list[LayerFigures]]

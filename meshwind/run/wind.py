@@ -1,7 +1,7 @@
 """Wind a mesh and write the results with their pictures into a folder."""
 
 from dataclasses import dataclass, fields, replace
-from os import PathLike, fsencode, fspath
+from os import PathLike, fspath
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -20,12 +20,14 @@ from meshwind.planning.pins import check_pins
 from meshwind.results import folder
 from meshwind.results.config_file import write_config
 from meshwind.results.layup_figures import parted
+from meshwind.results.laminate_files import write_laminate
 from meshwind.results.report import RunFacts, report, write_report
 from meshwind.results.report_types import Report
 from meshwind.results.schema import CONFIG, FIT_PICTURE, REPORT, REVOLUTIONS_PICTURE, SHEET, WINDING, picture
 from meshwind.results.write import write_files
 from meshwind.surface import Surface
 from meshwind.workflow.clock import Clock, Progress
+from meshwind.workflow.layer_plans import read_layers
 from meshwind.workflow.notes import Note
 from meshwind.workflow.options import Options
 from meshwind.workflow.part import MeshLike, fit_part, read_source
@@ -58,6 +60,8 @@ class Result(Winding):
         How paths were added, with `spacing`.
     source : Path or None
         File of the mesh, if it came from one.
+    layered : Layered or None
+        The layers one on another, with `layers`.
 
     See Also
     --------
@@ -123,6 +127,7 @@ class Result(Winding):
             chosen=self.chosen,
             spaced=self.spaced,
             linear_density=self.options.linear_density,
+            laminate=None if self.layered is None else self.layered.laminate,
         )
         return report(self.layup, self.mesh, self.chart, run)
 
@@ -159,7 +164,7 @@ class Result(Winding):
         >>> Path("out/paths.vtp").is_file()
         True
         """
-        return _write(self, _folder(out), render, overwrite, Clock())
+        return _write(self, folder.named(out), render, overwrite, Clock())
 
 
 def wind(  # noqa: PLR0913
@@ -182,6 +187,7 @@ def wind(  # noqa: PLR0913
     band_width: float | None = Options.band_width,
     linear_density: float | None = Options.linear_density,
     pins: str | PathLike[str] | None = Options.pins,
+    layers: str | PathLike[str] | None = None,
     out: str | PathLike[str] | None = None,
     overwrite: bool = False,
     render: bool = True,
@@ -236,6 +242,9 @@ def wind(  # noqa: PLR0913
         Mass of the fibre per unit of its length, from which its mass is computed.
     pins : str or PathLike, optional
         CSV file of the paths' ends, see `read_pins`.  By default they are spread evenly over the rims.
+    layers : str or PathLike, optional
+        TOML file of a laminate, whose layers are wound one on another; the paths are then those of its first helical
+        layer on the bare part.  By default there is none.
     out : str or PathLike, optional
         Folder for the results.  By default nothing is written.
     overwrite : bool, default False
@@ -274,8 +283,9 @@ def wind(  # noqa: PLR0913
         paths, revolutions, particles, friction, component, ends, opening, side, opening_by,
         tolerance, threshold, worst_fit, units, spacing, band_width, linear_density, pinned,
     )  # fmt: skip
+    plans = None if layers is None else read_layers(layers, options)
     clock = Clock(progress)
-    target = None if out is None else _folder(out)
+    target = None if out is None else folder.named(out)
     check_file(mesh)
     if pinned is not None:
         check_pins(pinned)  # before all the work
@@ -285,20 +295,8 @@ def wind(  # noqa: PLR0913
             driver.start_probe()
     with clock.stage("read"):
         source = read_source(mesh, options)
-    result = Result.of(wind_part(fit_part(source, options, clock), options, command, clock))
+    result = Result.of(wind_part(fit_part(source, options, clock), options, command, clock, plans))
     return result if target is None else _write(result, target, render, overwrite, clock)
-
-
-def _folder(out: str | PathLike[str]) -> Path:
-    if not isinstance(out, str | PathLike) or not fspath(out).strip():
-        raise BadInputError(f"out is {out!r}; give the path of a folder for the results")
-    try:
-        named = b"\0" not in fsencode(out)
-    except UnicodeEncodeError:
-        named = False
-    if not named:
-        raise BadInputError(f"out is {fspath(out)[:40]!r}, which is not a possible name of a folder; give another")
-    return Path(out)
 
 
 def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: Clock) -> Result:
@@ -308,6 +306,8 @@ def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: Cloc
             wall = result.chart.annulus.wall
             measured = result.mesh if wall is None else wall.skin
             write_files(staging, result.layup, measured, result.mesh.units)
+            if result.layered is not None:
+                write_laminate(staging, result.layered.laminate, result.mesh.units)
             if result.chosen is not None and render:
                 draw_revolutions(staging / REVOLUTIONS_PICTURE, result.chosen, result.mesh.name)
         if render:
@@ -323,8 +323,11 @@ def _write(result: Result, out: Path, render: bool, overwrite: bool, clock: Cloc
 
 def _used(result: Result, out: Path, render: bool) -> dict[str, object]:
     """All options, with which the run can be repeated."""
-    pins = None if result.options.pins is None else Path(result.options.pins)
-    return {"mesh": result.source, "out": out} | result.options.written() | {"pins": pins, "render": render}
+    options, layers = result.options, None
+    if result.layered is not None:
+        options, layers = result.layered.options, result.layered.file
+    files = {"pins": None if options.pins is None else Path(options.pins), "layers": layers}
+    return {"mesh": result.source, "out": out} | options.written() | files | {"render": render}
 
 
 def _draw(result: Result, out: Path) -> str:

@@ -130,17 +130,27 @@ _TYPES: dict[str, tuple[tuple[type, ...], str]] = {
 _NUMBER = (float, int), "a number"
 
 
-def read_layers(file: str | PathLike[str]) -> tuple[LayerPlan, ...]:
+@dataclass(frozen=True)
+class LayersFile:
+    """A laminate's file and the layers that it names, in order of winding."""
+
+    file: Path
+    plans: tuple[LayerPlan, ...]
+
+
+def read_layers(file: str | PathLike[str], options: Options) -> LayersFile:
     """Read a laminate's file.
 
     Parameters
     ----------
     file : str or PathLike
         TOML with a table [[layer]] for each layer, in order of winding.
+    options : Options
+        Those of the run, which may not say where paths end.
 
     Returns
     -------
-    tuple of LayerPlan
+    LayersFile
         The layers, one for each table.
 
     Raises
@@ -148,6 +158,11 @@ def read_layers(file: str | PathLike[str]) -> tuple[LayerPlan, ...]:
     BadInputError
         If the file cannot be read, or a table has a key or a value that no layer has; the message names the layer.
     """
+    if not fspath(file).strip():
+        raise BadInputError(f"layers is {fspath(file)!r}; give the path of a TOML file of the layers")
+    for name in ("pins", "spacing"):
+        if getattr(options, name) is not None:
+            raise BadInputError(f"{name} and layers both say where paths lie; give one of both")
     path = Path(fspath(file))
     tables = read_toml(path, "laminate")
     other = [key for key in tables if key != "layer"]
@@ -159,7 +174,7 @@ def read_layers(file: str | PathLike[str]) -> tuple[LayerPlan, ...]:
     plans = tuple(_read(path, number, table) for number, table in enumerate(layers, 1))
     if sum(plan.repeat for plan in plans) > _MOST_LAYERS:
         raise BadInputError(f"{path} has more than {_MOST_LAYERS} layers; wind it in several runs")
-    return plans
+    return LayersFile(path, plans)
 
 
 def _read(path: Path, number: int, table: Mapping[str, Any]) -> LayerPlan:

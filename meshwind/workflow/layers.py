@@ -1,6 +1,7 @@
 """Wind the layers of a laminate one on another."""
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from meshwind.filament.stations import angles_at, circuits_to_cover
 from meshwind.path import Paths, Status, solve
 from meshwind.planning.families import families
 from meshwind.surface import Surface
-from meshwind.workflow.layer_plans import HOOP, LayerPlan
+from meshwind.workflow.layer_plans import HOOP, LayerPlan, LayersFile
 from meshwind.workflow.notes import Note
 from meshwind.workflow.options import Options
 
@@ -28,23 +29,30 @@ _NEAR = np.radians(0.05)
 """How near an angle is met."""
 
 
-def lay_layers(
-    surface: Surface, plans: tuple[LayerPlan, ...], options: Options, units: str
-) -> tuple[Laminate, tuple[Note, ...]]:
+@dataclass(frozen=True)
+class Layered:
+    """A laminate, its file, and the options that the run was given."""
+
+    laminate: Laminate
+    file: Path
+    options: Options
+
+
+def lay_layers(surface: Surface, asked: LayersFile, options: Options, units: str) -> tuple[Layered, tuple[Note, ...]]:
     """Wind layers on a surface, each on the one below, with notes on what does not hold.
 
     Raises BadInputError, naming the layer, where one cannot be wound.
     """
     layers: list[LaidLayer] = []
     notes: list[Note] = []
-    plies = [_named(number, plan.ply, options, units) for number, plan in enumerate(plans, 1)]
-    for number, (plan, ply) in enumerate(zip(plans, plies, strict=True), 1):
+    plies = [_named(number, plan.ply, options, units) for number, plan in enumerate(asked.plans, 1)]
+    for number, (plan, ply) in enumerate(zip(asked.plans, plies, strict=True), 1):
         for _ in range(plan.repeat):
             below = layers[-1].raised.surface if layers else surface
             layer = _named(number, _lay, below, plan, ply, options)
             notes += [Note(f"layer {number}: {line}", warning=True) for line in _faults(layer)]
             layers.append(layer)
-    return Laminate(tuple(layers)), tuple(dict.fromkeys(notes))
+    return Layered(Laminate(tuple(layers)), asked.file, options), tuple(dict.fromkeys(notes))
 
 
 def _named(number, call, *arguments):  # type: ignore[no-untyped-def]
