@@ -11,7 +11,7 @@ from meshwind.cli.signature import InFile
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import nearest, read_toml, shortened
 
-_PATHS = "mesh", "out", "pins"
+_PATHS = "mesh", "out", "pins", "layers"
 """Options that are paths, relative to the file that they are read from."""
 _EXPECTED = {bool: "true or false", int: "a whole number", float: "a number", str: "a text in quotes"}
 _NOT_IN_FILES = "config", "help"

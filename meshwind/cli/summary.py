@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from meshwind.appearance.words import quantity, ratio, size
 from meshwind.core.units import reported_unit
+from meshwind.results.laminate_types import LayerFigures
 from meshwind.results.pattern_types import AlternativeFigures, PatternFigures
 from meshwind.results.redesign_report_types import RedesignFigures, RedesignReport, RoundFigures
 from meshwind.results.report_types import Failure, PathsFigures, Report, SurfaceFigures
@@ -20,6 +21,7 @@ def run_lines(report: Report) -> list[str]:
         *_paths(report["paths"], units),
         *_layup(report, units),
         *_patterns(report.get("pattern", []), units),
+        *(_layer(each, units) for each in report.get("laminate", [])),
         *_not_converged(report["paths"]["not_converged"], report["paths"]["advice"]["text"]),
         *(f"repair    {act}" for act in part["repairs"]),
         *(note_line(note) for note in report["notes"]),
@@ -118,6 +120,21 @@ def _alternative(each: AlternativeFigures, angle: float) -> str:
 def _turn(layer: PatternFigures, k: int) -> str:
     turn = layer["turnarounds"][k]
     return f"{turn['kind']} at the {turn['end']}"
+
+
+def _layer(layer: LayerFigures, units: str) -> str:
+    """One layer of a laminate."""
+    angle, cover, thick = layer["angle"], layer["cover"], layer["thickness"]
+    many = f"{layer['circuits']} {'passes' if layer['kind'] == 'hoop' else 'paths a family'}"
+    line = (
+        f"layer {layer['layer'] + 1:<4}{layer['kind']:<8}{angle['min']:.1f} to {angle['max']:.1f} degrees, {many}, "
+        f"cover {cover['min']:.3g} to {cover['max']:.3g}; thickness {quantity(thick['min'], units, 3)} to "
+        f"{quantity(thick['max'], units, 3)}, median {quantity(thick['median'], units, 3)}; fibre "
+        f"{quantity(layer['fibre_length'], units)}"
+    )
+    if layer["fibre_mass"] is None or layer["resin_mass"] is None:
+        return line
+    return f"{line}, {layer['fibre_mass']:.4g} g with {layer['resin_mass']:.4g} g of resin"
 
 
 def _not_converged(failures: Sequence[Failure], holds: str) -> list[str]:

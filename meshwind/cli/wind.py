@@ -3,6 +3,7 @@
 import shlex
 import sys
 from dataclasses import asdict
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -12,7 +13,7 @@ from meshwind.cli.help import FILES
 from meshwind.cli.output import print_report, stages
 from meshwind.cli.signature import with_records
 from meshwind.cli.summary import run_lines
-from meshwind.workflow.options import Options
+from meshwind.workflow.options import FIBRES, Options
 
 NOT_CONVERGED = 3
 EXAMPLES = """
@@ -24,6 +25,9 @@ EXAMPLES = """
 
     # cover a part with a band 6 mm wide; revolutions with stable paths and least bridging; friction
     meshwind wind part.stl --spacing 6 --band-width 6 --revolutions auto --friction 0.2
+
+    # layers on layers: a helical one, hoops on it, and so on
+    meshwind wind part.stl --layers laminate.toml
 
     # a closed part: open it at its ends in z, to a radius of 15
     meshwind wind part.stl --ends z --opening 15
@@ -38,6 +42,14 @@ def wind(
     *,
     mesh: MeshFile,
     options: Options,
+    layers: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="TOML file of a laminate: layers, helical or hoops, that are wound one on another.",
+            rich_help_panel=FIBRES,
+        ),
+    ] = None,
     out: Annotated[
         str | None,
         typer.Option(help="Folder for the results.  [default: MESH's name + -wound]", rich_help_panel=FILES),
@@ -58,6 +70,7 @@ def wind(
         result = run(
             mesh,
             **asdict(options),
+            layers=layers,
             out=folder,
             overwrite=files.overwrite,
             render=files.render,

@@ -93,7 +93,7 @@ def bands(paths: Paths, width: float) -> Bands:
     p, n = paths.gap.shape
     frames = surface.frames(paths.uv.reshape(-1, 2)).reshape(p, n, 6, 3)
     feet = np.ascontiguousarray(frames[:, :, S])
-    nu, nv = _grid(surface, width)
+    nu, nv = cells_for(surface, width)
     uv = parameter_grid(midpoints(nu), midpoints(nv))
     at = surface.frames(uv)
     area = area_elements(at).reshape(nu, nv) / (nu * nv)
@@ -106,7 +106,7 @@ def bands(paths: Paths, width: float) -> Bands:
     return Bands(frozen(uv), frozen(area), frozen(layers), width, width * length, (openings[0], openings[1]))
 
 
-def _grid(surface: Surface, width: float) -> tuple[int, int]:
+def cells_for(surface: Surface, width: float) -> tuple[int, int]:
     """Samples each way so that some lie across a band everywhere."""
     count = np.array(mean_speeds(surface, _SPEED_SAMPLES)) * _ACROSS / max(width, TINY)
     nu, nv = np.clip(np.ceil(count), _LEAST, _MOST).astype(int)

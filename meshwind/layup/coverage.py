@@ -53,15 +53,20 @@ class Coverage:
 
     def at(self, uv: Floats) -> Floats:
         """Layers at uv (n, 2), linear between the centres of the cells."""
-        nu, nv = self.layers.shape
-        x = np.mod(uv[:, 0] * nu - 0.5, nu)
-        y = np.clip(uv[:, 1] * nv - 0.5, 0.0, nv - 1.0)
-        i, j = np.minimum(x.astype(np.int64), nu - 1), np.minimum(y.astype(np.int64), max(nv - 2, 0))
-        f, g = x - i, y - j
-        right, above = (i + 1) % nu, np.minimum(j + 1, nv - 1)
-        here = (1.0 - f) * self.layers[i, j] + f * self.layers[right, j]
-        there = (1.0 - f) * self.layers[i, above] + f * self.layers[right, above]
-        return np.asarray((1.0 - g) * here + g * there)
+        return between_centres(self.layers, uv)
+
+
+def between_centres(cells: Floats, uv: Floats) -> Floats:
+    """Values (n,) at uv (n, 2) of a table over cells (nu, nv) that close in u, linear between their centres."""
+    nu, nv = cells.shape
+    x = np.mod(uv[:, 0] * nu - 0.5, nu)
+    y = np.clip(uv[:, 1] * nv - 0.5, 0.0, nv - 1.0)
+    i, j = np.minimum(x.astype(np.int64), nu - 1), np.minimum(y.astype(np.int64), max(nv - 2, 0))
+    f, g = x - i, y - j
+    right, above = (i + 1) % nu, np.minimum(j + 1, nv - 1)
+    here = (1.0 - f) * cells[i, j] + f * cells[right, j]
+    there = (1.0 - f) * cells[i, above] + f * cells[right, above]
+    return np.asarray((1.0 - g) * here + g * there)
 
 
 def coverage(paths: Paths, width: float | None = None) -> Coverage:
@@ -77,7 +82,7 @@ def coverage(paths: Paths, width: float | None = None) -> Coverage:
     nv = _rows(paths.surface, nu)
     area = cell_areas(paths.surface, nu, nv)
     length = np.zeros((nu, nv))
-    _add_lengths(paths.uv, steps, length)
+    add_lengths(paths.uv, steps, length)
     total = float(steps.sum())
     if width is None:
         width = len(families) * float(area.sum()) / total if total > 0.0 else 0.0
@@ -101,7 +106,7 @@ def cell_areas(surface: Surface, nu: int, nv: int) -> Floats:
 
 
 @njit(cache=True)
-def _add_lengths(uv: Floats, steps: Floats, length: Floats) -> None:
+def add_lengths(uv: Floats, steps: Floats, length: Floats) -> None:
     """Add the length of every segment to the cells it passes, in the share it spends in each in (u, v)."""
     nu, nv = length.shape
     for p in range(steps.shape[0]):

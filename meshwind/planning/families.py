@@ -44,8 +44,15 @@ class Families:
     family: Ints
 
 
-def families(surface: Surface, paths: int, revolutions: float, *, phase: float = 0.0) -> Families:
-    """Spread the end points of two families evenly over the rims.
+def families(
+    surface: Surface,
+    paths: int,
+    revolutions: float,
+    *,
+    phase: float = 0.0,
+    between: tuple[float, float] = (0.0, 1.0),
+) -> Families:
+    """Spread the end points of two families evenly over the rims, or over two level lines between them.
 
     The starts are spread by arc length over the start rim and the ends likewise over the end rim, for both families
     the same but for a phase. Where a rim's arc length is not even in u, the ends keep the mean turn of the whole rim.
@@ -60,6 +67,8 @@ def families(surface: Surface, paths: int, revolutions: float, *, phase: float =
         Turns of u from end to end, at least 0: +revolutions for family +1 and -revolutions for family -1.
     phase : float, default 0
         Share of the start rim's length by which the starts of family -1 are ahead of those of family +1.
+    between : tuple of float, default (0, 1)
+        The v of the lines that the paths start and end on: the rims, or others for a layer over a part of the length.
 
     Returns
     -------
@@ -69,7 +78,7 @@ def families(surface: Surface, paths: int, revolutions: float, *, phase: float =
     Raises
     ------
     BadInputError
-        If the surface does not close in u, or `paths` or `revolutions` is out of range.
+        If the surface does not close in u, or `paths`, `revolutions` or `between` is out of range.
 
     See Also
     --------
@@ -90,12 +99,15 @@ def families(surface: Surface, paths: int, revolutions: float, *, phase: float =
     check_count(paths, "paths", 1)
     if not (np.isfinite(revolutions) and revolutions >= 0):
         raise BadInputError(f"revolutions is {revolutions}; give a number >= 0")
+    low, high = between
+    if not 0.0 <= low < high <= 1.0:
+        raise BadInputError(f"between is {low:g} and {high:g}; give two values of v from 0 to 1, the smaller first")
     turn = np.arange(paths) / paths
     first = np.concatenate([turn, turn + phase])
     last = np.concatenate([turn + revolutions, turn + phase - revolutions])
     start, end = (
         np.stack([rim_parameters(surface, v, share), np.full(2 * paths, v)], axis=1)
-        for v, share in ((0.0, first), (1.0, last))
+        for v, share in ((low, first), (high, last))
     )
     return Families(frozen(start), frozen(end), frozen(np.repeat([1, -1], paths)))
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from os import PathLike, fsencode, fspath
 from pathlib import Path
 
 from meshwind.core.errors import BadInputError
@@ -59,6 +60,19 @@ def exports_in(out: Path) -> list[str]:
     files = [file for folder in folders if folder.is_dir() for file in folder.iterdir()]
     names = (file.relative_to(out).as_posix() for file in files if file.is_file())
     return sorted(name for name in names if EXPORTS.fullmatch(name))
+
+
+def named(out: str | PathLike[str]) -> Path:
+    """A folder for results by its name; raises BadInputError for one that is not possible."""
+    if not isinstance(out, str | PathLike) or not fspath(out).strip():
+        raise BadInputError(f"out is {out!r}; give the path of a folder for the results")
+    try:
+        possible = b"\0" not in fsencode(out)
+    except UnicodeEncodeError:
+        possible = False
+    if not possible:
+        raise BadInputError(f"out is {fspath(out)[:40]!r}, which is not a possible name of a folder; give another")
+    return Path(out)
 
 
 def _not_a_file(out: Path) -> None:

@@ -13,12 +13,14 @@ from meshwind.chart.chart import Chart
 from meshwind.core.units import UNKNOWN
 from meshwind.core.version import version
 from meshwind.filament.closing import ClosedLayer
+from meshwind.filament.laminate import Laminate
 from meshwind.layup.layup import Layup
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.path.paths import Paths, Status
 from meshwind.planning.revolutions import Revolutions
 from meshwind.planning.spacing import Spaced
 from meshwind.results.figures import path_figures
+from meshwind.results.laminate_files import laminate_figures
 from meshwind.results.layup_figures import (
     coverage_figures,
     crossing_figures,
@@ -51,7 +53,7 @@ class RunFacts:
 
     tolerance: that of the fit; seconds: wall time per stage; notes: messages for the user; chosen, spaced: how
     revolutions and spacing were found, if they were; linear_density: mass of the fibre over its length;
-    closed: the layer, if it is wound as one filament.
+    closed: the layer, if it is wound as one filament; laminate: the layers, where the run has any.
     """
 
     revolutions: float
@@ -63,6 +65,7 @@ class RunFacts:
     spaced: Spaced | None = None
     linear_density: float | None = None
     closed: ClosedLayer | None = None
+    laminate: Laminate | None = None
 
 
 def report(layup: Layup, mesh: Mesh, chart: Chart | None, run: RunFacts) -> Report:
@@ -92,6 +95,8 @@ def report(layup: Layup, mesh: Mesh, chart: Chart | None, run: RunFacts) -> Repo
         figures["revolutions"] = revolution_figures(run.chosen)
     if run.closed is not None:
         figures["pattern"] = [pattern_figures(run.closed)]
+    if run.laminate is not None:
+        figures["laminate"] = laminate_figures(run.laminate, mesh.units)
     result: Report = plain(figures)
     return result
 

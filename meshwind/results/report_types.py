@@ -5,6 +5,7 @@ Lengths are in the mesh's units, angles in degrees, shares from 0 to 1; None is 
 
 from typing import NotRequired, TypedDict, final
 
+from meshwind.results.laminate_types import LayerFigures
 from meshwind.results.pattern_types import PatternFigures, Spread
 
 
@@ -322,3 +323,4 @@ class Report(TypedDict):
     notes: list[str]
     revolutions: NotRequired[RevolutionFigures]
     pattern: NotRequired[list[PatternFigures]]
+    laminate: NotRequired[list[LayerFigures]]

@@ -138,6 +138,14 @@ SPLINE = File(
 )
 CHART = File("chart.png")
 
+# layers on layers
+
+LAYER = Field("layer", dtype="int64")
+STATIONS = File("laminate.csv")
+LAYER_FIBRES = File("layers.vtp", point_data=(UV, NORMAL), cell_data=(LAYER, FAMILY))
+LAYER_SURFACES = File("laminate.npz", point_data=(CONTROL_POINTS, UNITS))
+"""The control points (layers + 1, nu, nv, 3) of the surfaces below each layer and above the last."""
+
 # a redesign
 
 DISPLACEMENT = Field("displacement", LENGTHS, columns=3)
@@ -204,6 +212,22 @@ def family_fields(family: int) -> FamilyFields:
 
 
 U, V = Field("u"), Field("v")
+LAMINATE = File("laminate.vtu", point_data=(UV, THICKNESS))
+"""Beside the fields of each layer."""
+
+
+class LayerFields(NamedTuple):
+    """The fields of a layer in the file of the laminate."""
+
+    thickness: Field
+    angle: Field
+
+
+def layer_fields(number: int) -> LayerFields:
+    """The fields of a layer, the first being number 1."""
+    return LayerFields(Field(f"thickness_{number}", LENGTHS), Field(f"angle_{number}", DEGREES))
+
+
 _FIBRE_FIELD = (*family_fields(1), *family_fields(-1), THICKNESS, NORMAL)
 FIBERS, FIBERS_LEGACY = (File(name, point_data=(U, V), cell_data=_FIBRE_FIELD) for name in ("fibers.vtu", "fibers.vtk"))
 """Fields of families that the run does not have are missing."""
@@ -234,23 +258,9 @@ EXPORTS = re.compile(
 """Names of exported files except VIEWER; they are removed when the run is replaced."""
 
 RESULTS = frozenset(
-    (
-        PATHS,
-        BRIDGES,
-        FILAMENT,
-        CROSSINGS,
-        QUADS,
-        QUADS_OBJ,
-        SURFACE,
-        SPLINE,
-        CHART,
-        EDITED,
-        EDITED_PLY,
-        REPORT,
-        CONFIG,
-        VIEWER,
-    )
-    + (FIT_PICTURE, REVOLUTIONS_PICTURE, BEFORE, AFTER)
+    (PATHS, BRIDGES, FILAMENT, CROSSINGS, QUADS, QUADS_OBJ, SURFACE, SPLINE, CHART, EDITED, EDITED_PLY, REPORT)
+    + (CONFIG, VIEWER, FIT_PICTURE, REVOLUTIONS_PICTURE, BEFORE, AFTER, STATIONS, LAYER_FIBRES, LAYER_SURFACES)
+    + (LAMINATE,)
     + tuple(picture(name) for name in (*PICTURES, REDESIGN, SHEET))
     + tuple(movie(kind) for kind in MOVIES)
 )

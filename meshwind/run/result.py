@@ -1,11 +1,10 @@
 """The result of a winding, and its files with their pictures."""
 
 from dataclasses import dataclass, fields, replace
-from os import PathLike, fsencode, fspath
+from os import PathLike
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from meshwind.core.errors import BadInputError
 from meshwind.core.version import version
 from meshwind.path import Paths, Status
 from meshwind.pictures import driver
@@ -18,6 +17,7 @@ from meshwind.pictures.subject import subject_in
 from meshwind.results import folder
 from meshwind.results.config_file import write_config
 from meshwind.results.filament_file import filaments_of, write_filaments
+from meshwind.results.laminate_files import write_laminate
 from meshwind.results.layup_figures import parted
 from meshwind.results.report import RunFacts, report, write_report
 from meshwind.results.report_types import Report
@@ -57,6 +57,8 @@ class Result(Winding):
         File of the mesh, if it came from one.
     closed : ClosedLayer or None
         The layer as one filament, with `continuous`.
+    layered : Layered or None
+        The layers one on another, with `layers`.
 
     See Also
     --------
@@ -125,6 +127,7 @@ class Result(Winding):
             spaced=self.spaced,
             linear_density=self.options.linear_density,
             closed=self.closed,
+            laminate=None if self.layered is None else self.layered.laminate,
         )
         return report(self.layup, self.mesh, self.chart, run)
 
@@ -161,20 +164,7 @@ class Result(Winding):
         >>> Path("out/paths.vtp").is_file()
         True
         """
-        return write_result(self, named_folder(out), render, overwrite, Clock())
-
-
-def named_folder(out: str | PathLike[str]) -> Path:
-    """The folder of a name; raises BadInputError for one that no folder can have."""
-    if not isinstance(out, str | PathLike) or not fspath(out).strip():
-        raise BadInputError(f"out is {out!r}; give the path of a folder for the results")
-    try:
-        named = b"\0" not in fsencode(out)
-    except UnicodeEncodeError:
-        named = False
-    if not named:
-        raise BadInputError(f"out is {fspath(out)[:40]!r}, which is not a possible name of a folder; give another")
-    return Path(out)
+        return write_result(self, folder.named(out), render, overwrite, Clock())
 
 
 def write_result(result: Result, out: Path, render: bool, overwrite: bool, clock: Clock) -> Result:
@@ -187,6 +177,8 @@ def write_result(result: Result, out: Path, render: bool, overwrite: bool, clock
             write_files(staging, result.layup, measured, result.mesh.units)
             if result.closed is not None:
                 write_filaments(staging / FILAMENT, filaments_of(result.closed), result.mesh.units)
+            if result.layered is not None:
+                write_laminate(staging, result.layered.laminate, result.mesh.units)
             if result.chosen is not None and render:
                 draw_revolutions(staging / REVOLUTIONS_PICTURE, result.chosen, result.mesh.name)
         if render:
@@ -202,8 +194,11 @@ def write_result(result: Result, out: Path, render: bool, overwrite: bool, clock
 
 def _used(result: Result, out: Path, render: bool) -> dict[str, object]:
     """All options, with which the run can be repeated."""
-    pins = None if result.options.pins is None else Path(result.options.pins)
-    return {"mesh": result.source, "out": out} | result.options.written() | {"pins": pins, "render": render}
+    options, layers = result.options, None
+    if result.layered is not None:
+        options, layers = result.layered.options, result.layered.file
+    files = {"pins": None if options.pins is None else Path(options.pins), "layers": layers}
+    return {"mesh": result.source, "out": out} | options.written() | files | {"render": render}
 
 
 def _draw(result: Result, out: Path) -> str:

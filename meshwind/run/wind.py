@@ -6,8 +6,9 @@ from meshwind.mesh import check_file
 from meshwind.pictures import driver
 from meshwind.planning.pins import check_pins
 from meshwind.results import folder
-from meshwind.run.result import Result, named_folder, write_result
+from meshwind.run.result import Result, write_result
 from meshwind.workflow.clock import Clock, Progress
+from meshwind.workflow.layer_plans import read_layers
 from meshwind.workflow.options import Options
 from meshwind.workflow.part import MeshLike, fit_part, read_source
 from meshwind.workflow.winding import wind_part
@@ -36,6 +37,7 @@ def wind(  # noqa: PLR0913
     continuous: bool = Options.continuous,
     turn_start: str = Options.turn_start,
     turn_end: str = Options.turn_end,
+    layers: str | PathLike[str] | None = None,
     out: str | PathLike[str] | None = None,
     overwrite: bool = False,
     render: bool = True,
@@ -95,6 +97,9 @@ def wind(  # noqa: PLR0913
     turn_start, turn_end : {"auto", "collar", "pins", "shaft", "cap"}, default "auto"
         Turnaround at each end; "auto" takes a collar where friction holds on a short one, and pins elsewhere.  On the
         "cap" of a closed end the fibre touches the opening and comes back: that sets the angle, not `revolutions`.
+    layers : str or PathLike, optional
+        TOML file of a laminate, whose layers are wound one on another; the paths are then those of its first helical
+        layer on the bare part.  By default there is none.
     out : str or PathLike, optional
         Folder for the results.  By default nothing is written.
     overwrite : bool, default False
@@ -134,8 +139,9 @@ def wind(  # noqa: PLR0913
         tolerance, threshold, worst_fit, units, spacing, band_width, linear_density, pinned,
         continuous, turn_start, turn_end,
     )  # fmt: skip
+    plans = None if layers is None else read_layers(layers, options)
     clock = Clock(progress)
-    target = None if out is None else named_folder(out)
+    target = None if out is None else folder.named(out)
     check_file(mesh)
     if pinned is not None:
         check_pins(pinned)  # before all the work
@@ -145,5 +151,5 @@ def wind(  # noqa: PLR0913
             driver.start_probe()
     with clock.stage("read"):
         source = read_source(mesh, options)
-    result = Result.of(wind_part(fit_part(source, options, clock), options, command, clock))
+    result = Result.of(wind_part(fit_part(source, options, clock), options, command, clock, plans))
     return result if target is None else write_result(result, target, render, overwrite, clock)

@@ -17,6 +17,8 @@ from meshwind.planning.revolutions import Revolutions, choose_revolutions
 from meshwind.planning.spacing import Spaced, space_out
 from meshwind.surface import Surface
 from meshwind.workflow.clock import Clock
+from meshwind.workflow.layer_plans import LayersFile
+from meshwind.workflow.layers import Layered, first_helical, lay_layers
 from meshwind.workflow.notes import (
     Note,
     about_choice,
@@ -49,12 +51,20 @@ class Winding:
     spaced: Spaced | None = None
     source: Path | None = None
     closed: ClosedLayer | None = None
+    layered: Layered | None = None
 
 
-def wind_part(part: Part, options: Options, command: str, clock: Clock) -> Winding:
-    """Lay the paths on a part that was fitted with the same options, and assess them."""
+def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: LayersFile | None = None) -> Winding:
+    """Lay the paths on a part that was fitted with the same options, and assess them; then its layers, if any.
+
+    With layers the paths are those of the first helical one.
+    """
     part = part.counting(options.threshold)
     surface, units = part.surface, part.source.mesh.units
+    asked = options
+    if layers is not None:
+        with clock.stage("layers"):
+            options = first_helical(layers.plans, surface, options, units)
     with clock.stage("fit"):
         notes = (
             *about_file(part.source.mesh),
@@ -75,9 +85,15 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock) -> Windi
     with clock.stage("assess"):
         layup = assess(laid, options.band_width)
         notes = (*notes, *about_layup(layup))
+    layered = None
+    if layers is not None:
+        with clock.stage("layers"):
+            layered, more = lay_layers(surface, layers, asked, units)
+            notes = (*notes, *more)
     source = part.source
     return Winding(
-        source.mesh, part.chart, layup, options, command, clock.seconds, notes, chosen, spaced, source.file, closed
+        source.mesh, part.chart, layup, options, command, clock.seconds, notes, chosen, spaced, source.file,
+        closed, layered,
     )  # fmt: skip
 
 

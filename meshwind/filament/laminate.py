@@ -1,0 +1,146 @@
+"""Layers on layers: what each lies on, how thick it is, and the surface that it leaves to the next."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshwind.filament.band import Roving
+from meshwind.filament.hoop import Hoop, HoopPlan, hoop
+from meshwind.filament.levels import levels
+from meshwind.filament.offset import Raised, raised
+from meshwind.filament.stations import Stations, helix_stations, hoop_stations
+from meshwind.filament.thickness import Laying, Thickness, Tracks, deposit, tracks
+from meshwind.path.paths import Paths
+from meshwind.surface.surface import Surface
+
+
+@dataclass(frozen=True)
+class LaidLayer:
+    """A layer of a laminate.
+
+    Attributes
+    ----------
+    surface : Surface
+        What it lies on: the part, or the layers below.
+    paths : Paths or None
+        Its paths, if it is helical.
+    hoop : Hoop or None
+        Its fibre, if it is a hoop.
+    laying : Laying
+        Its band.
+    thickness : Thickness
+        Its thickness over the surface.
+    raised : Raised
+        The surface that it leaves to the next layer.
+    stations : Stations
+        Its angle and cover along the part.
+    friction : float
+        Coefficient of friction between the fibre and what it lies on.
+    left_out : int
+        Paths that are not at rest: they are in no figure and not in the thickness.
+    roving : Roving or None
+        What its band is made of, where that is known.
+    turn_start, turn_end : str
+        How it turns at both ends, as the laminate's file says it; "" where it does not.
+    """
+
+    surface: Surface
+    paths: Paths | None
+    hoop: Hoop | None
+    laying: Laying
+    thickness: Thickness
+    raised: Raised
+    stations: Stations
+    friction: float
+    left_out: int = 0
+    roving: Roving | None = None
+    turn_start: str = ""
+    turn_end: str = ""
+
+    @property
+    def kind(self) -> str:
+        """ "helical" or "hoop"."""
+        return "helical" if self.hoop is None else "hoop"
+
+    @property
+    def tracks(self) -> Tracks:
+        """Where its fibres lie."""
+        if self.hoop is not None:
+            return self.hoop.tracks
+        assert self.paths is not None
+        return tracks(self.paths)
+
+    @property
+    def fibre_length(self) -> float:
+        """Length of its band, in the surface's units."""
+        return self.tracks.length
+
+    @property
+    def circuits(self) -> int:
+        """Paths of a family, or passes of a hoop."""
+        if self.hoop is not None:
+            return int(self.hoop.course.passed[-1]) + 1
+        assert self.paths is not None
+        return int(max((self.paths.family == family).sum() for family in (1, -1)))
+
+    @property
+    def off_below(self) -> float:
+        """Largest distance of the fibre from the surface below where it lies on that, in the surface's units."""
+        if self.hoop is not None:
+            points, uv = self.hoop.course.points, self.hoop.tracks.uv[0]
+        else:
+            assert self.paths is not None
+            touching = self.paths.on_surface
+            points, uv = self.paths.points[touching], self.paths.uv[touching]
+        return float(np.linalg.norm(points - self.surface.points(uv), axis=1).max(initial=0.0))
+
+
+@dataclass(frozen=True)
+class Laminate:
+    """Layers in order of winding, each on the surface that those below it leave.
+
+    Attributes
+    ----------
+    layers : tuple of LaidLayer
+        The layers, the first on the part.
+    """
+
+    layers: tuple[LaidLayer, ...]
+
+    @property
+    def surfaces(self) -> tuple[Surface, ...]:
+        """The surfaces below each layer and above the last: one more than layers."""
+        return (*(layer.surface for layer in self.layers), self.layers[-1].raised.surface)
+
+
+@dataclass(frozen=True)
+class Ply:
+    """What a layer is beside its fibres: band, friction, material, and how it turns; see `LaidLayer`."""
+
+    laying: Laying
+    friction: float = 0.0
+    roving: Roving | None = None
+    turn_start: str = ""
+    turn_end: str = ""
+
+
+def helical_layer(paths: Paths, ply: Ply, left_out: int = 0) -> LaidLayer:
+    """The layer of taut paths, deposited on their surface, and the surface above it."""
+    surface, laying = paths.surface, ply.laying
+    thickness = deposit(surface, tracks(paths), laying)
+    stations = helix_stations(paths, levels(surface), laying.width)
+    return LaidLayer(
+        surface, paths, None, laying, thickness, raised(surface, thickness, laying.width), stations, ply.friction,
+        left_out, ply.roving, ply.turn_start, ply.turn_end,
+    )  # fmt: skip
+
+
+def hoop_layer(surface: Surface, plan: HoopPlan, ply: Ply) -> LaidLayer:
+    """The layer of a hoop, deposited on its surface, and the surface above it."""
+    laid, laying = hoop(surface, plan), ply.laying
+    thickness = deposit(surface, laid.tracks, laying)
+    stations = hoop_stations(laid, levels(surface), laying.width)
+    return LaidLayer(
+        surface, None, laid, laying, thickness, raised(surface, thickness, laying.width), stations, ply.friction,
+        0, ply.roving, ply.turn_start, ply.turn_end,
+    )  # fmt: skip

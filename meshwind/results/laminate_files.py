@@ -1,0 +1,132 @@
+"""The laminate's files and figures: what each layer is, along the part and over it."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshwind.core.cast import Floats
+from meshwind.core.units import MILLIMETRES, millimetres
+from meshwind.filament.laminate import LaidLayer, Laminate
+from meshwind.layup.direction import winding_angle
+from meshwind.results import schema
+from meshwind.results.laminate_types import LayerFigures
+from meshwind.results.vtk_files import write_faces, write_lines
+from meshwind.surface.grid import Grid, grid
+
+_HEAD = "v,z,layer,angle,thickness,cover"
+
+
+def write_laminate(out: Path, laminate: Laminate, units: str = "") -> None:
+    """Write laminate.csv, laminate.vtu, laminate.npz and layers.vtp into an existing folder."""
+    _write_stations(out / schema.STATIONS, laminate)
+    _write_maps(out / schema.LAMINATE, laminate, units)
+    _write_fibres(out / schema.LAYER_FIBRES, laminate, units)
+    with (out / schema.LAYER_SURFACES).open("wb") as file:
+        nets = np.stack([surface.control_points for surface in laminate.surfaces])
+        arrays: dict[str, Any] = {schema.CONTROL_POINTS: nets, schema.UNITS: np.str_(units)}
+        np.savez(file, **arrays)
+
+
+def _write_stations(path: Path, laminate: Laminate) -> None:
+    """A row for each station and layer; a layer has none where it is not."""
+    with path.open("w", encoding="ascii") as file:
+        file.write(f"{_HEAD}\n")
+        for number, layer in enumerate(laminate.layers):
+            at = layer.stations
+            rings = layer.thickness.along()
+            thickness = np.interp(at.v, (np.arange(len(rings)) + 0.5) / len(rings), rings)
+            here = np.isfinite(at.angle)
+            column = np.full(len(at.v), number)
+            rows = np.stack([at.v, at.height, column, np.degrees(at.angle), thickness, at.cover], axis=1)[here]
+            np.savetxt(file, rows, fmt="%.17g,%.17g,%d,%.17g,%.17g,%.17g")
+
+
+def _write_maps(path: Path, laminate: Laminate, units: str) -> None:
+    """The part's surface with thickness and angle of each layer, counted from 1, and the thickness of all."""
+    on = grid(laminate.layers[0].surface)
+    data: dict[schema.Field, NDArray[Any]] = {schema.UV: on.uv}
+    each = [layer.thickness.at(on.uv) for layer in laminate.layers]
+    data[schema.THICKNESS] = np.sum(each, axis=0)
+    for number, (layer, thickness) in enumerate(zip(laminate.layers, each, strict=True), 1):
+        fields = schema.layer_fields(number)
+        data[fields.thickness] = thickness
+        data[fields.angle] = np.degrees(_angle(layer, on))
+    write_faces(path, on.points, on.quads, np.zeros((0, 3), dtype=np.int64), data, units)
+
+
+def _angle(layer: LaidLayer, on: Grid) -> Floats:
+    """Winding angle (k,) of a layer on the grid's points, in radians."""
+    if layer.paths is not None:
+        return winding_angle(layer.paths, *on.shape).ravel()
+    at = layer.stations
+    here = np.isfinite(at.angle)
+    return np.asarray(np.interp(on.uv[:, 1], at.v[here], at.angle[here]))
+
+
+def _write_fibres(path: Path, laminate: Laminate, units: str) -> None:
+    """One polyline for each path and each hoop, with the number of its layer."""
+    points, uv, normals, sizes, layers, families = [], [], [], [], [], []
+    for number, layer in enumerate(laminate.layers):
+        if layer.hoop is not None:
+            course = layer.hoop.course
+            rows, where, normal = course.points[None], layer.hoop.tracks.uv, course.normal[None]
+            family = np.ones(1, dtype=np.int64)
+        else:
+            assert layer.paths is not None
+            rows, where, normal, family = layer.paths.points, layer.paths.uv, layer.paths.normal, layer.paths.family
+        points.append(rows.reshape(-1, 3))
+        uv.append(where.reshape(-1, 2))
+        normals.append(normal.reshape(-1, 3))
+        sizes.append(np.full(len(rows), rows.shape[1]))
+        layers.append(np.full(len(rows), number))
+        families.append(family)
+    starts = np.concatenate([[0], np.cumsum(np.concatenate(sizes))])
+    point_data = {schema.UV: np.concatenate(uv), schema.NORMAL: np.concatenate(normals)}
+    cell_data = {schema.LAYER: np.concatenate(layers), schema.FAMILY: np.concatenate(families)}
+    write_lines(path, np.concatenate(points), starts, point_data, cell_data, units)
+
+
+def laminate_figures(laminate: Laminate, units: str = "") -> list[LayerFigures]:
+    """The figures of each layer."""
+    return [_layer_figures(number, layer, units) for number, layer in enumerate(laminate.layers)]
+
+
+def _layer_figures(number: int, layer: LaidLayer, units: str) -> LayerFigures:
+    least, median, most = np.degrees(layer.stations.angles)
+    cover = layer.stations.covers
+    length, thickness, roving = layer.fibre_length, layer.thickness, layer.roving
+    scale = millimetres(units) if units in MILLIMETRES else 1.0
+    hoop = layer.hoop
+    return {
+        "layer": number,
+        "kind": layer.kind,
+        "circuits": layer.circuits,
+        "left_out": layer.left_out,
+        "friction": layer.friction,
+        "band_width": layer.laying.width,
+        "band_thickness": layer.laying.thickness,
+        "bridges": layer.laying.bridges,
+        "angle": {"min": float(least), "median": float(median), "max": float(most)},
+        "cover": {"min": cover[0], "max": cover[1]},
+        "thickness": {"min": thickness.min, "median": thickness.median, "max": thickness.max},
+        "fibre_length": length,
+        "volume": thickness.volume,
+        "over_rim": thickness.over_rim / thickness.volume,
+        "filler_volume": float((thickness.filler * thickness.area).sum()),
+        "fibre_mass": None if roving is None else roving.fibre_mass(length * scale),
+        "resin_mass": None if roving is None else roving.resin_mass(length * scale),
+        "off_below": layer.off_below,
+        "hold": None
+        if hoop is None
+        else {"friction_needed": hoop.friction, "slips": hoop.slips(layer.friction), "lifts": hoop.lifts},
+        "raised": {
+            "off_rms": layer.raised.off_rms,
+            "off_max": layer.raised.off_max,
+            "evened": layer.raised.evened,
+            "hollow": layer.raised.hollow,
+        },
+        "turn_start": layer.turn_start,
+        "turn_end": layer.turn_end,
+    }
