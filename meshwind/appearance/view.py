@@ -105,6 +105,11 @@ def around(count: int) -> Floats:
     return np.stack([across * np.cos(turn), across * np.sin(turn), height], axis=1)
 
 
+def framed(points: Floats, view: View) -> View:
+    """A view from the same side that contains all points (n, 3)."""
+    return _framed(points, view.right, view.up, view.eye)
+
+
 def _framed(points: Floats, right: Floats, up: Floats, eye: Floats) -> View:
     """The view with given axes that contains all points (n, 3)."""
     axes = np.stack([right, up, eye])

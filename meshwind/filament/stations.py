@@ -5,11 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.core.cast import Floats, frozen
-from meshwind.core.vectors import TINY
 from meshwind.filament.hoop import Hoop
 from meshwind.filament.levels import Levels
 from meshwind.path.paths import Paths
-from meshwind.surface.evaluate import SU, SV
+from meshwind.path.winding_angle import winding_angle
 
 STATIONS = 65
 """Level lines, evenly spaced in v, on which figures along the part are given."""
@@ -54,14 +53,7 @@ def angles_at(paths: Paths, v: Floats) -> Floats:
 
     Where a path passes a line several times it is the first time.
     """
-    p, n = paths.gap.shape
-    frames = paths.surface.frames(np.ascontiguousarray(paths.uv.reshape(-1, 2)))
-    step = np.gradient(paths.uv, axis=1, edge_order=2 if n > 2 else 1).reshape(-1, 2)
-    su, sv = frames[:, SU], frames[:, SV]
-    tangent = step[:, :1] * su + step[:, 1:] * sv
-    around = np.abs((tangent * su).sum(axis=1))
-    upward = np.linalg.norm(np.cross(tangent, su), axis=1)
-    angle = np.arctan2(around, np.maximum(upward, TINY)).reshape(p, n)
+    p, angle = len(paths), winding_angle(paths)
     height = np.maximum.accumulate(paths.uv[..., 1], axis=1)
     apart = 3.0 * np.arange(p)[:, None]  # v is in [0, 1]: one row of all paths, on which they do not meet
     found = np.interp(np.clip(v, -1.0, 2.0)[None] + apart, (height + apart).ravel(), angle.ravel())

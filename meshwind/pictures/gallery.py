@@ -6,27 +6,33 @@ from pathlib import Path
 
 from PIL import Image
 
+from meshwind.pictures.angles_scene import angles_scene
+from meshwind.pictures.filament_scene import bands_scene, filament_scene
 from meshwind.pictures.layup_scenes import crossings_scene, quads_scene, slip_scene, unrolled_scene
 from meshwind.pictures.map_scene import coverage_scene, fit_map_scene, windability_scene
 from meshwind.pictures.page import LEAST, Page
 from meshwind.pictures.scenes import Drawing, Scene
 from meshwind.pictures.subject import Subject
 from meshwind.pictures.winding_scene import winding_scene
-from meshwind.results.schema import FIT, FIT_ERROR, PICTURES, SHEET, picture
+from meshwind.results.schema import FIT, FIT_ERROR, OF_FILAMENT, PICTURES, SHEET, picture
 
 CELL = 800, 600
 """Largest size of a picture on the sheet, in pixels."""
 _SCENES: tuple[Callable[[Subject], Scene], ...] = (
     winding_scene, crossings_scene, coverage_scene, windability_scene, slip_scene, fit_map_scene, unrolled_scene,
-    quads_scene,
+    quads_scene, angles_scene, filament_scene, bands_scene,
 )  # fmt: skip
 """In the order of PICTURES."""
 
 
 def scenes_of(of: Subject) -> dict[str, Scene]:
-    """Scenes of a winding by name of the picture; that of the fit error is missing if the error is not known."""
-    named = zip(PICTURES, _SCENES, strict=True)
-    return {name: make(of) for name, make in named if name != FIT or FIT_ERROR in of.maps}
+    """Scenes of a winding by name of the picture.
+
+    That of the fit error is missing if the error is not known, and those of a filament if there is none.
+    """
+    lacking = {FIT} if FIT_ERROR not in of.maps else set()
+    lacking |= set(OF_FILAMENT) if not of.filaments else set()
+    return {name: make(of) for name, make in zip(PICTURES, _SCENES, strict=True) if name not in lacking}
 
 
 def placed(

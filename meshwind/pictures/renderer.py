@@ -13,9 +13,11 @@ import pyvista as pv  # noqa: F401  (before the next line, so that nothing besid
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 from meshwind.pictures import (
+    angles_picture,
     animation_picture,
     canvas,
     crossings_picture,
+    filament_picture,
     fit_picture,
     map_picture,
     quads_picture,
@@ -35,6 +37,8 @@ DRAWN_BY: dict[type, Callable[..., Any]] = {
     scenes.QuadsScene: quads_picture.draw,
     scenes.UnrolledScene: unrolled_picture.draw,
     scenes.RedesignScene: redesign_picture.draw,
+    scenes.FilamentScene: filament_picture.draw,
+    scenes.AnglesScene: angles_picture.draw,
 }
 FRAME = "frame"
 

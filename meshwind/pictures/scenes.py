@@ -223,8 +223,52 @@ class RedesignScene:
     faces: Ints
 
 
+@dataclass(frozen=True)
+class Ribbons:
+    """Bands as strips, one after the other: points (k, m, 3), m across the band; shares (k,) on a scale; sizes (l,)."""
+
+    points: Floats
+    shares: Floats
+    sizes: Ints
+
+
+@dataclass(frozen=True)
+class Gear:
+    """What the turnarounds stand on: quads (q, 4) between points (n, 3), and its name for the legend."""
+
+    points: Floats
+    quads: Ints
+    words: str
+
+
+@dataclass(frozen=True)
+class FilamentScene:
+    """The bands of a filament by the order of winding or, without a scale, by family over a part in a signal colour."""
+
+    frame: Frame
+    part: Part
+    ribbons: Ribbons
+    gear: Gear
+    scale: Scale | None = None
+
+
+@dataclass(frozen=True)
+class AnglesScene:
+    """Least, median and largest winding angle in degrees (s,) at stations, which are lengths (s,) along the part.
+
+    cover (s,): layers of band of one family there, None where the band has no width.
+    """
+
+    frame: Frame
+    stations: Floats
+    angles: Floats
+    cover: Floats | None
+
+
 Scene: TypeAlias = (
     WindingScene
+    | FilamentScene
+    | AnglesScene
     | AnimationScene
     | CrossingsScene
     | MapScene

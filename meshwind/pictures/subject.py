@@ -1,6 +1,6 @@
 """Subject of the pictures of a winding: its layup, the maps on its surface, and the view."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -16,6 +16,8 @@ from meshwind.path.lengths import lengths
 from meshwind.path.paths import Paths, Status
 from meshwind.pictures.scenes import Frame, Part
 from meshwind.results.figures import PathFigures, path_figures
+from meshwind.results.filament_file import Filament
+from meshwind.results.pattern_types import PatternFigures
 from meshwind.results.reading import Results, read_surface_grid
 from meshwind.results.schema import NORMAL
 from meshwind.surface.grid import grid
@@ -25,11 +27,21 @@ _MOST_POINTS, _FEWEST_POINTS, _ALL_POINTS = 250, 40, 60_000
 
 
 @dataclass(frozen=True)
+class Turned:
+    """What turns a filament at one end: a word for it, its reach over the rim, and the radius of pins or shaft."""
+
+    kind: str
+    reach: float
+    radius: float
+
+
+@dataclass(frozen=True)
 class Subject:
     """A layup and its surface as outward quads (q, 4) between points (k, 3) with normals (k, 3) and maps (k,).
 
     name and units of the part for titles and legends; revolutions: as given, None if that is not known; seen_from:
     "auto", the name of a side, or a view; partings (k, 2): pairs of neighbours that part round a body.
+    filaments of a continuous winding, its pattern in words, and what turns them at the start and at the end.
     """
 
     layup: Layup
@@ -42,6 +54,9 @@ class Subject:
     maps: Mapping[str, NDArray[Any]] = field(default_factory=dict)
     seen_from: str | View = "auto"
     partings: Ints = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
+    filaments: tuple[Filament, ...] = ()
+    pattern: str = ""
+    turned: tuple[Turned, ...] = ()
 
     @property
     def paths(self) -> Paths:
@@ -95,9 +110,17 @@ class Subject:
         """The surface, with the fibres' pitch."""
         return Part(self.points, self.quads, self.normals, self.pitch)
 
-    def frame(self, title: str, subtitle: str) -> Frame:
+    def frame(self, title: str, subtitle: str, view: View | None = None) -> Frame:
         """The words and the view."""
-        return Frame(title, subtitle, self.units, self.view)
+        return Frame(title, subtitle, self.units, view or self.view)
+
+    def wound(self, filaments: Sequence[Filament], patterns: Sequence[PatternFigures]) -> "Subject":
+        """The same as a continuous winding; patterns: the report's figures, an entry a layer."""
+        if not filaments or not patterns:
+            return self
+        first = patterns[0]
+        turned = tuple(Turned(each["kind"], each["reach"], each["radius"] or 0.0) for each in first["turnarounds"])
+        return replace(self, filaments=tuple(filaments), pattern=first["words"], turned=turned)
 
 
 def subject(
@@ -132,4 +155,4 @@ def subject_of(results: Results, seen_from: str = "auto") -> Subject:
     """The winding of a run's folder."""
     turns = results.revolutions
     of = subject_in(results.folder, results.layup, results.name, results.units, turns, seen_from, trusted=False)
-    return replace(of, partings=results.partings)
+    return replace(of, partings=results.partings).wound(results.filaments, results.patterns)

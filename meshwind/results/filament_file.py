@@ -6,11 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from meshwind.core.cast import Floats, Ints
+from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.errors import BadInputError
 from meshwind.filament.closing import ClosedLayer
 from meshwind.filament.course import Course
 from meshwind.results import schema
 from meshwind.results.vtk_files import write_lines
+from meshwind.results.vtk_reading import read_lines
 
 
 @dataclass(frozen=True)
@@ -52,3 +54,32 @@ def write_filaments(path: Path, filaments: Sequence[Filament], units: str = "") 
     }
     cell_data = {schema.FILAMENT_ID: np.arange(len(filaments)), schema.LENGTH: np.array([each[-1] for each in arc])}
     write_lines(path, all_of("points"), starts, point_data, cell_data, units)
+
+
+def read_filaments(path: Path) -> list[Filament]:
+    """Read what `write_filaments` wrote; raises BadInputError if the file is missing or damaged."""
+    read = read_lines(path)
+    lacking = [name for name in schema.FILAMENT.point_data if name not in read.point_data]
+    if lacking or len(read.starts) < 2:
+        why = f"no {' or '.join(lacking)} in it" if lacking else "no filament in it"
+        raise BadInputError(f"{path} cannot be used ({why}); run `meshwind wind --continuous` again")
+    normal, angle = read.point_data[schema.NORMAL], read.point_data[schema.WINDING_ANGLE]
+    known = read.points, normal, angle, read.point_data[schema.ARC_LENGTH]
+    if normal.shape != read.points.shape or not all(np.isfinite(values).all() for values in known):
+        raise BadInputError(
+            f"{path} cannot be used (it holds no finite numbers); run `meshwind wind --continuous` again"
+        )
+    counts = [
+        read.point_data[name].astype(np.int64)
+        for name in (schema.KIND, schema.CIRCUIT, schema.PASS, schema.PATH, schema.LAYER)
+    ]
+    found = []
+    for first, last in zip(read.starts[:-1], read.starts[1:], strict=True):
+        one = slice(int(first), int(last))
+        kind, circuit, passed, path_, layer = (frozen(each[one]) for each in counts)
+        course = Course(
+            frozen(read.points[one]), frozen(normal[one]), frozen(np.radians(angle[one])),
+            frozen(read.point_data[schema.SLIP][one]), kind, circuit, passed, path_,
+        )  # fmt: skip
+        found.append(Filament(course, layer, frozen(read.point_data[schema.THICKNESS][one])))
+    return found

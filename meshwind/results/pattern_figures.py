@@ -5,15 +5,19 @@ import numpy as np
 from meshwind.core.cast import Floats
 from meshwind.filament.alternatives import alternatives
 from meshwind.filament.closing import ClosedLayer
+from meshwind.filament.levels import levels
+from meshwind.filament.pin_turn import Pins, Shaft
+from meshwind.filament.stations import helix_stations
 from meshwind.path.winding_angle import winding_angle
 from meshwind.results.pattern_types import AlternativeFigures, MeanSpread, PatternFigures, TurnaroundFigures
 
 
-def pattern_figures(layer: ClosedLayer) -> PatternFigures:
-    """The figures of one closed layer."""
+def pattern_figures(layer: ClosedLayer, width: float, linear_density: float | None = None) -> PatternFigures:
+    """The figures of one closed layer; width: of its band; linear_density: mass of the fibre over its length."""
     pattern, joining = layer.pattern, layer.joining
     angle = np.degrees(winding_angle(layer.paths))
     median = float(np.median(angle))
+    cover = helix_stations(layer.paths, levels(layer.paths.surface), width).covers
     dwells = float(joining.start_dwell.mean() + joining.end_dwell.mean())
     return {
         "circuits": pattern.circuits,
@@ -27,7 +31,9 @@ def pattern_figures(layer: ClosedLayer) -> PatternFigures:
         "dwell": {"start": mean_spread(joining.start_dwell), "end": mean_spread(joining.end_dwell)},
         "angle": {"min": float(angle.min()), "median": median, "max": float(angle.max())},
         "turnarounds": [_turnaround(layer, k) for k in (0, 1)],
+        "cover": {"min": cover[0], "max": cover[1]},
         "fibre_length": layer.length,
+        "fibre_mass": None if linear_density is None else linear_density * layer.length,
         "left_out": layer.left_out,
         "alternatives": [
             AlternativeFigures(
@@ -57,5 +63,6 @@ def _turnaround(layer: ClosedLayer, k: int) -> TurnaroundFigures:
         "kind": each.name,
         "slip": each.slip,
         "reach": each.reach,
+        "radius": each.radius if isinstance(each, Pins | Shaft) else None,
         "rule": each.rule,
     }

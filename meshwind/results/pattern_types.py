@@ -19,6 +19,13 @@ class MeanSpread(TypedDict):
     max: float
 
 
+class CoverFigures(TypedDict):
+    """Least and largest cover factor of one family along the part: 1 where its bands lie edge to edge on average."""
+
+    min: float
+    max: float
+
+
 class DwellFigures(TypedDict):
     """Turns between the end of a path and the start of the next, at both ends."""
 
@@ -34,12 +41,16 @@ class MovedFigures(TypedDict):
 
 
 class TurnaroundFigures(TypedDict):
-    """A turnaround: its kind, the slip that it needs, its reach beyond the rim, and the rule that it is proved by."""
+    """A turnaround: its kind, the slip that it needs, its reach beyond the rim, and the rule that it is proved by.
+
+    radius: of the pins or of the shaft, None on a collar or a cap.
+    """
 
     end: str
     kind: str
     slip: float
     reach: float
+    radius: float | None
     rule: str
 
 
@@ -70,6 +81,8 @@ class PatternFigures(TypedDict):
     dwell: DwellFigures
     angle: Spread
     turnarounds: list[TurnaroundFigures]
+    cover: CoverFigures
     fibre_length: float
+    fibre_mass: float | None
     left_out: int
     alternatives: list[AlternativeFigures]

@@ -18,9 +18,11 @@ from meshwind.core.units import reported_unit
 from meshwind.layup.layup import Layup, assess
 from meshwind.path.paths import Counters, Paths, Status
 from meshwind.results import schema
+from meshwind.results.filament_file import Filament, read_filaments
+from meshwind.results.pattern_types import PatternFigures
 from meshwind.results.redesign_report_types import RedesignReport
 from meshwind.results.report_types import Report
-from meshwind.results.schema import EDITED, PATHS, REPORT, SPLINE, SURFACE
+from meshwind.results.schema import EDITED, FILAMENT, PATHS, REPORT, SPLINE, SURFACE
 from meshwind.results.staging import settle
 from meshwind.results.vtk_reading import Faces, Lines, read_faces, read_lines
 from meshwind.surface.grid import grid
@@ -88,6 +90,18 @@ class Results:
         except (TypeError, ValueError, OverflowError) as error:
             raise _spoilt(self.folder / REPORT, error) from error
         return known[((known >= 0) & (known < len(self.paths))).all(axis=1)]
+
+    @cached_property
+    def filaments(self) -> tuple[Filament, ...]:
+        """The filaments of a continuous winding; none of another."""
+        file = self.folder / FILAMENT
+        return tuple(read_filaments(file)) if file.is_file() else ()
+
+    @property
+    def patterns(self) -> list[PatternFigures]:
+        """The report's figures of the pattern, an entry a layer; none where the winding is not continuous."""
+        found = _under(self.report, "pattern")
+        return found if isinstance(found, list) else []
 
     @property
     def at_rest(self) -> Bools:

@@ -94,7 +94,7 @@ def report(layup: Layup, mesh: Mesh, chart: Chart | None, run: RunFacts) -> Repo
     if run.chosen is not None:
         figures["revolutions"] = revolution_figures(run.chosen)
     if run.closed is not None:
-        figures["pattern"] = [pattern_figures(run.closed)]
+        figures["pattern"] = [pattern_figures(run.closed, layup.coverage.width, run.linear_density)]
     if run.laminate is not None:
         figures["laminate"] = laminate_figures(run.laminate, mesh.units)
     result: Report = plain(figures)

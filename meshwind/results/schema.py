@@ -164,7 +164,10 @@ CONFIG = File("meshwind.toml")
 # pictures
 
 WINDING, FIT, REDESIGN, SHEET = "winding", "fit", "redesign", "sheet"
-PICTURES = WINDING, "crossings", "coverage", "windability", "slip", FIT, "unrolled", "quads"
+FILAMENTS, BANDS = "filament", "bands"
+OF_FILAMENT = FILAMENTS, BANDS
+"""Pictures of a continuous winding alone."""
+PICTURES = WINDING, "crossings", "coverage", "windability", "slip", FIT, "unrolled", "quads", "angles", *OF_FILAMENT
 """The pictures of a winding; REDESIGN is that of a redesign, SHEET shows all of a folder on one page."""
 MOVIES = "gif", "mp4"
 

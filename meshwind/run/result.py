@@ -19,9 +19,20 @@ from meshwind.results.config_file import write_config
 from meshwind.results.filament_file import filaments_of, write_filaments
 from meshwind.results.laminate_files import write_laminate
 from meshwind.results.layup_figures import parted
+from meshwind.results.pattern_figures import pattern_figures
 from meshwind.results.report import RunFacts, report, write_report
 from meshwind.results.report_types import Report
-from meshwind.results.schema import CONFIG, FILAMENT, FIT_PICTURE, REPORT, REVOLUTIONS_PICTURE, SHEET, WINDING, picture
+from meshwind.results.schema import (
+    CONFIG,
+    FILAMENT,
+    FIT_PICTURE,
+    OF_FILAMENT,
+    REPORT,
+    REVOLUTIONS_PICTURE,
+    SHEET,
+    WINDING,
+    picture,
+)
 from meshwind.results.write import write_files
 from meshwind.surface import Surface
 from meshwind.workflow.clock import Clock
@@ -206,8 +217,11 @@ def _draw(result: Result, out: Path) -> str:
     name, units = result.mesh.name, result.mesh.units
     of = subject_in(out, result.layup, name, units, result.revolutions)
     of = replace(of, partings=parted(result.layup, result.spaced))
+    if result.closed is not None:
+        of = of.wound(filaments_of(result.closed), [pattern_figures(result.closed, result.layup.coverage.width)])
+    asked = (WINDING, SHEET, *(OF_FILAMENT if result.closed is not None else ()))
     with TemporaryDirectory(dir=out) as cells:  # within, so that a killed run leaves nothing elsewhere
-        pictures = placed(scenes_of(of), (WINDING, SHEET), Page(), out, Path(cells))
+        pictures = placed(scenes_of(of), asked, Page(), out, Path(cells))
         work = dict(pictures)
         if any(note.picture == FIT_PICTURE for note in result.notes):
             work[out / FIT_PICTURE] = Drawing(fit_scene(result.surface, result.chart.annulus, name, units))
