@@ -18,7 +18,7 @@ MISTAKES = {
     "wind folder": "folder: is a folder; give the path of a triangle mesh",
     "wind letter": "unknown format ''; convert the mesh to one of STL,",
     "wind part.ply --path 24": "No such option: --path (Possible options: --paths)",
-    "wind part.ply --paths 1.5": "Invalid value for '--paths': give a whole number",
+    "wind part.ply --paths 1.5": "paths is '1.5'; give a whole number, or auto",
     "wind part.ply --band-width 5mm": "Invalid value for '--band-width': give a number",
     "wind part.ply --revolutions 0,5": "revolutions is '0,5'; give a number as in 0.5 or 5/12, or auto",
     "wind part.ply --units furlongs": "units is 'furlongs'; give mm, cm, m, um, in, ft",

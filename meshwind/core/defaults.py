@@ -1,5 +1,7 @@
 """Defaults that several functions share."""
 
+PATHS = 12
+"""Paths per family."""
 PARTICLES = 401
 """Particles per path: lengths are then right to 1e-5 on paths of up to about one turn."""
 FIT_TOLERANCE = 1e-5

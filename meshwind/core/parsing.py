@@ -25,14 +25,19 @@ def turns(text: str) -> float | str:
         raise BadInputError(f"revolutions is {text!r}; give a number as in 0.5 or 5/12, or auto") from error
 
 
-def count(text: str) -> int | None:
+def paths(text: str) -> int | None:
+    """Whole number of paths, or None for auto."""
+    return count(text, "paths")
+
+
+def count(text: str, name: str = "particles") -> int | None:
     """Whole number, or None for auto."""
     if text.strip().lower() == AUTO:
         return None
     try:
         return int(text)
     except ValueError as error:
-        raise BadInputError(f"particles is {text!r}; give a whole number, or auto") from error
+        raise BadInputError(f"{name} is {text!r}; give a whole number, or auto") from error
 
 
 def read_toml(file: Path, kind: str) -> dict[str, Any]:

@@ -6,6 +6,7 @@ import numpy as np
 from scipy import sparse
 
 from meshwind.core.cast import Bools, Floats
+from meshwind.core.defaults import PATHS
 from meshwind.core.errors import BadInputError
 from meshwind.editing.demands import press, reach
 from meshwind.editing.edited_mesh import within
@@ -137,12 +138,13 @@ def edit(
     cost = energy(surface, options.fairness)
     problem = _Problem(surface, moves, cost, options.pressing / surface.size, options.bound, limit)
     revolutions, particles = float(winding.revolutions), winding.particles
-    per_gap = -(-surface.control_points.shape[0] // winding.paths)
-    ends = families(surface, winding.paths * per_gap, revolutions)
+    paths = winding.paths or PATHS
+    per_gap = -(-surface.control_points.shape[0] // paths)
+    ends = families(surface, paths * per_gap, revolutions)
     laid = solve(surface, ends.start, ends.end, family=ends.family, particles=particles)
     best, outcome, figures = _rounds(problem, _State(surface, laid), options.rounds, progress)
-    own = families(surface, winding.paths, revolutions)
-    curves = np.array(best.paths.uv[np.arange(2 * winding.paths) * per_gap])
+    own = families(surface, paths, revolutions)
+    curves = np.array(best.paths.uv[np.arange(2 * paths) * per_gap])
     final = solve(best.surface, own.start, own.end, family=own.family, particles=particles, initial=curves)
     return Edit(figures, best.surface, final, outcome, limit)
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats
 from meshwind.core.cast import frozen as immutable
+from meshwind.core.defaults import PATHS
 from meshwind.core.errors import BadInputError
 from meshwind.editing.edit import Edit, edit
 from meshwind.editing.edited_mesh import displaced, displacement, turned_over, volume_change, within
@@ -121,7 +122,7 @@ def redesign(  # noqa: PLR0913
     mesh: MeshLike,
     *,
     revolutions: float | str = REVOLUTIONS,
-    paths: int = Options.paths,
+    paths: int = PATHS,
     particles: int | None = Options.particles,
     rounds: int = EditOptions.rounds,
     frozen: Frozen | str = EditOptions.frozen,

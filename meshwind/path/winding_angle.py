@@ -5,16 +5,16 @@ import numpy as np
 from meshwind.core.cast import Floats
 from meshwind.core.vectors import TINY
 from meshwind.path.paths import Paths
-from meshwind.surface.evaluate import SU, SV
+from meshwind.surface.evaluate import SU
 
 
 def winding_angle(paths: Paths) -> Floats:
-    """Angle of each fibre from the normal of the level line of v, in the tangent plane.
+    """Angle of each fibre from the direction square to the level line of v.
 
     Parameters
     ----------
     paths : Paths
-        Paths; where one is in the air, its foot on the surface counts.
+        Paths; where one is in the air, the level line is that through its foot.
 
     Returns
     -------
@@ -23,8 +23,7 @@ def winding_angle(paths: Paths) -> Floats:
     """
     p, n = paths.gap.shape
     frames = paths.surface.frames(paths.uv.reshape(-1, 2))
-    rate = np.gradient(paths.uv, axis=1, edge_order=2 if n > 2 else 1).reshape(-1, 2)
-    way = frames[:, SU] * rate[:, :1] + frames[:, SV] * rate[:, 1:]
+    way = np.gradient(paths.points, axis=1, edge_order=2 if n > 2 else 1).reshape(-1, 3)
     size = np.linalg.norm(way, axis=1) * np.linalg.norm(frames[:, SU], axis=1)
     around = np.abs((way * frames[:, SU]).sum(axis=1)) / np.maximum(size, TINY)
     return np.asarray(np.arcsin(np.minimum(around, 1.0)).reshape(p, n))

@@ -70,6 +70,8 @@ class Result(Winding):
         The layer as one filament, with `continuous`.
     layered : Layered or None
         The layers one on another, with `layers`.
+    turns : float
+        Revolutions that were given, chosen, or found for an angle.
 
     See Also
     --------
@@ -109,9 +111,7 @@ class Result(Winding):
     @property
     def revolutions(self) -> float:
         """Revolutions from end to end, as chosen where they were "auto", and as they close where they are to."""
-        if self.closed is not None:
-            return self.closed.revolutions
-        return float(self.options.revolutions) if self.chosen is None else self.chosen.choice
+        return self.turns if self.closed is None else self.closed.revolutions
 
     def report(self) -> Report:
         """Collect the figures of the run.

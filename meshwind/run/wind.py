@@ -17,7 +17,7 @@ from meshwind.workflow.winding import wind_part
 def wind(  # noqa: PLR0913
     mesh: MeshLike,
     *,
-    paths: int = Options.paths,
+    paths: int | None = Options.paths,
     revolutions: float | str = Options.revolutions,
     friction: float | str = Options.friction,
     component: int | None = Options.component,
@@ -34,6 +34,8 @@ def wind(  # noqa: PLR0913
     band_width: float | None = Options.band_width,
     linear_density: float | None = Options.linear_density,
     pins: str | PathLike[str] | None = Options.pins,
+    angle: float | None = Options.angle,
+    angle_at: str | None = Options.angle_at,
     continuous: bool = Options.continuous,
     turn_start: str = Options.turn_start,
     turn_end: str = Options.turn_end,
@@ -53,8 +55,9 @@ def wind(  # noqa: PLR0913
     ----------
     mesh : str, PathLike, Mesh, trimesh.Trimesh, pyvista.PolyData, meshio.Mesh or tuple of two arrays
         Mesh, or the path of its file; see `read` for those of other libraries.
-    paths : int, default 12
-        Number of paths per family; the two families turn in opposite senses.
+    paths : int or None, default 12
+        Number of paths per family; the two families turn in opposite senses.  None takes as many as cover the part
+        with bands of `band_width`.
     revolutions : float or str, default 0.5
         Turns of a path from end to end; "auto" picks the value with stable paths and least bridging.
     friction : float or str, default 0
@@ -92,6 +95,12 @@ def wind(  # noqa: PLR0913
         Mass of the fibre per unit of its length, from which its mass is computed.
     pins : str or PathLike, optional
         CSV file of the paths' ends, see `read_pins`.  By default they are spread evenly over the rims.
+    angle : float, optional
+        Winding angle in degrees from the direction along the part, the median over the paths, from which the
+        revolutions follow.  By default it is that of `revolutions`.
+    angle_at : str, optional
+        Where the angle is to be: "v=0.5", "z=120" along the part's axis, or "fraction=0.5" of its length.  By default
+        the widest place.
     continuous : bool, default False
         Whether to wind one closed filament, with its turnarounds at both ends; revolutions move to where it closes.
     turn_start, turn_end : {"auto", "collar", "pins", "shaft", "cap"}, default "auto"
@@ -137,7 +146,7 @@ def wind(  # noqa: PLR0913
     options = Options(
         paths, revolutions, particles, friction, component, ends, opening, side, opening_by,
         tolerance, threshold, worst_fit, units, spacing, band_width, linear_density, pinned,
-        continuous, turn_start, turn_end,
+        angle, angle_at, continuous, turn_start, turn_end,
     )  # fmt: skip
     plans = None if layers is None else read_layers(layers, options)
     clock = Clock(progress)

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field, fields
 from math import isfinite
 from numbers import Integral, Real
 
-from meshwind.core.defaults import FIT_TOLERANCE, OPENED_BY, PARTICLES, SIDES, STEPS_PER_TURN, TURNAROUNDS
+from meshwind.core.defaults import FIT_TOLERANCE, OPENED_BY, PARTICLES, PATHS, SIDES, STEPS_PER_TURN, TURNAROUNDS
 from meshwind.core.errors import BadInputError
 from meshwind.core.option import option
-from meshwind.core.parsing import AUTO, count, shortened, turns
+from meshwind.core.parsing import AUTO, count, paths, shortened, turns
 from meshwind.core.units import ASSUMED, MILLIMETRES, check_units
 
 FIELD = "field:"
@@ -20,6 +20,8 @@ MEMORY = 4e9
 """Most bytes that a run may take."""
 _BYTES_PER_PARTICLE, _BYTES_PER_CROSSING = 350, 1500
 """Peak memory of a run, measured from 3e5 to 1.6e6 particles and 2e4 to 5e5 crossings."""
+_STEEPEST = 89.0
+"""Degrees of the steepest helix: past them it is a hoop."""
 _MOST_CHOSEN = 1601
 """Particles per path that memory is checked for where their number is left open."""
 
@@ -36,7 +38,16 @@ class Options:
     The fields say what each option means; `particles` is None where their number is to be chosen.
     """
 
-    paths: int = field(default=12, metadata=option("Number of paths per family", FIBRES))
+    paths: int | None = field(
+        default=PATHS,
+        metadata=option(
+            "Number of paths per family; auto takes as many as cover the part with bands of the width given",
+            FIBRES,
+            metavar="COUNT",
+            words=(AUTO,),
+            read=paths,
+        ),
+    )
     revolutions: float | str = field(
         default=0.5,
         metadata=option(
@@ -150,6 +161,24 @@ class Options:
         ),
     )
 
+    angle: float | None = field(
+        default=None,
+        metadata=option(
+            "Winding angle from the direction along the part, in degrees, instead of the revolutions: the median over "
+            "the paths",
+            FIBRES,
+            otherwise="that of the revolutions",
+        ),
+    )
+    angle_at: str | None = field(
+        default=None,
+        metadata=option(
+            "Where the angle is to be: v=0.5, z=120 along the axis, or fraction=0.5 of the length",
+            FIBRES,
+            metavar="PLACE",
+            otherwise="the widest place",
+        ),
+    )
     continuous: bool = field(
         default=False,
         metadata=option("Wind each layer as one closed filament, with its turnarounds at both ends", FIBRES),
@@ -173,7 +202,12 @@ class Options:
         from meshwind.mesh.opening.choose_ends import parse_ends  # late: help shows these fields without loading NumPy
 
         set_ = object.__setattr__
-        set_(self, "paths", _whole(self.paths, "paths", 1))
+        if self.paths is not None:
+            set_(self, "paths", _whole(self.paths, "paths", 1))
+        elif self.band_width is None or self.pins is not None or self.spacing is not None:
+            raise BadInputError(
+                "paths that are to cover the part need band_width (--band-width), no pins and no spacing"
+            )
         if self.particles is not None:
             set_(self, "particles", _whole(self.particles, "particles", 3))
         if self.revolutions != AUTO:
@@ -197,16 +231,27 @@ class Options:
         if self.pins is not None and not (isinstance(self.pins, str) and self.pins.strip()):
             raise BadInputError(f"pins is {_text(self.pins)}; give the path of a CSV file of the paths' ends")
         _check_turns(self)
+        _check_angle(self)
         if self.pins is not None and self.spacing is not None:
             raise BadInputError("pins say where all paths end, and spacing adds paths between them; give one of both")
-        _check_memory(
-            self.paths, self.particles or _MOST_CHOSEN, 1.0 if isinstance(self.revolutions, str) else self.revolutions
-        )
+        turned = 1.0 if isinstance(self.revolutions, str) else self.revolutions
+        _check_memory(self.paths or PATHS, self.particles or _MOST_CHOSEN, turned)
 
     def written(self) -> dict[str, object]:
         """The options by name, as they stand in files: "auto" for a number of particles that is to be chosen."""
         values = {each.name: getattr(self, each.name) for each in fields(self)}
-        return values | {"particles": AUTO if self.particles is None else self.particles}
+        return values | {name: AUTO for name in ("paths", "particles") if getattr(self, name) is None}
+
+
+def _check_angle(options: Options) -> None:
+    """Raise BadInputError for an angle that no helix has, or beside what sets it already."""
+    if options.angle is None:
+        if options.angle_at is not None:
+            raise BadInputError(f"angle_at is {_text(options.angle_at)} without an angle; give angle as well")
+        return
+    object.__setattr__(options, "angle", _number(options.angle, "angle", 0.0, _STEEPEST))
+    if options.revolutions != Options.revolutions or options.pins is not None:
+        raise BadInputError("angle sets the revolutions, and so do revolutions and pins; give one of them")
 
 
 def _check_turns(options: Options) -> None:

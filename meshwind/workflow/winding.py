@@ -3,10 +3,14 @@
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from meshwind.chart import Chart
+from meshwind.core.defaults import PATHS
 from meshwind.core.parsing import AUTO
 from meshwind.filament.closing import ClosedLayer, close_layer
 from meshwind.filament.ends import LayerPlan
+from meshwind.filament.levels import levels
 from meshwind.layup.layup import Layup, assess
 from meshwind.mesh import Mesh
 from meshwind.path import Paths, solve
@@ -17,6 +21,7 @@ from meshwind.planning.revolutions import Revolutions, choose_revolutions
 from meshwind.planning.spacing import Spaced, space_out
 from meshwind.surface import Surface
 from meshwind.workflow.clock import Clock
+from meshwind.workflow.helices import Helices
 from meshwind.workflow.layer_plans import LayersFile
 from meshwind.workflow.layers import Layered, first_helical, lay_layers
 from meshwind.workflow.notes import (
@@ -52,6 +57,7 @@ class Winding:
     source: Path | None = None
     closed: ClosedLayer | None = None
     layered: Layered | None = None
+    turns: float = 0.0
 
 
 def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: LayersFile | None = None) -> Winding:
@@ -74,6 +80,12 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: 
         friction = _friction(part, options)
     chosen = chosen_revolutions(surface, options, clock, friction)
     revolutions = float(options.revolutions) if chosen is None else chosen.choice
+    given = options
+    if options.angle is not None or options.paths is None:
+        with clock.stage("choose"):
+            options, more = _planned(surface, options, revolutions, friction)
+            notes = (*notes, *more)
+        revolutions = float(options.revolutions)
     with clock.stage("wind"):
         closed = close(surface, options, revolutions, friction) if options.continuous else None
         laid = lay(surface, options, revolutions, friction) if closed is None else closed.paths
@@ -92,8 +104,8 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: 
             notes = (*notes, *more)
     source = part.source
     return Winding(
-        source.mesh, part.chart, layup, options, command, clock.seconds, notes, chosen, spaced, source.file,
-        closed, layered,
+        source.mesh, part.chart, layup, given, command, clock.seconds, notes, chosen, spaced, source.file,
+        closed, layered, revolutions,
     )  # fmt: skip
 
 
@@ -106,17 +118,40 @@ def lay(surface: Surface, options: Options, revolutions: float, friction: float 
     return replace(laid, asked=replace(laid.asked, turns=False))  # pins in space stay where they are
 
 
+def _planned(
+    surface: Surface, options: Options, revolutions: float, friction: float | Friction
+) -> tuple[Options, tuple[Note, ...]]:
+    """The options with the revolutions of their angle, and with as many paths as cover the part."""
+    helices, notes = Helices(surface, (0.0, 1.0), friction, levels(surface), options.paths or PATHS), []
+    if options.angle is not None:
+        revolutions = helices.revolutions_at(np.radians(options.angle), options.angle_at)
+        where = "the widest place" if options.angle_at is None else options.angle_at
+        notes.append(Note(f"{options.angle:g} degrees at {where} take {revolutions:.6g} revolutions"))
+    paths = options.paths
+    if paths is None:
+        assert options.band_width is not None
+        paths = helices.circuits(revolutions, options.band_width)
+        notes.append(Note(f"{paths} paths of each family cover the part where they have most to cover"))
+    return replace(options, paths=paths, revolutions=revolutions, angle=None, angle_at=None), tuple(notes)
+
+
 def close(surface: Surface, options: Options, revolutions: float, friction: float | Friction = 0.0) -> ClosedLayer:
     """Wind the layer as one filament."""
     turns = (options.turn_start, options.turn_end)
     clear = 0.0 if options.band_width is None else 0.5 * options.band_width
-    return close_layer(surface, LayerPlan(options.paths, revolutions, friction, options.particles, turns, clear))
+    return close_layer(surface, LayerPlan(_count(options), revolutions, friction, options.particles, turns, clear))
+
+
+def _count(options: Options) -> int:
+    """The paths of a family, which are chosen by now."""
+    assert options.paths is not None
+    return options.paths
 
 
 def _ends(surface: Surface, options: Options, revolutions: float) -> Families:
     if options.pins is not None:
         return read_pins(options.pins, surface, revolutions)
-    return families(surface, options.paths, revolutions)
+    return families(surface, _count(options), revolutions)
 
 
 def _friction(part: Part, options: Options) -> float | Friction:
@@ -136,6 +171,6 @@ def chosen_revolutions(
     """Choose the revolutions where they are "auto"; further as in `choose_revolutions`."""
     if options.revolutions != AUTO:
         return None
-    paths, particles = options.paths, options.particles
+    paths, particles = options.paths or PATHS, options.particles
     with clock.stage("choose"):
         return choose_revolutions(surface, paths=paths, particles=particles, friction=friction, further=further)
