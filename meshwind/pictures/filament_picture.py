@@ -24,7 +24,8 @@ def draw(window: Any, scene: FilamentScene, page: Page) -> Any:
     view, signal = scene.frame.view, scene.scale is None
     body = bodies.body(scene.part)
     canvas.add_smooth(
-        window, body, color=SIGNAL if signal else canvas.PART, ambient=0.6 if signal else 0.3, diffuse=0.5,
+        window, body, color=SIGNAL if signal else canvas.PART, ambient=0.6 if signal else 0.3,
+        diffuse=0.5 if signal else 0.8,
         backface_params={"color": canvas.INSIDE, "ambient": 0.25, "interpolation": "Phong"},
     )  # fmt: skip
     if len(scene.gear.quads):
