@@ -1,7 +1,7 @@
 """Other patterns near the one that a layer closes in, and what each costs."""
 
 from dataclasses import dataclass
-from math import atan, ceil, degrees, gcd, inf, radians, tan
+from math import atan, ceil, degrees, gcd, radians, tan
 
 from meshwind.filament.pattern import Pattern
 
@@ -61,4 +61,4 @@ def alternatives(pattern: Pattern, revolutions: float, dwells: float, angle: flo
             cover, more = circuits / pattern.circuits, turns / circuits - whole
             each = Alternative(Pattern(circuits, turns), turned, about, cover, more if more >= 0.0 else None)
             found.append((abs(about - angle) + _PER_CIRCUIT * (cover - 1.0), each))
-    return [each for _, each in sorted(found, key=lambda pair: (pair[0], pair[1].pattern.circuits, inf))][:_OFFERED]
+    return [each for _, each in sorted(found, key=lambda pair: (pair[0], pair[1].pattern.circuits))][:_OFFERED]

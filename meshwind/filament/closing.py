@@ -9,7 +9,7 @@ from meshwind.core.cast import Bools, Floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.filament.cap_turn import Cap, ends_with_caps, joined_on_caps, passes_on_caps
 from meshwind.filament.course import Course, Kind, joined
-from meshwind.filament.ends import CAP, End, LayerPlan, Pairs, choose_end
+from meshwind.filament.ends import CAP, ROOM, End, LayerPlan, Pairs, choose_end
 from meshwind.filament.joining import Joining, join, passes
 from meshwind.filament.pattern import Pattern, nearest_pattern, patterns
 from meshwind.filament.turnaround import Turnaround
@@ -27,8 +27,6 @@ _FAR = 1.0
 """Revolutions times the circuits by which those that close may differ from those asked for; they are 1/2 apart."""
 _CONTRACTS = 0.95
 """Share of a shortage of dwell that may be left after a round for the secant to be taken."""
-_ROOM = 1e-6
-"""Turns of dwell beyond the least, so that round-off does not cost a place."""
 
 
 @dataclass(frozen=True)
@@ -189,7 +187,7 @@ def _planned(surface: Surface, plan: LayerPlan, ends: list[End], scouts: Paths) 
             break
         tried, _ = _at_rest(_solved(surface, plan, len(scouts) // 2, planned.revolutions, -planned.dwells[0]))
         now = np.array([end.pairs(tried).least_dwell() for end in ends]) - planned.dwells
-        if now.max() <= _ROOM:
+        if now.max() <= ROOM:
             return planned
         factor = 1.0 / (1.0 - now.sum() / short) if now.sum() < _CONTRACTS * short else 1.0
         short = now.sum()
@@ -242,7 +240,7 @@ def _filaments(
             row = [
                 (laid[plus[there]], 0),
                 (over_end[there], 0),
-                (_reversed(laid[minus[back]]), 1),
+                (laid[minus[back]].backwards, 1),
                 (over_start[back], 1),
             ]
             parts += [_numbered(part, circuit, 2 * circuit + passed) for part, passed in row if part is not None]
@@ -273,10 +271,6 @@ def _laid(paths: Paths) -> list[Course]:
         Course(paths.points[k], paths.normal[k], angle[k], paths.slip[k], kind[k], none, none, np.full_like(none, k))
         for k in range(len(paths))
     ]
-
-
-def _reversed(course: Course) -> Course:
-    return Course(*(getattr(course, name)[::-1] for name in course.__dataclass_fields__))
 
 
 def _numbered(course: Course, circuit: int, passed: int) -> Course:

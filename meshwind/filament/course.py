@@ -65,6 +65,15 @@ class Course:
     def __len__(self) -> int:
         return len(self.points)
 
+    def chosen(self, which: slice) -> "Course":
+        """Some of the points in a row."""
+        return Course(*(getattr(self, each.name)[which] for each in fields(Course)))
+
+    @property
+    def backwards(self) -> "Course":
+        """The same fibre from its last point to its first."""
+        return self.chosen(slice(None, None, -1))
+
     @property
     def arc_length(self) -> Floats:
         """Length (n,) of the polyline up to each point."""
@@ -77,8 +86,9 @@ def joined(courses: Sequence[Course]) -> Course:
 
     The first point of each stretch but the first is left out, as the stretch before it has it already.
     """
-    parts = {
-        each.name: np.concatenate([getattr(course, each.name)[k > 0 :] for k, course in enumerate(courses)])
-        for each in fields(Course)
-    }
-    return Course(**{name: frozen(part) for name, part in parts.items()})
+    return in_a_row([courses[0], *(each.chosen(slice(1, None)) for each in courses[1:])])
+
+
+def in_a_row(courses: Sequence[Course]) -> Course:
+    """One course from several, from each of which the fibre goes straight to the next."""
+    return Course(*(frozen(np.concatenate([getattr(one, each.name) for one in courses])) for each in fields(Course)))

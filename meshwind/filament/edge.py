@@ -4,7 +4,7 @@ A fibre that crosses the rim goes on in the plane that the prism unrolls to, at 
 there are the length along the hull, in the sense of turning, and the height over the rim's middle, away from the part.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import ConvexHull
@@ -143,13 +143,10 @@ def edge(surface: Surface, v: float) -> Edge:
     around = made.around(u)
     hollow = np.linalg.norm(flat - hull.at(around), axis=1).max() if len(corners) < _SAMPLES else 0.0
     outward = unit(np.cross(frames[:, SU], frames[:, SV]))
-    normal = unit(made.normals(around) - ((made.normals(around) * frames[:, SU]).sum(axis=1) /
-                  (frames[:, SU] ** 2).sum(axis=1))[:, None] * frames[:, SU])  # fmt: skip
+    su, normal = frames[:, SU], made.normals(around)
+    normal = unit(normal - ((normal * su).sum(axis=1) / (su**2).sum(axis=1))[:, None] * su)
     turn = np.arcsin(np.clip((np.cross(outward, normal) * unit(np.cross(along, outward))).sum(axis=1), -1.0, 1.0))
-    return Edge(
-        made.origin, made.axis, made.across, hull, made.u, made.lowest, made.highest, float(hollow),
-        (float(turn.min()), float(turn.max())),
-    )  # fmt: skip
+    return replace(made, hollow=float(hollow), crease=(float(turn.min()), float(turn.max())))
 
 
 def legs(on: Edge, paths: Paths, v: float, family: int) -> Legs:

@@ -19,9 +19,10 @@ from meshwind.surface.rims import rim
 from meshwind.surface.surface import Surface
 
 CAP = "cap"
+"""The turnaround on a closed end, whose passes are marched."""
 _SETTLED = 60
 """Rounds in which the least dwell is found."""
-_ROOM = 1e-6
+ROOM = 1e-6
 """Turns of dwell beyond the least, so that round-off does not cost a place."""
 _PIN_WIDE, _PIN_HIGH = 1 / 6, 1 / 2
 """Radius of a pin, and height of its middle over the rim, over the distance of the paths along the rim."""
@@ -127,7 +128,7 @@ class Pairs:
             leave = Legs(later, between(self.leaving.height, share), between(self.leaving.angle, share),
                          self.leaving.points, -1)  # fmt: skip
             short = -float(self.end.turnaround.surplus(self.arriving, leave, later).min())
-            if short <= _ROOM:
+            if short <= ROOM:
                 break
             dwell += short
             if not dwell < _LONGEST_DWELL:
@@ -135,7 +136,7 @@ class Pairs:
                     f"the turnaround at the {'end' if self.end.v else 'start'} ({self.end.turnaround.name}) would take "
                     f"more than {_LONGEST_DWELL:g} turns; give pins or a shaft, more friction, or a larger angle"
                 )
-        return dwell + 2.0 * _ROOM
+        return dwell + 2.0 * ROOM
 
 
 def choose_end(surface: Surface, v: float, plan: LayerPlan, word: str, scouts: Paths) -> End:

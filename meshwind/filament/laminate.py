@@ -6,7 +6,7 @@ import numpy as np
 
 from meshwind.filament.band import Roving
 from meshwind.filament.hoop import Hoop, HoopPlan, hoop
-from meshwind.filament.levels import levels
+from meshwind.filament.levels import Levels
 from meshwind.filament.offset import Raised, raised
 from meshwind.filament.stations import Stations, helix_stations, hoop_stations
 from meshwind.filament.thickness import Laying, Thickness, Tracks, deposit, tracks
@@ -124,23 +124,32 @@ class Ply:
     turn_end: str = ""
 
 
-def helical_layer(paths: Paths, ply: Ply, left_out: int = 0) -> LaidLayer:
-    """The layer of taut paths, deposited on their surface, and the surface above it."""
-    surface, laying = paths.surface, ply.laying
-    thickness = deposit(surface, tracks(paths), laying)
-    stations = helix_stations(paths, levels(surface), laying.width)
+def helical_layer(paths: Paths, ply: Ply, lines: Levels, left_out: int = 0) -> LaidLayer:
+    """The layer of taut paths, deposited on their surface with these level lines, and the surface above it."""
+    stations = helix_stations(paths, lines, ply.laying.width)
+    return _laid(paths.surface, ply, stations, tracks(paths), paths=paths, left_out=left_out)
+
+
+def hoop_layer(surface: Surface, plan: HoopPlan, ply: Ply, lines: Levels) -> LaidLayer:
+    """The layer of a hoop, deposited on its surface with these level lines, and the surface above it."""
+    laid = hoop(surface, plan)
+    return _laid(surface, ply, hoop_stations(laid, lines, ply.laying.width), laid.tracks, hoop_=laid)
+
+
+def _laid(
+    surface: Surface,
+    ply: Ply,
+    stations: Stations,
+    laid: Tracks,
+    *,
+    paths: Paths | None = None,
+    hoop_: Hoop | None = None,
+    left_out: int = 0,
+) -> LaidLayer:
+    """The layer of fibres that lie there, either paths or a hoop."""
+    thickness = deposit(surface, laid, ply.laying)
+    above = raised(surface, thickness, ply.laying.width)
     return LaidLayer(
-        surface, paths, None, laying, thickness, raised(surface, thickness, laying.width), stations, ply.friction,
+        surface, paths, hoop_, ply.laying, thickness, above, stations, ply.friction,
         left_out, ply.roving, ply.turn_start, ply.turn_end,
-    )  # fmt: skip
-
-
-def hoop_layer(surface: Surface, plan: HoopPlan, ply: Ply) -> LaidLayer:
-    """The layer of a hoop, deposited on its surface, and the surface above it."""
-    laid, laying = hoop(surface, plan), ply.laying
-    thickness = deposit(surface, laid.tracks, laying)
-    stations = hoop_stations(laid, levels(surface), laying.width)
-    return LaidLayer(
-        surface, None, laid, laying, thickness, raised(surface, thickness, laying.width), stations, ply.friction,
-        0, ply.roving, ply.turn_start, ply.turn_end,
     )  # fmt: skip

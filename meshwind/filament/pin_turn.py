@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from meshwind.core.cast import Floats
-from meshwind.filament.course import Course, Kind
+from meshwind.filament.course import Course, Kind, in_a_row
 from meshwind.filament.edge import Edge, Legs
 from meshwind.filament.turnaround import Stretch, course, straight
 
@@ -160,7 +160,7 @@ class Shaft:
             over.append(self._round(touch[0], max(touch[1], touch[0])))
             home = self.edge.points(down.around[-1:], down.height[-1:])[0]
             over.append(course(self.edge, [down.backwards], home, leaving.points[k]))
-            made.append(_in_a_row(over))
+            made.append(in_a_row(over))
         return made
 
     def _round(self, first: float, last: float) -> Course:
@@ -173,10 +173,3 @@ class Shaft:
         kind = np.full(len(polar), Kind.DWELL)
         kind[0] = Kind.TURN  # it comes in through the air
         return Course(points, normal, np.full_like(polar, 0.5 * np.pi), np.zeros_like(polar), kind, none, none, none)
-
-
-def _in_a_row(courses: list[Course]) -> Course:
-    """Courses one after another, between which the fibre goes straight."""
-    first, *others = courses
-    arrays = ("points", "normal", "angle", "slip", "kind", "circuit", "passed", "path")
-    return Course(*(np.concatenate([getattr(each, name) for each in (first, *others)]) for name in arrays))

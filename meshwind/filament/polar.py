@@ -22,7 +22,7 @@ from meshwind.filament.polar_rows import Rows, Stretch, evenly
 from meshwind.march.traced import Stop
 from meshwind.path.paths import Counters, Paths, Status
 from meshwind.path.solve import check_count
-from meshwind.surface.evaluate import SU
+from meshwind.surface.evaluate import SU, SV
 from meshwind.surface.surface import Surface
 
 Side: TypeAlias = Literal["start", "end"]
@@ -299,7 +299,7 @@ def _spread(surface: Surface, end: End, count: int) -> Floats:
     """Touch points (n,) that share out the length of the opening."""
     u = np.linspace(0.0, 1.0, _SHARES + 1)
     frames, way = surface.frames(end.opening.at(u)), end.opening.tangent(u)
-    speed = np.linalg.norm(way[:, :1] * frames[:, SU] + way[:, 1:] * frames[:, SU + 1], axis=1)
+    speed = np.linalg.norm(way[:, :1] * frames[:, SU] + way[:, 1:] * frames[:, SV], axis=1)
     passed = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]))])
     return np.asarray(np.interp(np.arange(count) / count, passed / passed[-1], u))
 

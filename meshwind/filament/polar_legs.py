@@ -12,6 +12,7 @@ from scipy.interpolate import CubicSpline, PPoly
 
 from meshwind.core.cast import Bools, Floats
 from meshwind.core.errors import BadInputError
+from meshwind.core.vectors import unit
 from meshwind.march.forward import traces
 from meshwind.march.traced import Stop, Trace
 from meshwind.surface.evaluate import DEGREE, SU, SV
@@ -151,10 +152,8 @@ class End:
         last = np.array([trace.uv[-1] for trace in found])
         tangent = sign * np.array([trace.tangent[-1] for trace in found])
         frames = surface.frames(last)
-        along = frames[:, SV] / np.linalg.norm(frames[:, SV], axis=1, keepdims=True)
-        normal = np.cross(frames[:, SU], frames[:, SV])
-        across = np.cross(frames[:, SV], normal)
-        across /= np.linalg.norm(across, axis=1, keepdims=True)
+        along = unit(frames[:, SV])
+        across = unit(np.cross(frames[:, SV], np.cross(frames[:, SU], frames[:, SV])))
         angle = np.arctan2((tangent * across).sum(axis=1), (tangent * along).sum(axis=1))
         there = np.array([trace.stop == wanted for trace in found])
         return Legs(np.where(there, last[:, 0], np.nan), np.where(there, angle, np.nan), found)

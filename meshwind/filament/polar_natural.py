@@ -242,14 +242,13 @@ def _guess(legs: Tables, theta: Floats) -> Natural:
     share = (np.arange(_CIRCUITS) + 0.5) / _CIRCUITS
     weight = np.exp(-1.0 / (share * (1.0 - share)))
     weight /= weight.sum()
-    at, turned, leads = a, np.empty_like(a), np.empty((_CIRCUITS, len(a)))
+    at, leads = a, np.empty((_CIRCUITS, len(a)))
     orbit = np.empty((_CIRCUITS, len(a)))
     for k in range(_CIRCUITS):
         leads[k] = ahead(at - np.floor(at))
         orbit[k] = at
         at = at + leads[k]
-    turned = weight @ leads
-    turns = float(turned.mean())
+    turns = float((weight @ leads).mean())
     natural_of_a = np.maximum.accumulate(weight @ (orbit - turns * np.arange(_CIRCUITS)[:, None]))
     natural_of_a -= natural_of_a[0]
     a_of_theta = np.interp(theta, natural_of_a / natural_of_a[-1], a)

@@ -10,9 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.vectors import unit
 from meshwind.filament.polar_legs import Half
 from meshwind.march.traced import Trace
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV
+from meshwind.surface.forms import components
 from meshwind.surface.surface import Surface
 
 
@@ -80,15 +82,11 @@ def _second(surface: Surface, uv: Floats, rate: Floats, slip: Floats) -> Floats:
     frames = surface.frames(uv)
     su, sv = frames[:, SU], frames[:, SV]
     p, q = rate[:, :1], rate[:, 1:]
-    normal = np.cross(su, sv)
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    normal = unit(np.cross(su, sv))
     bend = p * p * frames[:, SUU] + 2.0 * p * q * frames[:, SUV] + q * q * frames[:, SVV]
     press = np.maximum(-(bend * normal).sum(axis=1), 0.0)
     left = np.cross(normal, p * su + q * sv)
-    rest = (slip * press)[:, None] * left - bend
-    ee, ff, gg = (su * su).sum(axis=1), (su * sv).sum(axis=1), (sv * sv).sum(axis=1)
-    x, y = (rest * su).sum(axis=1), (rest * sv).sum(axis=1)
-    return np.stack([gg * x - ff * y, ee * y - ff * x], axis=1) / (ee * gg - ff * ff)[:, None]
+    return components(frames, (slip * press)[:, None] * left - bend)
 
 
 def _quintic(x: Floats, h: Floats, start: tuple[Floats, Floats, Floats], end: tuple[Floats, Floats, Floats]) -> Floats:

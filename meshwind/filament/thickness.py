@@ -12,6 +12,7 @@ from meshwind.layup.bands import cells_for
 from meshwind.layup.coverage import add_lengths, between_centres, cell_areas
 from meshwind.path.paths import Paths
 from meshwind.surface.evaluate import SU, SUU, SV, SVV
+from meshwind.surface.forms import components
 from meshwind.surface.surface import Surface
 
 FLAT, LENS = SECTIONS = ("flat", "lens")
@@ -261,10 +262,6 @@ def _rates(surface: Surface, state: Floats) -> Floats:
     """The right-hand side (m, 4) of the geodesic equations; rest where the surface has no tangent plane."""
     frames = surface.frames(np.ascontiguousarray(state[:, :2]))
     p, q = state[:, 2], state[:, 3]
-    su, sv = frames[:, SU], frames[:, SV]
     squares = np.stack([p * p, 2.0 * p * q, q * q], axis=1)[:, :, None]
     bend = (frames[:, SUU : SVV + 1] * squares).sum(axis=1)
-    e, f, g = ((a * b).sum(axis=1) for a, b in ((su, su), (su, sv), (sv, sv)))
-    x, y = (bend * su).sum(axis=1), (bend * sv).sum(axis=1)
-    square = np.maximum(e * g - f * f, TINY)
-    return np.stack([p, q, -(g * x - f * y) / square, -(e * y - f * x) / square], axis=1)
+    return np.concatenate([state[:, 2:], -components(frames, bend)], axis=1)

@@ -72,10 +72,7 @@ def straight(start: tuple[float, float], end: tuple[float, float], edge: Edge, k
 
 def course(edge: Edge, stretches: list[Stretch], first: Floats, last: Floats) -> Course:
     """The course over stretches in a row, with the points (3,) where it comes from the part and goes back to it."""
-    parts = [
-        stretches[0],
-        *(Stretch(s.around[1:], s.height[1:], s.angle[1:], s.slip[1:], s.kind) for s in stretches[1:]),
-    ]
+    parts = [stretches[0], *(each.rest for each in stretches[1:])]
     around, height, angle, slip = (
         np.concatenate([getattr(each, name) for each in parts]) for name in ("around", "height", "angle", "slip")
     )

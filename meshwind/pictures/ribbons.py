@@ -10,8 +10,7 @@ from meshwind.filament.course import Kind
 from meshwind.path.paths import Paths
 from meshwind.pictures.scenes import Ribbons
 from meshwind.results.filament_file import Filament
-from meshwind.surface.evaluate import SU, SV
-from meshwind.surface.forms import fundamental_forms
+from meshwind.surface.forms import components, fundamental_forms
 
 ACROSS = 7
 """Points across a ribbon."""
@@ -109,11 +108,7 @@ def curvature_across(filament: Filament, paths: Paths) -> Floats:
         forms = fundamental_forms(frames)
         ahead = np.gradient(course.points, axis=0)[on]
         aside = np.cross(forms.normal, ahead)
-        # du s_u + dv s_v = aside, solved by the first form
-        a, b = ((aside * frames[:, k]).sum(axis=1) for k in (SU, SV))
-        one, two = forms.first, forms.second
-        det = np.maximum(one.uu * one.vv - one.uv**2, TINY)
-        du, dv = (a * one.vv - b * one.uv) / det, (b * one.uu - a * one.uv) / det
+        two, (du, dv) = forms.second, components(frames, aside).T
         bent = two.uu * du**2 + 2.0 * two.uv * du * dv + two.vv * dv**2
         across[on] = bent / np.maximum((aside**2).sum(axis=1), TINY)
     return np.asarray(across)

@@ -17,7 +17,7 @@ from meshwind.path.paths import Paths, Status
 from meshwind.pictures.scenes import Frame, Part
 from meshwind.results.figures import PathFigures, path_figures
 from meshwind.results.filament_file import Filament
-from meshwind.results.pattern_types import PatternFigures
+from meshwind.results.pattern_types import TurnaroundFigures
 from meshwind.results.reading import Results, read_surface_grid
 from meshwind.results.schema import NORMAL
 from meshwind.surface.grid import grid
@@ -114,13 +114,10 @@ class Subject:
         """The words and the view."""
         return Frame(title, subtitle, self.units, view or self.view)
 
-    def wound(self, filaments: Sequence[Filament], patterns: Sequence[PatternFigures]) -> "Subject":
-        """The same as a continuous winding; patterns: the report's figures, an entry a layer."""
-        if not filaments or not patterns:
-            return self
-        first = patterns[0]
-        turned = tuple(Turned(each["kind"], each["reach"], each["radius"] or 0.0) for each in first["turnarounds"])
-        return replace(self, filaments=tuple(filaments), pattern=first["words"], turned=turned)
+    def wound(self, filaments: Sequence[Filament], pattern: str, turnarounds: Sequence[TurnaroundFigures]) -> "Subject":
+        """The same as a continuous winding."""
+        turned = tuple(Turned(each["kind"], each["reach"], each["radius"] or 0.0) for each in turnarounds)
+        return replace(self, filaments=tuple(filaments), pattern=pattern, turned=turned)
 
 
 def subject(
@@ -155,4 +152,8 @@ def subject_of(results: Results, seen_from: str = "auto") -> Subject:
     """The winding of a run's folder."""
     turns = results.revolutions
     of = subject_in(results.folder, results.layup, results.name, results.units, turns, seen_from, trusted=False)
-    return replace(of, partings=results.partings).wound(results.filaments, results.patterns)
+    of = replace(of, partings=results.partings)
+    if not results.filaments or not results.patterns:
+        return of
+    first = results.patterns[0]
+    return of.wound(results.filaments, first["words"], first["turnarounds"])

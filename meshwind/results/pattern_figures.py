@@ -30,7 +30,7 @@ def pattern_figures(layer: ClosedLayer, width: float, linear_density: float | No
         "revolutions": {"asked": layer.plan.revolutions, "wound": layer.revolutions},
         "dwell": {"start": mean_spread(joining.start_dwell), "end": mean_spread(joining.end_dwell)},
         "angle": {"min": float(angle.min()), "median": median, "max": float(angle.max())},
-        "turnarounds": [_turnaround(layer, k) for k in (0, 1)],
+        "turnarounds": turnaround_figures(layer),
         "cover": {"min": cover[0], "max": cover[1]},
         "fibre_length": layer.length,
         "fibre_mass": None if linear_density is None else linear_density * layer.length,
@@ -56,13 +56,16 @@ def mean_spread(values: Floats) -> MeanSpread:
     return {"min": float(values.min()), "mean": float(values.mean()), "max": float(values.max())}
 
 
-def _turnaround(layer: ClosedLayer, k: int) -> TurnaroundFigures:
-    each = layer.turnarounds[k]
-    return {
-        "end": ("start", "end")[k],
-        "kind": each.name,
-        "slip": each.slip,
-        "reach": each.reach,
-        "radius": each.radius if isinstance(each, Pins | Shaft) else None,
-        "rule": each.rule,
-    }
+def turnaround_figures(layer: ClosedLayer) -> list[TurnaroundFigures]:
+    """The figures of what turns at the start and at the end."""
+    return [
+        {
+            "end": name,
+            "kind": each.name,
+            "slip": each.slip,
+            "reach": each.reach,
+            "radius": each.radius if isinstance(each, Pins | Shaft) else None,
+            "rule": each.rule,
+        }
+        for name, each in zip(("start", "end"), layer.turnarounds, strict=True)
+    ]

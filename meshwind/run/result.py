@@ -19,7 +19,7 @@ from meshwind.results.config_file import write_config
 from meshwind.results.filament_file import filaments_of, write_filaments
 from meshwind.results.laminate_files import write_laminate
 from meshwind.results.layup_figures import parted
-from meshwind.results.pattern_figures import pattern_figures
+from meshwind.results.pattern_figures import turnaround_figures
 from meshwind.results.report import RunFacts, report, write_report
 from meshwind.results.report_types import Report
 from meshwind.results.schema import (
@@ -218,7 +218,8 @@ def _draw(result: Result, out: Path) -> str:
     of = subject_in(out, result.layup, name, units, result.revolutions)
     of = replace(of, partings=parted(result.layup, result.spaced))
     if result.closed is not None:
-        of = of.wound(filaments_of(result.closed), [pattern_figures(result.closed, result.layup.coverage.width)])
+        closed = result.closed
+        of = of.wound(filaments_of(closed), closed.pattern.words, turnaround_figures(closed))
     asked = (WINDING, SHEET, *(OF_FILAMENT if result.closed is not None else ()))
     with TemporaryDirectory(dir=out) as cells:  # within, so that a killed run leaves nothing elsewhere
         pictures = placed(scenes_of(of), asked, Page(), out, Path(cells))

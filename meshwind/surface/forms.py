@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from meshwind.core.cast import Floats
-from meshwind.core.vectors import unit
+from meshwind.core.vectors import TINY, unit
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV
 
 
@@ -37,6 +37,14 @@ def fundamental_forms(frames: Floats) -> Forms:
     first = Form(*((a * b).sum(axis=1) for a, b in ((su, su), (su, sv), (sv, sv))))
     second = Form(*(-(frames[:, k] * normal).sum(axis=1) for k in (SUU, SUV, SVV)))
     return Forms(normal, np.linalg.norm(cross, axis=1), first, second)
+
+
+def components(frames: Floats, vectors: Floats) -> Floats:
+    """The (du, dv) (k, 2) at frames (k, 6, 3) with which du s_u + dv s_v is the part of vectors (k, 3) in the plane."""
+    su, sv = frames[:, SU], frames[:, SV]
+    e, f, g = ((a * b).sum(axis=1) for a, b in ((su, su), (su, sv), (sv, sv)))
+    x, y = (vectors * su).sum(axis=1), (vectors * sv).sum(axis=1)
+    return np.stack([g * x - f * y, e * y - f * x], axis=1) / np.maximum(e * g - f * f, TINY)[:, None]
 
 
 def area_elements(frames: Floats) -> Floats:

@@ -37,8 +37,9 @@ class Helices:
     def laid(self, paths: int, revolutions: float, particles: int | None) -> Paths:
         """Lay both families."""
         ends = families(self.surface, paths, revolutions, between=self.between)
-        friction = self.friction
-        return solve(self.surface, ends.start, ends.end, family=ends.family, particles=particles, friction=friction)
+        return solve(
+            self.surface, ends.start, ends.end, family=ends.family, particles=particles, friction=self.friction
+        )
 
     def tried(self, revolutions: float) -> Paths | None:
         """Some paths, or None where none of them comes to rest."""

@@ -1,5 +1,7 @@
 """Wind the layers of a laminate one on another."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -35,20 +37,25 @@ def lay_layers(surface: Surface, asked: LayersFile, options: Options, units: str
     """
     layers: list[LaidLayer] = []
     notes: list[Note] = []
-    plies = [_named(number, plan.ply, options, units) for number, plan in enumerate(asked.plans, 1)]
+    plies = []
+    for number, plan in enumerate(asked.plans, 1):
+        with _naming(number):
+            plies.append(plan.ply(options, units))
     for number, (plan, ply) in enumerate(zip(asked.plans, plies, strict=True), 1):
         for _ in range(plan.repeat):
             below = layers[-1].raised.surface if layers else surface
-            layer = _named(number, _lay, below, plan, ply, options)
+            with _naming(number):
+                layer = _lay(below, plan, ply, options)
             notes += [Note(f"layer {number}: {line}", warning=True) for line in _faults(layer)]
             layers.append(layer)
     return Layered(Laminate(tuple(layers)), asked.file, options), tuple(dict.fromkeys(notes))
 
 
-def _named(number, call, *arguments):  # type: ignore[no-untyped-def]
-    """What a call gives; the message of its BadInputError names the layer."""
+@contextmanager
+def _naming(number: int) -> Iterator[None]:
+    """Name the layer in the message of a BadInputError."""
     try:
-        return call(*arguments)
+        yield
     except BadInputError as error:
         raise BadInputError(f"layer {number}: {error}") from error
 
@@ -81,7 +88,7 @@ def _lay(surface: Surface, plan: LayerPlan, ply: Ply, options: Options) -> LaidL
     between = station(plan.start, lines), station(plan.end, lines)
     if plan.kind == HOOP:
         hoops = HoopPlan(*between, ply.laying.width, plan.passes, plan.overlap, plan.stagger)
-        return hoop_layer(surface, hoops, ply)
+        return hoop_layer(surface, hoops, ply, lines)
     if not between[0] < between[1]:
         raise BadInputError(f"it starts at v={between[0]:g} and ends at v={between[1]:g}; give its places in order")
     helices = Helices(surface, between, ply.friction, lines)
@@ -91,7 +98,7 @@ def _lay(surface: Surface, plan: LayerPlan, ply: Ply, options: Options) -> LaidL
     held = paths.status == Status.CONVERGED
     if not held.any():
         raise BadInputError(f"no path of it comes to rest: {paths.advice(0)}")
-    return helical_layer(paths.subset(held), ply, int((~held).sum()))
+    return helical_layer(paths.subset(held), ply, lines, int((~held).sum()))
 
 
 def first_helical(plans: tuple[LayerPlan, ...], surface: Surface, options: Options, units: str) -> Options:

@@ -152,8 +152,7 @@ def about_filament(layer: ClosedLayer, caps: tuple[bool, bool], units: str = "")
             Note("both ends are closed: with --turn-start cap --turn-end cap the fibre turns on them, at another angle")
         )
     if layer.words:
-        held = (layer.paths.status == Status.CONVERGED).all()
-        notes.append(Note(layer.words, not held))
+        notes.append(Note(layer.words, bool((layer.paths.status != Status.CONVERGED).any())))
     if layer.left_out:
         notes.append(
             Note(f"{layer.left_out} paths are not in the filament, as some are not at rest: the layer has gaps", True)
