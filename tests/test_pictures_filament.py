@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 import meshwind as mw
+from meshwind.filament.filament import filaments_of
 from meshwind.filament.levels import levels
 from meshwind.pictures.angles_scene import angles_scene
 from meshwind.pictures.filament_scene import bands_scene, filament_scene
 from meshwind.pictures.gallery import scenes_of
 from meshwind.pictures.subject import Subject, subject_of
-from meshwind.results.filament_file import filaments_of, read_filaments
+from meshwind.results.filament_file import read_filaments
 from meshwind.results.reading import read_results
 from meshwind.results.schema import FILAMENT, OF_FILAMENT
 

@@ -7,11 +7,11 @@ import numpy as np
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import TINY
+from meshwind.filament.bend import bend
 from meshwind.filament.course import Course, Kind
 from meshwind.filament.levels import Levels, level_at, levels
 from meshwind.filament.thickness import Tracks
 from meshwind.path.solve import check_count
-from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, S
 from meshwind.surface.surface import Surface
 
 _PER_SPAN, _FEWEST = 4, 120
@@ -20,8 +20,6 @@ _MOST_POINTS = 2_000_000
 """Points that a hoop layer may take."""
 _WAIT = 0.5
 """Turns at a constant v between two passes: half a turn, so that the next one starts on the far side."""
-_ON_SURFACE = 1e-12
-"""Least normal curvature, times the part's size, that presses the fibre on the surface: less is round-off."""
 
 
 @dataclass(frozen=True)
@@ -166,7 +164,7 @@ def hoop(surface: Surface, plan: HoopPlan) -> Hoop:
     along = level_at(passed, lines)
     uv = np.stack([u, np.clip(along(distance), 0.0, 1.0)], axis=1)
     rate = np.where(dwell, 0.0, np.where(passes % 2, -pitch, pitch))
-    bent = _bend(surface, uv, along(distance, 1) * rate, along(distance, 2) * rate**2)
+    bent = bend(surface, uv, along(distance, 1) * rate, along(distance, 2) * rate**2)
     course = Course(
         points=frozen(bent.points), normal=frozen(bent.normal), angle=frozen(bent.angle), slip=frozen(bent.slip),
         kind=frozen(np.where(dwell, int(Kind.DWELL), int(Kind.LAID))), circuit=frozen(passes // 2),
@@ -221,41 +219,6 @@ def _course(ends: Floats, pitch: float, per_turn: int) -> tuple[Floats, Floats, 
             turned += _WAIT
     u, distance, passes, dwell = (np.concatenate(each) for each in zip(*parts, strict=True))
     return u, distance, passes, dwell
-
-
-@dataclass(frozen=True)
-class _Bend:
-    """Points and normals (n, 3) of a curve, its angle from the levels' conormal and the friction it needs, (n,).
-
-    steps (n - 1,): its length between the points.
-    """
-
-    points: Floats
-    normal: Floats
-    angle: Floats
-    slip: Floats
-    steps: Floats
-
-
-def _bend(surface: Surface, uv: Floats, rate: Floats, second: Floats) -> _Bend:
-    """The curve v(u) with its derivatives (n,) by u; the slip is infinite where it does not press on the surface."""
-    at = surface.frames(uv)
-    su, sv = at[:, SU], at[:, SV]
-    cross = np.cross(su, sv)
-    area = np.linalg.norm(cross, axis=1)
-    normal = cross / np.maximum(area, TINY)[:, None]
-    tangent = su + rate[:, None] * sv
-    bend = at[:, SUU] + (2.0 * rate)[:, None] * at[:, SUV] + (rate**2)[:, None] * at[:, SVV] + second[:, None] * sv
-    square = np.maximum((tangent * tangent).sum(axis=1), TINY)
-    press = -(bend * normal).sum(axis=1) / square
-    side = (bend * np.cross(normal, tangent)).sum(axis=1) / square**1.5
-    pressing = press > _ON_SURFACE / surface.size
-    slip = np.divide(np.abs(side), press, out=np.full(len(uv), np.inf), where=pressing)
-    along = np.abs((tangent * su).sum(axis=1)) / np.sqrt((su * su).sum(axis=1) * square)
-    ahead = tangent / np.sqrt(square)[:, None]
-    turned = np.minimum(np.linalg.norm(np.diff(ahead, axis=0), axis=1), 1.0)  # a half turn has kinks at both ends
-    steps = np.linalg.norm(np.diff(at[:, S], axis=0), axis=1) * (1.0 + turned**2 / 24.0)  # of the arc over a chord
-    return _Bend(at[:, S], normal, np.arcsin(np.clip(along, 0.0, 1.0)), slip, steps)
 
 
 def _cover(lines: Levels, plan: HoopPlan, ends: Floats) -> tuple[float, float]:

@@ -11,10 +11,10 @@ from meshwind.core.cast import Floats, Ints
 from meshwind.core.vectors import unit
 from meshwind.filament.course import Kind
 from meshwind.filament.edge import Edge, edge
+from meshwind.filament.filament import Filament
 from meshwind.pictures.ribbons import ribbons
 from meshwind.pictures.scenes import FilamentScene, Gear
 from meshwind.pictures.subject import Subject, Turned
-from meshwind.results.filament_file import Filament
 
 _AROUND = 181
 """Points round a collar or a shaft."""

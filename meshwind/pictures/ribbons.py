@@ -7,9 +7,9 @@ import numpy as np
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.vectors import TINY, unit
 from meshwind.filament.course import Kind
+from meshwind.filament.filament import Filament
 from meshwind.path.paths import Paths
 from meshwind.pictures.scenes import Ribbons
-from meshwind.results.filament_file import Filament
 from meshwind.surface.forms import components, fundamental_forms
 
 ACROSS = 7

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from meshwind.appearance.view import View, best_view, named_view
 from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.filament.filament import Filament
 from meshwind.layup.layup import Layup
 from meshwind.path.lengths import lengths
 from meshwind.path.paths import Paths, Status
 from meshwind.pictures.scenes import Frame, Part
 from meshwind.results.figures import PathFigures, path_figures
-from meshwind.results.filament_file import Filament
 from meshwind.results.pattern_types import TurnaroundFigures
 from meshwind.results.reading import Results, read_surface_grid
 from meshwind.results.schema import NORMAL

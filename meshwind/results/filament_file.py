@@ -1,34 +1,17 @@
 """filament.vtp: the filaments of all layers, each one polyline in the order of winding."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
-from meshwind.filament.closing import ClosedLayer
 from meshwind.filament.course import Course
+from meshwind.filament.filament import Filament
 from meshwind.results import schema
 from meshwind.results.vtk_files import write_lines
 from meshwind.results.vtk_reading import read_lines
-
-
-@dataclass(frozen=True)
-class Filament:
-    """A filament in order of winding, with the layer of each of its n points, and the laminate's thickness there."""
-
-    course: Course
-    layer: Ints
-    thickness: Floats
-
-
-def filaments_of(layer: ClosedLayer) -> list[Filament]:
-    """The filaments of one layer on the bare part."""
-    return [
-        Filament(each, np.zeros(len(each), dtype=np.int64), np.zeros(len(each))) for each in layer.filaments
-    ]  # fmt: skip
 
 
 def write_filaments(path: Path, filaments: Sequence[Filament], units: str = "") -> None:

@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 from meshwind.core.cast import Bools, Floats, Ints, floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import reported_unit
+from meshwind.filament.filament import Filament
 from meshwind.layup.layup import Layup, assess
 from meshwind.path.paths import Counters, Paths, Status
 from meshwind.results import schema
-from meshwind.results.filament_file import Filament, read_filaments
+from meshwind.results.filament_file import read_filaments
 from meshwind.results.pattern_types import PatternFigures
 from meshwind.results.redesign_report_types import RedesignReport
 from meshwind.results.report_types import Report

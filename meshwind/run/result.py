@@ -6,6 +6,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from meshwind.core.version import version
+from meshwind.filament.filament import filaments_of
 from meshwind.path import Paths, Status
 from meshwind.pictures import driver
 from meshwind.pictures.fit_scene import fit_scene
@@ -16,7 +17,7 @@ from meshwind.pictures.scenes import Drawing
 from meshwind.pictures.subject import subject_in
 from meshwind.results import folder
 from meshwind.results.config_file import write_config
-from meshwind.results.filament_file import filaments_of, write_filaments
+from meshwind.results.filament_file import write_filaments
 from meshwind.results.laminate_files import write_laminate
 from meshwind.results.layup_figures import parted
 from meshwind.results.pattern_figures import turnaround_figures
