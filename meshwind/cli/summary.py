@@ -99,6 +99,10 @@ def _patterns(layers: Sequence[PatternFigures], units: str) -> list[str]:
         lines += [
             f"filament  {layer['words']}; {quantity(layer['fibre_length'], units)}, {angle['min']:.1f} to "
             f"{angle['max']:.1f} degrees (median {angle['median']:.1f})",
+        ]
+        if not layer["turnarounds"]:
+            continue
+        lines += [
             f"turns     {_turn(layer, 0)}, dwell {dwell['start']['mean']:.3f}; {_turn(layer, 1)}, dwell "
             f"{dwell['end']['mean']:.3f} turns (mean)",
         ]

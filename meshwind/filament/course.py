@@ -65,8 +65,8 @@ class Course:
     def __len__(self) -> int:
         return len(self.points)
 
-    def chosen(self, which: slice) -> "Course":
-        """Some of the points in a row."""
+    def chosen(self, which: slice | Ints) -> "Course":
+        """Some of the points, in this order."""
         return Course(*(getattr(self, each.name)[which] for each in fields(Course)))
 
     @property

@@ -1,12 +1,13 @@
 """One filament in order of winding, over one layer or several."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshwind.core.cast import Floats, Ints
+from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.filament.closing import ClosedLayer
-from meshwind.filament.course import Course
+from meshwind.filament.course import Course, Kind, in_a_row
+from meshwind.filament.laminate import LaidLayer, Laminate
 
 
 @dataclass(frozen=True)
@@ -20,6 +21,57 @@ class Filament:
 
 def filaments_of(layer: ClosedLayer) -> list[Filament]:
     """The filaments of one layer on the bare part."""
-    return [
-        Filament(each, np.zeros(len(each), dtype=np.int64), np.zeros(len(each))) for each in layer.filaments
-    ]  # fmt: skip
+    return [Filament(each, np.zeros(len(each), dtype=np.int64), np.zeros(len(each))) for each in layer.filaments]
+
+
+def filament_of_layers(laminate: Laminate) -> list[Filament]:
+    """The one filament of all layers; none where they were not wound as one.
+
+    Paths are counted on from layer to layer, as the polylines of all layers are, of which a hoop is one.
+    """
+    courses: list[Course] = []
+    layers, below, paths = [], [], 0
+    for number, layer in enumerate(laminate.layers):
+        strand = layer.strand
+        if strand is None:
+            return []
+        own = strand.course if number == len(laminate.layers) - 1 else strand.left
+        course = own if strand.join is None else in_a_row([strand.join, own])
+        feet = _feet(layer, course)
+        here = np.flatnonzero(np.isfinite(feet[:, 0]))
+        deep = sum((each.raised.at(feet[here]) for each in laminate.layers[:number]), np.zeros(len(here)))
+        below.append(np.interp(np.arange(len(course)), here, deep))
+        layers.append(np.full(len(course), number))
+        slip = np.where(np.isfinite(course.slip), course.slip, np.nan)
+        path = np.where(course.path >= 0, course.path + paths, -1)
+        courses.append(replace(course, slip=frozen(slip), path=frozen(path)))
+        paths += 1 if layer.paths is None else len(layer.paths)
+    return [Filament(in_a_row(courses), frozen(np.concatenate(layers)), frozen(np.concatenate(below)))]
+
+
+def _feet(layer: LaidLayer, course: Course) -> Floats:
+    """Parameters (n, 2) of the points of a layer that lie on the part or over it; NaN elsewhere."""
+    feet = np.full((len(course), 2), np.nan)
+    if layer.hoop is not None:
+        uv = layer.hoop.tracks.uv[0]
+        feet[len(course) - len(uv) :] = uv
+        return feet
+    assert layer.paths is not None
+    row, column = particles(course, layer.paths.family, layer.paths.gap.shape[1])
+    feet[row >= 0] = layer.paths.uv[row[row >= 0], column[row >= 0]]
+    return feet
+
+
+def particles(course: Course, family: Ints, count: int) -> tuple[Ints, Ints]:
+    """Path and particle (n,) of every point of a layer's course, -1 where it is none; `count` particles a path.
+
+    Paths of family -1 are walked from their end to their start.
+    """
+    path = np.where(np.isin(course.kind, (int(Kind.LAID), int(Kind.BRIDGE))), course.path, -1)
+    run = np.concatenate([[0], np.cumsum(np.diff(path) != 0)])
+    last = np.append(np.flatnonzero(np.diff(path) != 0), len(path) - 1)
+    # the first particle of a path may be the last point of the turnaround before it, so they count from the last
+    left = last[run] - np.arange(len(path))
+    row = np.where((path >= 0) & (left < count), path, -1)
+    column = np.where(family[np.maximum(row, 0)] > 0, count - 1 - left, left)
+    return row, np.where(row >= 0, column, 0)

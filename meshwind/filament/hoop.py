@@ -38,6 +38,10 @@ class HoopPlan:
         Share of the band that the next turn lies on, at least 0 and below 1.
     stagger : float, default 0
         By how much each pass ends before the one before, in the surface's units, so that the ends make no step.
+    from_end : bool, default False
+        Whether the first pass goes from the end line to the start line.
+    u : float, default 0
+        Where it begins, in turns.
 
     Raises
     ------
@@ -51,6 +55,8 @@ class HoopPlan:
     passes: int = 1
     overlap: float = 0.0
     stagger: float = 0.0
+    from_end: bool = False
+    u: float = 0.0
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.start < self.end <= 1.0:
@@ -156,14 +162,13 @@ def hoop(surface: Surface, plan: HoopPlan) -> Hoop:
     """
     lines = levels(surface)
     passed = lines.widest
-    low, high = (float(np.interp(v, lines.v, passed)) + side * 0.5 * plan.width
-                 for v, side in ((plan.start, 1.0), (plan.end, -1.0)))  # fmt: skip
-    ends = _ends(low, high, plan)
+    ends = _ends(plan, lines)
     pitch = plan.width * (1.0 - plan.overlap)
-    u, distance, passes, dwell = _course(ends, pitch, max(_PER_SPAN * surface.spans[0], _FEWEST))
+    turned, distance, passes, dwell = _course(ends, pitch, max(_PER_SPAN * surface.spans[0], _FEWEST))
+    u = plan.u + turned
     along = level_at(passed, lines)
     uv = np.stack([u, np.clip(along(distance), 0.0, 1.0)], axis=1)
-    rate = np.where(dwell, 0.0, np.where(passes % 2, -pitch, pitch))
+    rate = np.where(dwell, 0.0, np.where((passes % 2 == 1) != plan.from_end, -pitch, pitch))
     bent = bend(surface, uv, along(distance, 1) * rate, along(distance, 2) * rate**2)
     course = Course(
         points=frozen(bent.points), normal=frozen(bent.normal), angle=frozen(bent.angle), slip=frozen(bent.slip),
@@ -184,8 +189,15 @@ def _weights(steps: Floats) -> Floats:
     return np.asarray(0.5 * (np.r_[steps, 0.0] + np.r_[0.0, steps]))
 
 
-def _ends(low: float, high: float, plan: HoopPlan) -> Floats:
+def begins_at(plan: HoopPlan, lines: Levels) -> float:
+    """The v at which a hoop begins."""
+    return float(level_at(lines.widest, lines)(_ends(plan, lines)[0]))
+
+
+def _ends(plan: HoopPlan, lines: Levels) -> Floats:
     """Distances (passes + 1,) at which the passes start and end."""
+    low, high = (float(np.interp(v, lines.v, lines.widest)) + side * 0.5 * plan.width
+                 for v, side in ((plan.start, 1.0), (plan.end, -1.0)))  # fmt: skip
     k = np.arange(plan.passes + 1)
     ends = np.where(k % 2 == 0, low, high) + np.where(k % 2 == 0, 1.0, -1.0) * plan.stagger * (k // 2)
     if not (np.diff(ends) * np.where(np.arange(plan.passes) % 2, -1.0, 1.0) > 0.0).all():
@@ -193,7 +205,7 @@ def _ends(low: float, high: float, plan: HoopPlan) -> Floats:
             f"between v={plan.start:g} and v={plan.end:g} is no room for {plan.passes} passes of a band {plan.width:g} "
             f"wide with a stagger of {plan.stagger:g}; give places further apart, fewer passes or less stagger"
         )
-    return ends
+    return np.asarray(low + high - ends if plan.from_end else ends)
 
 
 def _course(ends: Floats, pitch: float, per_turn: int) -> tuple[Floats, Floats, Ints, Bools]:

@@ -5,7 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.filament.band import Roving
-from meshwind.filament.hoop import Hoop, HoopPlan, hoop
+from meshwind.filament.closing import ClosedLayer
+from meshwind.filament.hoop import Hoop
+from meshwind.filament.joins import Strand
 from meshwind.filament.levels import Levels
 from meshwind.filament.offset import Raised, raised
 from meshwind.filament.stations import Stations, helix_stations, hoop_stations
@@ -40,8 +42,8 @@ class LaidLayer:
         Paths that are not at rest: they are in no figure and not in the thickness.
     roving : Roving or None
         What its band is made of, where that is known.
-    turn_start, turn_end : str
-        How it turns at both ends, as the laminate's file says it; "" where it does not.
+    strand : Strand or None
+        Its fibre in the laminate's filament, and the join that leads to it, where the layers are one.
     """
 
     surface: Surface
@@ -54,8 +56,12 @@ class LaidLayer:
     friction: float
     left_out: int = 0
     roving: Roving | None = None
-    turn_start: str = ""
-    turn_end: str = ""
+    strand: Strand | None = None
+
+    @property
+    def closed(self) -> ClosedLayer | None:
+        """The layer as a closed pattern, if it is helical and of one filament."""
+        return None if self.strand is None else self.strand.tail.layer
 
     @property
     def kind(self) -> str:
@@ -115,41 +121,30 @@ class Laminate:
 
 @dataclass(frozen=True)
 class Ply:
-    """What a layer is beside its fibres: band, friction, material, and how it turns; see `LaidLayer`."""
+    """What a layer is beside its fibres: band, friction and material; see `LaidLayer`."""
 
     laying: Laying
     friction: float = 0.0
     roving: Roving | None = None
-    turn_start: str = ""
-    turn_end: str = ""
 
 
-def helical_layer(paths: Paths, ply: Ply, lines: Levels, left_out: int = 0) -> LaidLayer:
+def helical_layer(paths: Paths, ply: Ply, lines: Levels, left_out: int = 0, strand: Strand | None = None) -> LaidLayer:
     """The layer of taut paths, deposited on their surface with these level lines, and the surface above it."""
+    thickness, above = _deposited(paths.surface, tracks(paths), ply)
     stations = helix_stations(paths, lines, ply.laying.width)
-    return _laid(paths.surface, ply, stations, tracks(paths), paths=paths, left_out=left_out)
-
-
-def hoop_layer(surface: Surface, plan: HoopPlan, ply: Ply, lines: Levels) -> LaidLayer:
-    """The layer of a hoop, deposited on its surface with these level lines, and the surface above it."""
-    laid = hoop(surface, plan)
-    return _laid(surface, ply, hoop_stations(laid, lines, ply.laying.width), laid.tracks, hoop_=laid)
-
-
-def _laid(
-    surface: Surface,
-    ply: Ply,
-    stations: Stations,
-    laid: Tracks,
-    *,
-    paths: Paths | None = None,
-    hoop_: Hoop | None = None,
-    left_out: int = 0,
-) -> LaidLayer:
-    """The layer of fibres that lie there, either paths or a hoop."""
-    thickness = deposit(surface, laid, ply.laying)
-    above = raised(surface, thickness, ply.laying.width)
     return LaidLayer(
-        surface, paths, hoop_, ply.laying, thickness, above, stations, ply.friction,
-        left_out, ply.roving, ply.turn_start, ply.turn_end,
-    )  # fmt: skip
+        paths.surface, paths, None, ply.laying, thickness, above, stations, ply.friction, left_out, ply.roving, strand
+    )
+
+
+def hoop_layer(surface: Surface, laid: Hoop, ply: Ply, lines: Levels, strand: Strand | None = None) -> LaidLayer:
+    """The layer of a hoop, deposited on its surface with these level lines, and the surface above it."""
+    thickness, above = _deposited(surface, laid.tracks, ply)
+    stations = hoop_stations(laid, lines, ply.laying.width)
+    return LaidLayer(surface, None, laid, ply.laying, thickness, above, stations, ply.friction, 0, ply.roving, strand)
+
+
+def _deposited(surface: Surface, laid: Tracks, ply: Ply) -> tuple[Thickness, Raised]:
+    """The thickness of fibres that lie there, and the surface above them."""
+    thickness = deposit(surface, laid, ply.laying)
+    return thickness, raised(surface, thickness, ply.laying.width)

@@ -54,6 +54,10 @@ class Raised:
     hollow: float
     where: tuple[float, float]
 
+    def at(self, uv: Floats) -> Floats:
+        """By how much the surface was raised at uv (n, 2), linear between the centres of the cells."""
+        return between_centres(self.height, uv)
+
     @property
     def tight(self) -> bool:
         """Whether a hollow is nearly filled up."""

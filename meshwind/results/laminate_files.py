@@ -8,10 +8,11 @@ from numpy.typing import NDArray
 
 from meshwind.core.cast import Floats
 from meshwind.core.units import MILLIMETRES, millimetres
+from meshwind.filament.joins import Strand
 from meshwind.filament.laminate import LaidLayer, Laminate
 from meshwind.layup.direction import winding_angle
 from meshwind.results import schema
-from meshwind.results.laminate_types import LayerFigures
+from meshwind.results.laminate_types import JoinFigures, LayerFigures
 from meshwind.results.vtk_files import write_faces, write_lines
 from meshwind.surface.grid import Grid, grid
 
@@ -127,6 +128,11 @@ def _layer_figures(number: int, layer: LaidLayer, units: str) -> LayerFigures:
             "evened": layer.raised.evened,
             "hollow": layer.raised.hollow,
         },
-        "turn_start": layer.turn_start,
-        "turn_end": layer.turn_end,
+        "turnarounds": None if layer.closed is None else [each.name for each in layer.closed.turnarounds],
+        "join": None if layer.strand is None else _join_figures(layer.strand),
     }
+
+
+def _join_figures(strand: Strand) -> JoinFigures:
+    """The figures of the way that leads to a layer."""
+    return {"length": 0.0 if strand.join is None else float(strand.join.arc_length[-1]), "slip": strand.slip}

@@ -38,12 +38,20 @@ class RaisedFigures(TypedDict):
     hollow: float
 
 
+class JoinFigures(TypedDict):
+    """The way to a layer from the one before: its length, and the friction that it needs, None where it would lift."""
+
+    length: float
+    slip: float | None
+
+
 class LayerFigures(TypedDict):
     """A layer: lengths in the mesh's units, angles in degrees, masses in g.
 
     circuits: paths of a family, or passes of a hoop; over_rim: share of the volume that hangs over a rim and counts as
     laid inside of it; off_below: largest distance of the fibre from the surface below where it lies on that; masses are
-    None where tex is not known; hold is that of a hoop, None for others.
+    None where tex is not known; hold is that of a hoop, None for others; turnarounds at the start and at the
+    end, and the join from the layer before, where the layers are one filament.
     """
 
     layer: int
@@ -66,5 +74,5 @@ class LayerFigures(TypedDict):
     off_below: float
     hold: HoldFigures | None
     raised: RaisedFigures
-    turn_start: str
-    turn_end: str
+    turnarounds: list[str] | None
+    join: JoinFigures | None

@@ -3,8 +3,11 @@
 import numpy as np
 
 from meshwind.core.cast import Floats
+from meshwind.core.units import MILLIMETRES, millimetres
 from meshwind.filament.alternatives import alternatives
 from meshwind.filament.closing import ClosedLayer
+from meshwind.filament.filament import Filament
+from meshwind.filament.laminate import LaidLayer, Laminate
 from meshwind.filament.levels import levels
 from meshwind.filament.pin_turn import Pins, Shaft
 from meshwind.filament.stations import helix_stations
@@ -48,6 +51,46 @@ def pattern_figures(layer: ClosedLayer, width: float, linear_density: float | No
             )
             for each in alternatives(pattern, layer.revolutions, dwells, median)
         ],
+    }
+
+
+def patterns_of_layers(laminate: Laminate, filament: Filament, units: str = "") -> list[PatternFigures]:
+    """The figures of layers that are one filament; the join to a layer counts as its fibre."""
+    length = np.bincount(filament.layer[1:], np.diff(filament.course.arc_length), len(laminate.layers))
+    return [
+        _of_layer(layer, float(mine), units) for layer, mine in zip(laminate.layers, length, strict=True)
+    ]  # fmt: skip
+
+
+def _of_layer(layer: LaidLayer, length: float, units: str) -> PatternFigures:
+    """The figures of one of several layers, whose fibre is so long."""
+    closed, roving = layer.closed, layer.roving
+    scale = millimetres(units) if units in MILLIMETRES else 1.0
+    mass = None if roving is None else roving.fibre_mass(length * scale)
+    if closed is not None:
+        figures = pattern_figures(closed, layer.laying.width)
+        return {**figures, "fibre_length": length, "fibre_mass": mass}
+    assert layer.hoop is not None
+    least, median, most = np.degrees(layer.stations.angles)
+    cover, turns = layer.stations.covers, layer.hoop.turns
+    none: MeanSpread = {"min": 0.0, "mean": 0.0, "max": 0.0}
+    return {
+        "circuits": 1,
+        "shift": 0,
+        "turns": round(turns),
+        "pattern_number": 0,
+        "leading": False,
+        "filaments": 1,
+        "words": f"a hoop of {turns:.1f} turns, {layer.circuits} passes",
+        "revolutions": {"asked": turns, "wound": turns},
+        "dwell": {"start": none, "end": none},
+        "angle": {"min": float(least), "median": float(median), "max": float(most)},
+        "turnarounds": [],
+        "cover": {"min": cover[0], "max": cover[1]},
+        "fibre_length": length,
+        "fibre_mass": mass,
+        "left_out": 0,
+        "alternatives": [],
     }
 
 

@@ -13,6 +13,7 @@ from meshwind.chart.chart import Chart
 from meshwind.core.units import UNKNOWN
 from meshwind.core.version import version
 from meshwind.filament.closing import ClosedLayer
+from meshwind.filament.filament import Filament
 from meshwind.filament.laminate import Laminate
 from meshwind.layup.layup import Layup
 from meshwind.mesh.geometry.mesh import Mesh
@@ -31,7 +32,7 @@ from meshwind.results.layup_figures import (
     windability_figures,
 )
 from meshwind.results.other_rest_figures import other_rest_figures
-from meshwind.results.pattern_figures import pattern_figures
+from meshwind.results.pattern_figures import pattern_figures, patterns_of_layers
 from meshwind.results.report_types import (
     AdviceFigures,
     Distances,
@@ -66,6 +67,7 @@ class RunFacts:
     linear_density: float | None = None
     closed: ClosedLayer | None = None
     laminate: Laminate | None = None
+    filaments: Sequence[Filament] = ()
 
 
 def report(layup: Layup, mesh: Mesh, chart: Chart | None, run: RunFacts) -> Report:
@@ -93,7 +95,9 @@ def report(layup: Layup, mesh: Mesh, chart: Chart | None, run: RunFacts) -> Repo
     }
     if run.chosen is not None:
         figures["revolutions"] = revolution_figures(run.chosen)
-    if run.closed is not None:
+    if run.laminate is not None and run.filaments:
+        figures["pattern"] = patterns_of_layers(run.laminate, run.filaments[0], mesh.units)
+    elif run.closed is not None:
         figures["pattern"] = [pattern_figures(run.closed, layup.coverage.width, run.linear_density)]
     if run.laminate is not None:
         figures["laminate"] = laminate_figures(run.laminate, mesh.units)

@@ -6,7 +6,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from meshwind.core.version import version
-from meshwind.filament.filament import filaments_of
 from meshwind.path import Paths, Status
 from meshwind.pictures import driver
 from meshwind.pictures.fit_scene import fit_scene
@@ -140,6 +139,7 @@ class Result(Winding):
             linear_density=self.options.linear_density,
             closed=self.closed,
             laminate=None if self.layered is None else self.layered.laminate,
+            filaments=self.filaments,
         )
         return report(self.layup, self.mesh, self.chart, run)
 
@@ -187,8 +187,8 @@ def write_result(result: Result, out: Path, render: bool, overwrite: bool, clock
             wall = result.chart.annulus.wall
             measured = result.mesh if wall is None else wall.skin
             write_files(staging, result.layup, measured, result.mesh.units)
-            if result.closed is not None:
-                write_filaments(staging / FILAMENT, filaments_of(result.closed), result.mesh.units)
+            if result.filaments:
+                write_filaments(staging / FILAMENT, result.filaments, result.mesh.units)
             if result.layered is not None:
                 write_laminate(staging, result.layered.laminate, result.mesh.units)
             if result.chosen is not None and render:
@@ -220,7 +220,7 @@ def _draw(result: Result, out: Path) -> str:
     of = replace(of, partings=parted(result.layup, result.spaced))
     if result.closed is not None:
         closed = result.closed
-        of = of.wound(filaments_of(closed), closed.pattern.words, turnaround_figures(closed))
+        of = of.wound(list(result.filaments), closed.pattern.words, turnaround_figures(closed))
     asked = (WINDING, SHEET, *(OF_FILAMENT if result.closed is not None else ()))
     with TemporaryDirectory(dir=out) as cells:  # within, so that a killed run leaves nothing elsewhere
         pictures = placed(scenes_of(of), asked, Page(), out, Path(cells))

@@ -7,6 +7,7 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 
+from meshwind.core.defaults import TURNAROUNDS
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import AUTO, nearest, read_toml, shortened, turns
 from meshwind.core.units import millimetres
@@ -17,7 +18,9 @@ from meshwind.workflow.options import Options
 
 HELICAL, HOOP = KINDS = ("helical", "hoop")
 _MATERIAL = ("tex", "tows", "fibre_density", "resin_density", "fibre_volume")
-_ONLY = {HELICAL: ("angle", "revolutions", "paths"), HOOP: ("passes", "overlap", "stagger")}
+_ONLY = {
+    HELICAL: ("angle", "revolutions", "paths", "turn_start", "turn_end"), HOOP: ("passes", "overlap", "stagger")
+}  # fmt: skip
 """Keys that one kind of layer has and the other has not."""
 _NAMES = {"from": "start", "to": "end"}
 """Keys of the file whose names differ from the fields'."""
@@ -33,7 +36,7 @@ class LayerPlan:
     or "auto" for as many as cover the part; band_width, band_thickness: in the part's units; tex, tows, fibre_density,
     resin_density, fibre_volume: as `Roving`; friction; start, end: places along the part, as `station` reads them;
     repeat: times that the layer is wound; section, bridges: as `Laying`; passes, overlap, stagger: as `HoopPlan`;
-    turn_start, turn_end: how it turns at both ends.
+    turn_start, turn_end: how it turns at both ends, where the layers are one filament; by default as the run's.
     """
 
     kind: str
@@ -56,8 +59,8 @@ class LayerPlan:
     passes: int = 1
     overlap: float = 0.0
     stagger: float = 0.0
-    turn_start: str = ""
-    turn_end: str = ""
+    turn_start: str | None = None
+    turn_end: str | None = None
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -80,6 +83,10 @@ class LayerPlan:
             raise BadInputError(f"friction is {self.friction:g}; give a number from 0 to 10")
         if self.band_thickness is not None and self.tex is not None:
             raise BadInputError("tex gives the band's thickness, and so does band_thickness; give one of both")
+        for name in ("turn_start", "turn_end"):
+            word = getattr(self, name)
+            if word is not None and word not in (AUTO, *TURNAROUNDS):
+                raise BadInputError(f"{name} is {shortened(repr(word))}; give {', '.join(TURNAROUNDS)} or {AUTO}")
         if self.tex is None:
             given = [name for name in _MATERIAL if getattr(self, name) is not None]
             if given:
@@ -102,7 +109,11 @@ class LayerPlan:
         if friction is None:
             friction = options.friction if isinstance(options.friction, float) else 0.0
         laying = Laying(width, thickness, self.section, self.bridges)
-        return Ply(laying, friction, roving, self.turn_start, self.turn_end)
+        return Ply(laying, friction, roving)
+
+    def turns(self, options: Options) -> tuple[str, str]:
+        """Its turnarounds at the start and at the end."""
+        return self.turn_start or options.turn_start, self.turn_end or options.turn_end
 
     @property
     def roving(self) -> Roving | None:
@@ -172,6 +183,13 @@ def read_layers(file: str | PathLike[str], options: Options) -> LayersFile:
     if not isinstance(layers, list) or not layers or not all(isinstance(each, dict) for each in layers):
         raise BadInputError(f"{path} has no layer; begin each layer with [[layer]]")
     plans = tuple(_read(path, number, table) for number, table in enumerate(layers, 1))
+    if not options.continuous:
+        turned = next((k for k, plan in enumerate(plans, 1) if plan.turn_start or plan.turn_end), None)
+        if turned is not None:
+            raise BadInputError(
+                f"{path}: layer {turned}: turnarounds are of a filament; set continuous (--continuous), or leave "
+                "them out"
+            )
     if sum(plan.repeat for plan in plans) > _MOST_LAYERS:
         raise BadInputError(f"{path} has more than {_MOST_LAYERS} layers; wind it in several runs")
     return LayersFile(path, plans)

@@ -5,16 +5,22 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from meshwind.core.errors import BadInputError
-from meshwind.filament.hoop import HoopPlan
+from meshwind.filament.closing import close_layer
+from meshwind.filament.ends import LayerPlan as ClosingPlan
+from meshwind.filament.hoop import HoopPlan, hoop
+from meshwind.filament.joins import Tail, strand_of_hoop, strand_of_paths
 from meshwind.filament.laminate import LaidLayer, Laminate, Ply, helical_layer, hoop_layer
 from meshwind.filament.levels import levels, station
 from meshwind.filament.offset import TIGHT
+from meshwind.filament.spiral import Ground
 from meshwind.path import Status
 from meshwind.surface import Surface
 from meshwind.workflow.helices import Helices
 from meshwind.workflow.layer_plans import HOOP, LayerPlan, LayersFile
-from meshwind.workflow.notes import Note
+from meshwind.workflow.notes import Note, about_filament
 from meshwind.workflow.options import Options
 
 _HANGING = 0.05
@@ -43,9 +49,8 @@ def lay_layers(surface: Surface, asked: LayersFile, options: Options, units: str
             plies.append(plan.ply(options, units))
     for number, (plan, ply) in enumerate(zip(asked.plans, plies, strict=True), 1):
         for _ in range(plan.repeat):
-            below = layers[-1].raised.surface if layers else surface
             with _naming(number):
-                layer = _lay(below, plan, ply, options)
+                layer = _lay(_Below.of(layers, surface), plan, ply, options)
             notes += [Note(f"layer {number}: {line}", warning=True) for line in _faults(layer)]
             layers.append(layer)
     return Layered(Laminate(tuple(layers)), asked.file, options), tuple(dict.fromkeys(notes))
@@ -63,6 +68,10 @@ def _naming(number: int) -> Iterator[None]:
 def _faults(layer: LaidLayer) -> list[str]:
     """What does not hold of a layer."""
     lines: list[str] = []
+    if layer.strand is not None and layer.strand.slip > layer.friction:
+        slip = layer.strand.slip
+        needed = f"needs a friction of {slip:.3g}, and has {layer.friction:g}" if np.isfinite(slip) else "lifts off"
+        lines.append(f"the join that leads to it {needed}: hold it until the layer is on it")
     if layer.hoop is not None and (line := layer.hoop.advice(layer.friction)):
         lines.append(line)
     if layer.left_out:
@@ -82,19 +91,50 @@ def _faults(layer: LaidLayer) -> list[str]:
     return lines
 
 
-def _lay(surface: Surface, plan: LayerPlan, ply: Ply, options: Options) -> LaidLayer:
+@dataclass(frozen=True)
+class _Below:
+    """What a layer lies on: a surface, and where the fibre of the layer before ends, None for the first."""
+
+    surface: Surface
+    tail: Tail | None = None
+
+    @classmethod
+    def of(cls, layers: list[LaidLayer], part: Surface) -> "_Below":
+        if not layers:
+            return cls(part)
+        last = layers[-1]
+        return cls(last.raised.surface, None if last.strand is None else last.strand.tail)
+
+
+def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options) -> LaidLayer:
     """Wind one layer on a surface."""
+    surface = below.surface
     lines = levels(surface)
+    ground = Ground(surface, lines, ply.laying.width)
     between = station(plan.start, lines), station(plan.end, lines)
     if plan.kind == HOOP:
         hoops = HoopPlan(*between, ply.laying.width, plan.passes, plan.overlap, plan.stagger)
-        return hoop_layer(surface, hoops, ply, lines)
+        if not options.continuous:
+            return hoop_layer(surface, hoop(surface, hoops), ply, lines)
+        strand, laid = strand_of_hoop(hoops, below.tail, ground, ply.friction)
+        return hoop_layer(surface, laid, ply, lines, strand)
     if not between[0] < between[1]:
         raise BadInputError(f"it starts at v={between[0]:g} and ends at v={between[1]:g}; give its places in order")
     helices = Helices(surface, between, ply.friction, lines)
-    paths = helices.laid(
-        *helices.settled(plan.angle, plan.revolutions, plan.paths, ply.laying.width), options.particles
-    )
+    count, turns = helices.settled(plan.angle, plan.revolutions, plan.paths, ply.laying.width)
+    if options.continuous:
+        if between != (0.0, 1.0):
+            raise BadInputError(
+                "a helical layer that ends on the part has no turnaround there; let it go from end to end, or wind "
+                "without continuous (--continuous)"
+            )
+        closing = ClosingPlan(
+            count, turns, ply.friction, options.particles, plan.turns(options), 0.5 * ply.laying.width
+        )
+        closed = close_layer(surface, closing)
+        strand = strand_of_paths(closed, below.tail, ground, ply.friction)
+        return helical_layer(closed.paths, ply, lines, closed.left_out, strand)
+    paths = helices.laid(count, turns, options.particles)
     held = paths.status == Status.CONVERGED
     if not held.any():
         raise BadInputError(f"no path of it comes to rest: {paths.advice(0)}")
@@ -111,3 +151,14 @@ def first_helical(plans: tuple[LayerPlan, ...], surface: Surface, options: Optio
         plan.angle, plan.revolutions, plan.paths, ply.laying.width
     )
     return replace(options, paths=paths, revolutions=turns, friction=ply.friction, band_width=ply.laying.width)
+
+
+def about_layers(layered: Layered, caps: tuple[bool, bool], units: str) -> tuple[Note, ...]:
+    """Notes on how the layers of one filament close and turn; caps: which ends of the part are closed."""
+    notes = [
+        replace(note, text=f"layer {number}: {note.text}")
+        for number, layer in enumerate(layered.laminate.layers, 1)
+        if layer.closed is not None
+        for note in about_filament(layer.closed, caps, units)
+    ]
+    return tuple(dict.fromkeys(notes))

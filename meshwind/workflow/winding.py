@@ -1,6 +1,7 @@
 """Wind a fitted part and assess what was laid."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from meshwind.core.defaults import PATHS
 from meshwind.core.parsing import AUTO
 from meshwind.filament.closing import ClosedLayer, close_layer
 from meshwind.filament.ends import LayerPlan
+from meshwind.filament.filament import Filament, filament_of_layers, filaments_of
 from meshwind.filament.levels import levels
 from meshwind.layup.layup import Layup, assess
 from meshwind.mesh import Mesh
@@ -23,7 +25,7 @@ from meshwind.surface import Surface
 from meshwind.workflow.clock import Clock
 from meshwind.workflow.helices import Helices
 from meshwind.workflow.layer_plans import LayersFile
-from meshwind.workflow.layers import Layered, first_helical, lay_layers
+from meshwind.workflow.layers import Layered, about_layers, first_helical, lay_layers
 from meshwind.workflow.notes import (
     Note,
     about_choice,
@@ -59,6 +61,13 @@ class Winding:
     layered: Layered | None = None
     turns: float = 0.0
 
+    @cached_property
+    def filaments(self) -> tuple[Filament, ...]:
+        """The filaments of a continuous winding, over all its layers; none of another."""
+        if self.layered is not None:
+            return tuple(filament_of_layers(self.layered.laminate))
+        return () if self.closed is None else tuple(filaments_of(self.closed))
+
 
 def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: LayersFile | None = None) -> Winding:
     """Lay the paths on a part that was fitted with the same options, and assess them; then its layers, if any.
@@ -86,22 +95,27 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: 
             options, more = _planned(surface, options, revolutions, friction)
             notes = (*notes, *more)
         revolutions = float(options.revolutions)
+    layered, first = None, None
+    if layers is not None:
+        with clock.stage("layers"):
+            layered, more = lay_layers(surface, layers, asked, units)
+            first = layered.laminate.layers[0].closed
+            notes = (*notes, *more)
     with clock.stage("wind"):
-        closed = close(surface, options, revolutions, friction) if options.continuous else None
+        closed = close(surface, options, revolutions, friction) if options.continuous and layered is None else first
         laid = lay(surface, options, revolutions, friction) if closed is None else closed.paths
         spaced = None if options.spacing is None else space_out(laid, revolutions, options.spacing, friction)
         laid = laid if spaced is None else spaced.paths
         notes = (*notes, *about_paths(laid), *about_choice(chosen), *about_spacing(spaced, units))
-        notes = notes if closed is None else (*notes, *about_filament(closed, part.chart.annulus.caps, units))
+        caps = part.chart.annulus.caps
+        if layered is not None:
+            notes = (*notes, *about_layers(layered, caps, units))
+        elif closed is not None:
+            notes = (*notes, *about_filament(closed, caps, units))
         notes = (*notes, *about_contact(laid, units), *about_other_rests(laid, units))
     with clock.stage("assess"):
         layup = assess(laid, options.band_width)
         notes = (*notes, *about_layup(layup))
-    layered = None
-    if layers is not None:
-        with clock.stage("layers"):
-            layered, more = lay_layers(surface, layers, asked, units)
-            notes = (*notes, *more)
     source = part.source
     return Winding(
         source.mesh, part.chart, layup, given, command, clock.seconds, notes, chosen, spaced, source.file,

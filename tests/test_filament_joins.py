@@ -1,0 +1,136 @@
+"""Layers as one filament: joins between them, in order of winding, and never turning back."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import Phase, given, settings
+from hypothesis import strategies as st
+
+import meshwind as mw
+from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
+from meshwind.filament.course import Kind
+from meshwind.filament.filament import Filament, filament_of_layers
+from meshwind.filament.levels import levels
+from meshwind.filament.spiral import Ground, between_hoops, from_path, to_path
+from meshwind.results.filament_file import read_filaments
+from meshwind.surface.interpolate import interpolate
+from meshwind.workflow.layer_plans import LayerPlan, LayersFile
+from meshwind.workflow.layers import lay_layers
+from meshwind.workflow.options import Options
+
+HELIX = LayerPlan("helical", revolutions=0.45, paths=7, band_width=12.0, band_thickness=0.4, friction=0.3)
+HOOP = LayerPlan("hoop", band_width=12.0, band_thickness=0.4, friction=0.3, start=0.3, end=0.7)
+LAYERS = st.lists(
+    st.one_of(
+        st.builds(
+            lambda paths, turn: replace(
+                HELIX, paths=paths, turn_start=turn, turn_end=turn, friction=0.3 if turn == "collar" else 0.0
+            ),
+            st.integers(3, 9),
+            st.sampled_from(["pins", "collar", "shaft"]),
+        ),
+        st.builds(
+            lambda passes, low, high: replace(HOOP, passes=passes, start=low, end=high),
+            st.integers(1, 3),
+            st.floats(0.05, 0.4),
+            st.floats(0.6, 0.95),
+        ),
+    ),
+    min_size=2,
+    max_size=4,
+)
+
+
+def _barrel(u: Floats, v: Floats) -> Floats:
+    z = 300.0 * v - 150.0
+    radius = 60.0 - 10.0 * (z / 150.0) ** 2
+    return np.stack([radius * np.cos(2 * np.pi * u), radius * np.sin(2 * np.pi * u), z], axis=-1)
+
+
+BARREL = interpolate(_barrel, (24, 16))
+
+
+def wound(surface: mw.Surface, plans: list[LayerPlan]) -> tuple[Filament, list[int]]:
+    """The filament of a laminate, and the polylines of each layer."""
+    options = Options(continuous=True, particles=51)
+    layered, _ = lay_layers(surface, LayersFile(Path("none"), tuple(plans)), options, "mm")
+    (one,) = filament_of_layers(layered.laminate)
+    return one, [1 if each.paths is None else len(each.paths) for each in layered.laminate.layers]
+
+
+@settings(max_examples=6, deadline=None, derandomize=True, database=None, phases=[Phase.generate])
+@given(LAYERS)
+def test_any_layers_are_one_filament(plans: list[LayerPlan]) -> None:
+    one, polylines = wound(BARREL, plans)
+    course = one.course
+    assert (np.diff(one.layer) >= 0).all() and set(one.layer) == set(range(len(plans)))
+    # from the layer below to the one above it is a step of its thickness, elsewhere no more than between particles
+    steps = np.linalg.norm(np.diff(course.points, axis=0), axis=1)
+    change = np.flatnonzero(np.diff(one.layer))
+    assert steps[change].max() < 5.0
+    onto_pins = course.kind[1:] == Kind.TURN
+    assert steps[~onto_pins & ~np.isin(course.kind[1:], (Kind.JOIN, Kind.DWELL))].max() < 15.0
+    # the part never turns back, but for what a polygon of the rim is off it
+    turned = np.unwrap(np.arctan2(course.points[:, 1], course.points[:, 0]))
+    assert np.diff(turned).min() > -1e-4
+    # each path is wound once, and in one piece
+    laid = course.path[course.path >= 0]
+    pieces = laid[np.r_[True, np.diff(laid) != 0]]
+    helices = [k for k, plan in enumerate(plans) if plan.kind == "helical"]
+    starts = np.concatenate([[0], np.cumsum(polylines)])
+    assert sorted(pieces) == sorted(k for each in helices for k in range(starts[each], starts[each + 1]))
+    # a layer lies as high over the part as the laminate below it
+    assert one.thickness[one.layer == 0].max() == 0.0
+    on_part = (one.layer > 0) & (course.kind == Kind.LAID)
+    z = course.points[on_part, 2]
+    high = np.hypot(*course.points[on_part, :2].T) - (60.0 - 10.0 * (z / 150.0) ** 2)
+    off = np.abs(high - one.thickness[on_part])
+    assert off.max(initial=0.0) < 0.2 and off.sum() < 0.03 * max(len(off), 1)
+
+
+def test_a_way_to_a_hoop_needs_a_constant_slip_on_a_cylinder() -> None:
+    """Over a distance h it is R (1/sin a - 1/sin b) / h."""
+    tube = mw.shapes.cylinder(50.0, 300.0)
+    on = Ground(tube, levels(tube), 10.0)
+    angle, hoop = np.radians(30.0), np.arctan(2 * np.pi * 50.0 / 10.0)
+    course = np.full(len(on.lines.v), angle)
+    wanted = 50.0 * (1.0 / np.sin(angle) - 1.0 / np.sin(hoop)) / 120.0
+    for way in (from_path(on, 0.25, 0.0, 0.4, course), to_path(on, 0.25, 0.6, 1.0, course)):
+        assert way.slip == pytest.approx(wanted, rel=0.02)
+        assert np.median(way.course.slip) == pytest.approx(wanted, rel=1e-3)
+        assert (way.course.kind == Kind.JOIN).all()
+    assert (way.leaves, way.comes, way.v) == pytest.approx((hoop, angle, 1.0), abs=1e-9)
+    level = between_hoops(on, 0.0, 0.3, 0.7, 0.2)
+    assert level.slip <= 0.2 and np.degrees(level.course.angle.min()) < 80.0
+
+
+def test_what_the_files_say_of_joined_layers(tmp_path: Path) -> None:
+    (tmp_path / "layers.toml").write_text(
+        "".join(
+            f'[[layer]]\nkind = "{kind}"\n{keys}\nband_width = 15\nband_thickness = 0.3\nfriction = 0.3\n'
+            for kind, keys in (
+                ("helical", 'revolutions = 0.4\npaths = 6\nturn_start = "shaft"'),
+                ("hoop", "from = 0.4\nto = 0.6"),
+                ("helical", "revolutions = 0.3\npaths = 5"),
+            )
+        )
+    )
+    file = tmp_path / "layers.toml"
+    result = mw.wind("data/tank.ply", layers=file, particles=101, continuous=True, out=tmp_path / "out", render=False)
+    report = result.report()
+    (one,) = read_filaments(tmp_path / "out" / "filament.vtp")
+    arc = one.course.arc_length
+    for number, figures in enumerate(report["pattern"]):
+        mine = np.flatnonzero(one.layer == number)
+        assert figures["fibre_length"] == pytest.approx(arc[mine[-1]] - arc[max(mine[0] - 1, 0)], rel=1e-9)
+    assert [each["turnarounds"] for each in report["laminate"]] == [["shaft", "pins"], None, ["pins", "pins"]]
+    assert report["laminate"][0]["join"] == {"length": 0.0, "slip": 0.0}
+    for each in report["laminate"][1:]:
+        assert each["join"] is not None and each["join"]["length"] > 10.0
+    joins = [str(note) for note in result.notes if "the join that leads to it" in note.text]
+    assert joins and all(line.startswith("warning: layer ") for line in joins)
+    with pytest.raises(BadInputError, match="turnarounds are of a filament; set continuous"):
+        mw.wind("data/tank.ply", layers=file, particles=101)
