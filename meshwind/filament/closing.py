@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshwind.core.cast import Bools, Floats, frozen
+from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.filament.cap_turn import Cap, ends_with_caps, joined_on_caps, passes_on_caps
-from meshwind.filament.course import Course, Kind, joined
+from meshwind.filament.course import Course, Courses, Kind, in_a_row, runs
 from meshwind.filament.ends import CAP, ROOM, End, LayerPlan, Pairs, choose_end
 from meshwind.filament.joining import Joining, join, passes
 from meshwind.filament.pattern import Pattern, nearest_pattern, patterns
@@ -227,52 +227,63 @@ def _joined(pairs: list[Pairs]) -> Joining:
 
 
 def _filaments(
-    paths: Paths, joining: Joining, over_start: list[Course | None], over_end: list[Course | None]
+    paths: Paths, joining: Joining, over_start: Courses | None, over_end: Courses | None
 ) -> tuple[Course, ...]:
-    """The courses of all filaments."""
-    laid = _laid(paths)
-    plus, minus = (np.flatnonzero(paths.family == family) for family in (1, -1))
-    found, circuit = [], 0
-    for circuits in joining.filaments:
-        parts = []
-        for there in circuits:
-            back = int(joining.back[there])
-            row = [
-                (laid[plus[there]], 0),
-                (over_end[there], 0),
-                (laid[minus[back]].backwards, 1),
-                (over_start[back], 1),
-            ]
-            parts += [_numbered(part, circuit, 2 * circuit + passed) for part, passed in row if part is not None]
-            circuit += 1
-        found.append(joined(parts))
+    """The courses of all filaments: each path there, the turn at the end, the path back, and the turn at the start."""
+    laid, ways = _laid(paths), [np.flatnonzero(paths.family == family) for family in (1, -1)]
+    sources = [laid, *(turn for turn in (over_end, over_start) if turn is not None)]
+    whole = in_a_row([each.course for each in sources])
+    base = np.cumsum([0, *(len(each.course) for each in sources)])
+    found, done = [], 0
+    for there in joining.filaments:
+        back = joining.back[there]
+        stretches = [_run(laid, ways[0][there]), _run(laid, ways[1][back], step=-1)]
+        passed = [0, 1]
+        if over_end is not None:
+            stretches.insert(1, _run(over_end, there, base=base[1]))
+            passed.insert(1, 0)
+        if over_start is not None:
+            stretches.append(_run(over_start, back, base=base[-2]))
+            passed.append(1)
+        first, count, step = (np.stack(each, axis=1).ravel() for each in zip(*stretches, strict=True))
+        first[1:] += step[1:]  # the stretch before has this point already
+        count[1:] -= 1
+        number = np.repeat((2 * (done + np.arange(len(there)))[:, None] + passed).ravel(), count)
+        course = whole.chosen(runs(first, count, step))
+        found.append(replace(course, circuit=frozen(number // 2), passed=frozen(number)))
+        done += len(there)
     return tuple(found)
 
 
-def _turns(pairs: Sequence[Pairs | None], joining: Joining) -> tuple[list[Course | None], list[Course | None]]:
+def _run(courses: Courses, rows: Ints, step: int = 1, base: int = 0) -> tuple[Ints, Ints, Ints]:
+    """The first point (n,) of rows (n,), from a base on, how many it has, and the step to the next: 1 or -1."""
+    first, count = courses.first[rows] + base, courses.count[rows]
+    return (first if step > 0 else first + count - 1), count, np.full_like(count, step)
+
+
+def _turns(pairs: Sequence[Pairs | None], joining: Joining) -> tuple[Courses | None, Courses | None]:
     """The turnarounds after each path back, at the start, and after each path there, at the end; None on a cap."""
     each = np.arange(len(joining.back))
-    made: list[list[Course | None]] = []
+    made: list[Courses | None] = []
     ways = ((joining.there, joining.start_dwell), (joining.back, joining.end_dwell))
     for pair, (out, dwell) in zip(pairs, ways, strict=True):
         if pair is None:
-            made.append([None] * len(each))
+            made.append(None)
             continue
         arriving, leaving = pair.arriving.chosen(each), pair.leaving.chosen(out)
-        made.append([*pair.end.turnaround.courses(arriving, leaving, pair.later(each, out, dwell))])
+        made.append(pair.end.turnaround.courses(arriving, leaving, pair.later(each, out, dwell)))
     return made[0], made[1]
 
 
-def _laid(paths: Paths) -> list[Course]:
-    """The course of each path from the start rim to the end rim."""
-    angle, kind = winding_angle(paths), np.where(paths.on_surface, Kind.LAID, Kind.BRIDGE)
-    none = np.full(paths.gap.shape[1], -1)
-    return [
-        Course(paths.points[k], paths.normal[k], angle[k], paths.slip[k], kind[k], none, none, np.full_like(none, k))
-        for k in range(len(paths))
-    ]
-
-
-def _numbered(course: Course, circuit: int, passed: int) -> Course:
-    none = np.zeros(len(course), dtype=np.int64)
-    return replace(course, circuit=frozen(none + circuit), passed=frozen(none + passed))
+def _laid(paths: Paths) -> Courses:
+    """The courses of all paths from the start rim to the end rim."""
+    kind = np.where(paths.on_surface, int(Kind.LAID), int(Kind.BRIDGE)).ravel()
+    count = np.full(len(paths), paths.gap.shape[1])
+    none = np.full(len(kind), -1)
+    return Courses(
+        Course(
+            paths.points.reshape(-1, 3), paths.normal.reshape(-1, 3), winding_angle(paths).ravel(), paths.slip.ravel(),
+            kind, none, none, np.repeat(np.arange(len(paths)), count),
+        ),
+        count,
+    )  # fmt: skip

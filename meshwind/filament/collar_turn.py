@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from meshwind.core.cast import Floats
-from meshwind.filament.course import Course, Kind
+from meshwind.filament.course import Courses, Kind, in_turn
 from meshwind.filament.edge import Edge, Legs
-from meshwind.filament.turnaround import Stretch, course, straight
+from meshwind.filament.turnaround import Place, on_prism, straight
 
 _STEP = np.radians(2.0)
 """Turn of the normal between points of a steered leg: heights are then right to 1e-5."""
@@ -45,11 +45,11 @@ class Collar:
 
     def reached(self, legs: Legs, lean: Floats) -> tuple[Floats, Floats]:
         """Length along the hull (n,) that legs take until they lean by (n,) short of a hoop, and their height there."""
-        steered = self._steered(legs, lean)
-        return np.abs(steered.around[:, -1] - legs.around), steered.height[:, -1]
+        (around, height), _ = self._steered(legs, lean)
+        return np.abs(around[:, -1] - legs.around), height[:, -1]
 
-    def _steered(self, legs: Legs, lean: Floats) -> Stretch:
-        """Legs (n, m) until they lean by (n,) short of a hoop; past it where that is negative."""
+    def _steered(self, legs: Legs, lean: Floats) -> tuple[Place, Floats]:
+        """Places and angles (n, m) of legs until they lean by (n,) short of a hoop; past it where that is negative."""
         angle = np.maximum(legs.angle, _LEAST)
         whole = (np.log(np.tan(0.5 * (0.5 * np.pi - lean))) - np.log(np.tan(0.5 * angle))) / self.slip
         whole = np.maximum(whole, 0.0)
@@ -62,9 +62,16 @@ class Collar:
         slope = 1.0 / np.tan(at)
         rise = np.cumsum(0.5 * (slope[:, 1:] + slope[:, :-1]) * steps, axis=1)
         height = legs.height[:, None] + np.concatenate([np.zeros((len(legs), 1)), rise], axis=1)
-        return Stretch(around, height, at, np.full_like(at, self.slip), Kind.TURN)
+        return (around, height), at
 
-    def courses(self, arriving: Legs, leaving: Legs, later: Floats) -> list[Course]:
+    def _laid(self, steered: tuple[Place, Floats]) -> Courses:
+        """The courses of steered legs."""
+        (around, height), angle = steered
+        count = np.full(len(around), around.shape[1])
+        slip = np.full(around.size, self.slip)
+        return on_prism(self.edge, (around.ravel(), height.ravel()), angle.ravel(), slip, count, Kind.TURN)
+
+    def courses(self, arriving: Legs, leaving: Legs, later: Floats) -> Courses:
         """See `Turnaround.courses`."""
         lean = np.zeros(len(later))
         for _ in range(_LEVELLING):
@@ -72,13 +79,9 @@ class Collar:
             left = np.maximum(later - arriving.around - in_ - out, 1e-9 * self.edge.hull.perimeter)
             lean = np.clip(np.arctan2(down - up, left), -_LEAN, _LEAN)
         into, back = self._steered(arriving, lean), self._steered(leaving, -lean)
-        shift = later - leaving.around
-        made = []
-        for k in range(len(later)):
-            there = Stretch(into.around[k], into.height[k], into.angle[k], into.slip[k], Kind.TURN)
-            away = Stretch(back.around[k] + shift[k], back.height[k], back.angle[k], back.slip[k], Kind.TURN).backwards
-            ends = [(float(one.around[i]), float(one.height[i])) for one, i in ((there, -1), (away, 0))]
-            hoop = straight(ends[0], ends[1], self.edge, Kind.DWELL)
-            made.append(course(self.edge, [there, hoop, away], arriving.points[k], leaving.points[k]))
-        self.reach = max(self.reach, float(max(into.height.max(), back.height.max())) - self.edge.highest)
-        return made
+        back[0][0][...] += (later - leaving.around)[:, None]
+        (there, up), (away, down) = ((around[:, -1], height[:, -1]) for (around, height), _ in (into, back))
+        hoop = straight(self.edge, (there, up), (away, down), Kind.DWELL)
+        self.reach = max(self.reach, float(max(into[0][1].max(), back[0][1].max())) - self.edge.highest)
+        whole = in_turn([self._laid(into), hoop, self._laid(back).backwards], share=True)
+        return whole.between(arriving.points, leaving.points)

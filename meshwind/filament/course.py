@@ -1,7 +1,7 @@
 """The course of a fibre in the order in which it is wound: over the part, in the air, and through the turnarounds."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from enum import IntEnum
 
 import numpy as np
@@ -67,12 +67,7 @@ class Course:
 
     def chosen(self, which: slice | Ints) -> "Course":
         """Some of the points, in this order."""
-        return Course(*(getattr(self, each.name)[which] for each in fields(Course)))
-
-    @property
-    def backwards(self) -> "Course":
-        """The same fibre from its last point to its first."""
-        return self.chosen(slice(None, None, -1))
+        return Course(*(frozen(getattr(self, each.name)[which]) for each in fields(Course)))
 
     @property
     def arc_length(self) -> Floats:
@@ -92,3 +87,48 @@ def joined(courses: Sequence[Course]) -> Course:
 def in_a_row(courses: Sequence[Course]) -> Course:
     """One course from several, from each of which the fibre goes straight to the next."""
     return Course(*(frozen(np.concatenate([getattr(one, each.name) for one in courses])) for each in fields(Course)))
+
+
+@dataclass(frozen=True)
+class Courses:
+    """Courses of many fibres in one: number k has count[k] points (n,), and comes after those before it."""
+
+    course: Course
+    count: Ints
+
+    @property
+    def first(self) -> Ints:
+        """Which point of `course` is the first of each (n,)."""
+        return np.asarray(np.cumsum(self.count) - self.count)
+
+    @property
+    def backwards(self) -> "Courses":
+        """Each fibre from its last point to its first."""
+        return Courses(self.course.chosen(runs(self.first + self.count - 1, self.count, -1)), self.count)
+
+    def between(self, first: Floats, last: Floats) -> "Courses":
+        """The same with other points (n, 3) at both ends of each."""
+        points = self.course.points.copy()
+        points[self.first], points[self.first + self.count - 1] = first, last
+        return Courses(replace(self.course, points=points), self.count)
+
+
+def in_turn(parts: Sequence[Courses], *, share: bool) -> Courses:
+    """From n courses of each part one from the first to the last part.
+
+    share: whether each starts where that of the part before ends, so that its first point is left out.
+    """
+    base = np.cumsum([0, *(len(part.course) for part in parts[:-1])])
+    first = np.stack([part.first for part in parts], axis=1) + base
+    count = np.stack([part.count for part in parts], axis=1)
+    if share:
+        first[:, 1:] += 1
+        count[:, 1:] -= 1
+    whole = in_a_row([part.course for part in parts])
+    return Courses(whole.chosen(runs(first.ravel(), count.ravel())), count.sum(axis=1))
+
+
+def runs(first: Ints, count: Ints, step: Ints | int = 1) -> Ints:
+    """Runs of integers, one after the other: count[k] of them from first[k] on, step[k] or one step for all apart."""
+    within = np.arange(int(count.sum())) - np.repeat(np.cumsum(count) - count, count)
+    return np.asarray(np.repeat(first, count) + np.repeat(np.broadcast_to(step, count.shape), count) * within)

@@ -112,7 +112,7 @@ def strand_of_paths(closed: ClosedLayer, tail: Tail | None, ground: Ground, fric
         leaving = legs(turn.edge, closed.paths, end, _away(end))
         arriving, ways, slip = _arriving(tail, turn.edge, ground, closed)
         first, later = _next(turn, arriving, leaving)
-        ways = [*ways, turn.courses(arriving, leaving.chosen(np.array([first])), later)[0]]
+        ways = [*ways, turn.courses(arriving, leaving.chosen(np.array([first])), later).course]
         slip = max(slip, turn.slip)
     return _begun(closed, _as_join(ways), end, first, slip)
 
@@ -169,7 +169,7 @@ def _onto(tail: Tail, ground: Ground, to: float, friction: float) -> _Reached:
     leaving = _legs_at(turn.edge, ground, u, end, float(course[-end]), -1)
     first, later = _next(turn, arriving, leaving)
     over = from_path(ground, float(u[first]), end, to, course)
-    way = turn.courses(arriving, leaving.chosen(np.array([first])), later)[0]
+    way = turn.courses(arriving, leaving.chosen(np.array([first])), later).course
     return _Reached([way, over.course], over.u, over.v, max(over.slip, turn.slip))
 
 

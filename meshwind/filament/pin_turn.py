@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from meshwind.core.cast import Floats
-from meshwind.filament.course import Course, Kind, in_a_row
+from meshwind.filament.course import Course, Courses, Kind, in_turn
 from meshwind.filament.edge import Edge, Legs
-from meshwind.filament.turnaround import Stretch, course, straight
+from meshwind.filament.turnaround import Place, on_prism, shares, straight
 
 _STEEPEST = np.radians(85.0)
 """Winding angle above which a leg is taken to have this one: a hoop never comes up to the pins."""
@@ -64,35 +64,26 @@ class Pins:
             / self.edge.hull.perimeter
         )
 
-    def courses(self, arriving: Legs, leaving: Legs, later: Floats) -> list[Course]:
+    def courses(self, arriving: Legs, leaving: Legs, later: Floats) -> Courses:
         """See `Turnaround.courses`."""
-        into, away = self._over_pins(arriving, arriving.around), self._over_pins(leaving, later)
-        made = []
-        for k in range(len(later)):
-            there, back = into[k], [part.backwards for part in away[k][::-1]]
-            ends = [(float(one.around[i]), float(one.height[i])) for one, i in ((there[-1], -1), (back[0], 0))]
-            hoop = straight(ends[0], ends[1], self.edge, Kind.DWELL)
-            made.append(course(self.edge, [*there, hoop, *back], arriving.points[k], leaving.points[k]))
-        return made
+        (into, there), (away, back) = self._over_pins(arriving, arriving.around), self._over_pins(leaving, later)
+        hoop = straight(self.edge, there, back, Kind.DWELL)
+        return in_turn([into, hoop, away.backwards], share=True).between(arriving.points, leaving.points)
 
-    def _over_pins(self, legs: Legs, start: Floats) -> list[list[Stretch]]:
-        """The way of each leg from the rim, at `start` (n,) along the hull, until it is a hoop behind its pin."""
+    def _over_pins(self, legs: Legs, start: Floats) -> tuple[Courses, Place]:
+        """The way of each leg from the rim, at `start` (n,) along the hull, until it is a hoop behind its pin there."""
         angle, meets, _ = self._legs(legs)
         level, sense = self.edge.highest + self.height, legs.sense
         pin = start + sense * meets
-        high = level + self.radius * np.sin(angle)
+        up = straight(self.edge, (start, legs.height), (pin, level + self.radius * np.sin(angle)), Kind.TURN)
         bend = angle[:, None] + (0.5 * np.pi - angle)[:, None] * np.linspace(0.0, 1.0, _BEND)
         around = (pin + sense * self.radius * np.cos(angle))[:, None] - sense * self.radius * np.cos(bend)
-        height, none = level + self.radius * np.sin(bend), np.zeros(_BEND)
-        return [
-            [
-                straight(
-                    (float(start[k]), float(legs.height[k])), (float(pin[k]), float(high[k])), self.edge, Kind.TURN
-                ),
-                Stretch(around[k], height[k], bend[k], none, Kind.TURN),
-            ]
-            for k in range(len(legs))
-        ]
+        height = level + self.radius * np.sin(bend)
+        round_ = on_prism(
+            self.edge, (around.ravel(), height.ravel()), bend.ravel(), np.zeros(bend.size),
+            np.full(len(legs), _BEND), Kind.TURN,
+        )  # fmt: skip
+        return in_turn([up, round_], share=True), (around[:, -1], height[:, -1])
 
 
 @dataclass
@@ -140,36 +131,27 @@ class Shaft:
         least = np.arccos(self.radius / near) + np.arccos(self.radius / far)
         return np.asarray((last - first - least) / (2.0 * np.pi))
 
-    def courses(self, arriving: Legs, leaving: Legs, later: Floats) -> list[Course]:
+    def courses(self, arriving: Legs, leaving: Legs, later: Floats) -> Courses:
         """See `Turnaround.courses`."""
         at, first, near = self._at_pins(arriving, arriving.around)
         end, last, far = self._at_pins(leaving, later)
-        level = self.edge.highest + self.height
-        made = []
-        for k in range(len(later)):
-            up, down = (
-                straight((float(leg.around[k] if leg is arriving else later[k]), float(leg.height[k])),
-                         (float(stop[k]), level), self.edge, Kind.TURN)
-                for leg, stop in ((arriving, at), (leaving, end))
-            )  # fmt: skip
-            over = [course(self.edge, [up], arriving.points[k], self.edge.points(up.around[-1:], up.height[-1:])[0])]
-            touch = [
-                float(first[k] + np.arccos(self.radius / near[k])),
-                float(last[k] - np.arccos(self.radius / far[k])),
-            ]
-            over.append(self._round(touch[0], max(touch[1], touch[0])))
-            home = self.edge.points(down.around[-1:], down.height[-1:])[0]
-            over.append(course(self.edge, [down.backwards], home, leaving.points[k]))
-            made.append(in_a_row(over))
-        return made
+        level = np.full(len(later), self.edge.highest + self.height)
+        up = straight(self.edge, (arriving.around, arriving.height), (at, level), Kind.TURN)
+        down = straight(self.edge, (later, leaving.height), (end, level), Kind.TURN)
+        touch = first + np.arccos(self.radius / near)
+        leave = np.maximum(last - np.arccos(self.radius / far), touch)
+        whole = in_turn([up, self._round(touch, leave), down.backwards], share=False)
+        return whole.between(arriving.points, leaving.points)
 
-    def _round(self, first: float, last: float) -> Course:
-        """The way round the shaft between two polar angles."""
-        polar = np.linspace(first, last, int(np.ceil((last - first) / _STEP)) + 2)
+    def _round(self, first: Floats, last: Floats) -> Courses:
+        """The ways round the shaft between polar angles (n,)."""
+        count = np.ceil((last - first) / _STEP).astype(np.int64) + 2
+        polar = np.repeat(first, count) + shares(count) * np.repeat(last - first, count)
         flat = np.stack([np.cos(polar), np.sin(polar)], axis=1)
         normal = flat @ self.edge.across
         points = self.edge.origin + self.radius * normal + (self.edge.highest + self.height) * self.edge.axis
         none = np.full(len(polar), -1)
-        kind = np.full(len(polar), Kind.DWELL)
-        kind[0] = Kind.TURN  # it comes in through the air
-        return Course(points, normal, np.full_like(polar, 0.5 * np.pi), np.zeros_like(polar), kind, none, none, none)
+        kind = np.full(len(polar), int(Kind.DWELL))
+        kind[np.cumsum(count) - count] = Kind.TURN  # it comes in through the air
+        hoop = np.full_like(polar, 0.5 * np.pi)
+        return Courses(Course(points, normal, hoop, np.zeros_like(polar), kind, none, none, none), count)

@@ -1,37 +1,15 @@
 """What every turnaround is: the way of a fibre over a rim, from the end of one path to the start of the next."""
 
-from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 import numpy as np
 
-from meshwind.core.cast import Floats
-from meshwind.filament.course import Course, Kind
+from meshwind.core.cast import Floats, Ints
+from meshwind.filament.course import Course, Courses, Kind, runs
 from meshwind.filament.edge import Edge, Legs
 
 _STEP = np.radians(3.0)
 """Turn of the prism's normal between points of a straight stretch."""
-
-
-@dataclass(frozen=True)
-class Stretch:
-    """A stretch of fibre on the unrolled prism, of n points: around, height, angle, slip (n,), and one kind."""
-
-    around: Floats
-    height: Floats
-    angle: Floats
-    slip: Floats
-    kind: Kind
-
-    @property
-    def rest(self) -> "Stretch":
-        """All points but the first."""
-        return Stretch(self.around[1:], self.height[1:], self.angle[1:], self.slip[1:], self.kind)
-
-    @property
-    def backwards(self) -> "Stretch":
-        """The same stretch from its last point to its first."""
-        return Stretch(self.around[::-1], self.height[::-1], self.angle[::-1], self.slip[::-1], self.kind)
 
 
 class Turnaround(Protocol):
@@ -50,7 +28,7 @@ class Turnaround(Protocol):
         """Turns (n,) to spare from n legs that arrive to those that leave next, at lengths `later` along the hull."""
         ...
 
-    def courses(self, arriving: Legs, leaving: Legs, later: Floats) -> list[Course]:
+    def courses(self, arriving: Legs, leaving: Legs, later: Floats) -> Courses:
         """The course from each of n legs that arrive to the one that leaves next, at a length `later` (n,)."""
         ...
 
@@ -60,24 +38,32 @@ class Turnaround(Protocol):
         ...
 
 
-def straight(start: tuple[float, float], end: tuple[float, float], edge: Edge, kind: Kind) -> Stretch:
-    """A straight stretch on the unrolled prism, between two places (around, height), sampled as the hull turns."""
-    a, b = start[0], end[0]
-    turned = abs(float(np.diff(edge.hull.normal_angle(np.array([a, b])))[0]))
-    share = np.linspace(0.0, 1.0, max(int(np.ceil(turned / _STEP)), 1) + 1)
-    angle = np.arctan2(abs(b - a), abs(end[1] - start[1])) if (a, start[1]) != (b, end[1]) else 0.5 * np.pi
-    around, height = a + share * (b - a), start[1] + share * (end[1] - start[1])
-    return Stretch(around, height, np.full_like(share, angle), np.zeros_like(share), kind)
+Place: TypeAlias = tuple[Floats, Floats]
+"""Where n fibres are on the unrolled prism: length along the hull and height, (n,) each."""
 
 
-def course(edge: Edge, stretches: list[Stretch], first: Floats, last: Floats) -> Course:
-    """The course over stretches in a row, with the points (3,) where it comes from the part and goes back to it."""
-    parts = [stretches[0], *(each.rest for each in stretches[1:])]
-    around, height, angle, slip = (
-        np.concatenate([getattr(each, name) for each in parts]) for name in ("around", "height", "angle", "slip")
-    )
-    kind = np.concatenate([np.full(len(each.around), each.kind) for each in parts])
-    points = edge.points(around, height)
-    points[0], points[-1] = first, last  # on the rim itself, which may be hollow
-    none = np.full(len(points), -1)
-    return Course(points, edge.normals(around), np.minimum(angle, np.pi - angle), slip, kind, none, none, none)
+def straight(edge: Edge, start: Place, end: Place, kind: Kind) -> Courses:
+    """Straight stretches on the unrolled prism, between places, sampled as the hull turns."""
+    (a, low), (b, high) = start, end
+    turned = np.abs(edge.hull.normal_angle(b) - edge.hull.normal_angle(a))
+    count = np.maximum(np.ceil(turned / _STEP).astype(np.int64), 1) + 1
+    angle = np.where((a != b) | (low != high), np.arctan2(np.abs(b - a), np.abs(high - low)), 0.5 * np.pi)
+    share, many = shares(count), int(count.sum())
+    around, height = (np.repeat(x, count) + share * np.repeat(y - x, count) for x, y in ((a, b), (low, high)))
+    return on_prism(edge, (around, height), np.repeat(angle, count), np.zeros(many), count, kind)
+
+
+def shares(count: Ints) -> Floats:
+    """Even shares from 0 to 1, count[k] of them for each of n stretches, at least 2, one after the other."""
+    return np.asarray(runs(np.zeros_like(count), count) / np.repeat(count - 1, count))
+
+
+def on_prism(edge: Edge, at: Place, angle: Floats, slip: Floats, count: Ints, kind: Kind) -> Courses:
+    """Courses of count[k] points each on the prism, from places, angles and slips of all points, one after another."""
+    around, height = at
+    none = np.full(len(around), -1)
+    course = Course(
+        edge.points(around, height), edge.normals(around), np.minimum(angle, np.pi - angle), slip,
+        np.full(len(around), int(kind)), none, none, none,
+    )  # fmt: skip
+    return Courses(course, count)
