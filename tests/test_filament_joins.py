@@ -78,7 +78,7 @@ def test_any_layers_are_one_filament(plans: list[LayerPlan]) -> None:
     assert np.diff(turned).min() > -1e-4
     # each path is wound once, and in one piece
     laid = course.path[course.path >= 0]
-    pieces = laid[np.r_[True, np.diff(laid) != 0]]
+    pieces = laid[np.diff(laid, prepend=-1) != 0]
     helices = [k for k, plan in enumerate(plans) if plan.kind == "helical"]
     starts = np.concatenate([[0], np.cumsum(polylines)])
     assert sorted(pieces) == sorted(k for each in helices for k in range(starts[each], starts[each + 1]))
