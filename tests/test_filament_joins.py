@@ -11,10 +11,16 @@ from hypothesis import strategies as st
 import meshwind as mw
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
+from meshwind.filament import ends
+from meshwind.filament.closing import close_layer
 from meshwind.filament.course import Kind
 from meshwind.filament.filament import Filament, filament_of_layers
+from meshwind.filament.joins import strand_of_paths
+from meshwind.filament.laminate import Ply, helical_layer
 from meshwind.filament.levels import levels
+from meshwind.filament.part_turn import Bend
 from meshwind.filament.spiral import Ground, between_hoops, from_path, to_path
+from meshwind.filament.thickness import Laying
 from meshwind.results.filament_file import read_filaments
 from meshwind.surface.interpolate import interpolate
 from meshwind.workflow.layer_plans import LayerPlan, LayersFile
@@ -32,6 +38,7 @@ LAYERS = st.lists(
             st.integers(3, 9),
             st.sampled_from(["pins", "collar", "shaft"]),
         ),
+        st.builds(lambda paths: replace(HELIX, paths=paths, start=0.35, end=0.65, friction=0.6), st.integers(3, 9)),
         st.builds(
             lambda passes, low, high: replace(HOOP, passes=passes, start=low, end=high),
             st.integers(1, 3),
@@ -48,6 +55,10 @@ def _barrel(u: Floats, v: Floats) -> Floats:
     z = 300.0 * v - 150.0
     radius = 60.0 - 10.0 * (z / 150.0) ** 2
     return np.stack([radius * np.cos(2 * np.pi * u), radius * np.sin(2 * np.pi * u), z], axis=-1)
+
+
+def _tube(u: Floats, v: Floats) -> Floats:
+    return np.stack([50.0 * np.cos(2 * np.pi * u), 50.0 * np.sin(2 * np.pi * u), 300.0 * v], axis=-1)
 
 
 BARREL = interpolate(_barrel, (24, 16))
@@ -89,6 +100,33 @@ def test_any_layers_are_one_filament(plans: list[LayerPlan]) -> None:
     high = np.hypot(*course.points[on_part, :2].T) - (60.0 - 10.0 * (z / 150.0) ** 2)
     off = np.abs(high - one.thickness[on_part])
     assert off.max(initial=0.0) < 0.2 and off.sum() < 0.03 * max(len(off), 1)
+
+
+def test_turns_on_a_cylinder_within_the_part() -> None:
+    """They take the friction that there is, and as much of the part as a collar would: R/f (1/sin a - 1)."""
+    tube = interpolate(_tube, (24, 16))
+    paths = 7
+    closed = close_layer(tube, ends.LayerPlan(paths, 0.4, 0.5, 101, between=(0.3, 0.7)))
+    turns = [each for each in closed.turnarounds if isinstance(each, Bend)]
+    angle = np.arctan(2 * np.pi * 50.0 * closed.revolutions / 120.0)
+    assert len(turns) == 2
+    for turn in turns:
+        assert turn.slip == pytest.approx(0.5, rel=0.02)
+        assert turn.reach == pytest.approx(50.0 / 0.5 * (1.0 / np.sin(angle) - 1.0), rel=2e-3)
+        assert turn.line == pytest.approx((0.7 + turn.reach / 300.0) if turn.edge.end else (0.3 - turn.reach / 300.0))
+    course = closed.filaments[0]
+    assert np.hypot(*course.points[:, :2].T) == pytest.approx(50.0, abs=1e-3)
+    # what turns on the part is in the layer's thickness
+    lines = levels(tube)
+    strand = strand_of_paths(closed, None, Ground(tube, lines, 8.0), 0.5)
+    layer = helical_layer(closed.paths, Ply(Laying(8.0, 0.2)), lines, strand=strand)
+    assert layer.fibre_length == pytest.approx(course.arc_length[-1], rel=1e-3)
+    assert layer.thickness.volume == pytest.approx(8.0 * 0.2 * layer.fibre_length, rel=1e-9)
+    for word, friction in (("pins", 0.5), ("auto", 0.0)):
+        with pytest.raises(BadInputError, match="let it end at the rim"):
+            close_layer(tube, ends.LayerPlan(paths, 0.4, friction, 101, (word, word), between=(0.3, 0.7)))
+    with pytest.raises(BadInputError, match="let it end further inside"):
+        close_layer(tube, ends.LayerPlan(paths, 0.4, 0.1, 101, between=(0.3, 0.7)))
 
 
 def test_a_way_to_a_hoop_needs_a_constant_slip_on_a_cylinder() -> None:

@@ -50,8 +50,8 @@ def ends_with_caps(surface: Surface, plan: LayerPlan, laid: PolarPasses) -> list
     """The turnarounds at both ends: caps, or what suits a rim."""
     worst = np.abs(laid.slip).max(axis=0)
     return [
-        Cap(edge(surface, v), float(worst[k])) if word == CAP else choose_end(surface, v, plan, word, laid.paths)
-        for k, (v, word) in enumerate(zip((0.0, 1.0), plan.turns, strict=True))
+        Cap(edge(surface, end), float(worst[end])) if word == CAP else choose_end(surface, end, plan, word, laid.paths)
+        for end, word in enumerate(plan.turns)
     ]
 
 

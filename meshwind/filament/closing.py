@@ -99,7 +99,7 @@ def close_layer(surface: Surface, plan: LayerPlan) -> ClosedLayer:
     if CAP in plan.turns:
         return _on_caps(surface, plan)
     scouts, _ = _at_rest(_solved(surface, plan, min(plan.paths, _SCOUTS), plan.revolutions, 0.0))
-    ends = [choose_end(surface, v, plan, word, scouts) for v, word in zip((0.0, 1.0), plan.turns, strict=True)]
+    ends = [choose_end(surface, end, plan, word, scouts) for end, word in enumerate(plan.turns)]
     planned = _planned(surface, plan, ends, scouts)
     kept, left_out = _at_rest(_solved(surface, plan, plan.paths, planned.revolutions, -planned.dwells[0]))
     pairs = [end.pairs(kept) for end in ends]
@@ -197,7 +197,7 @@ def _planned(surface: Surface, plan: LayerPlan, ends: list[End], scouts: Paths) 
 
 
 def _solved(surface: Surface, plan: LayerPlan, count: int, revolutions: float, phase: float) -> Paths:
-    ends = families(surface, count, revolutions, phase=phase)
+    ends = families(surface, count, revolutions, phase=phase, between=plan.between)
     return solve(surface, ends.start, ends.end, family=ends.family, particles=plan.particles, friction=plan.friction)
 
 

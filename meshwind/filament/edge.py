@@ -43,6 +43,8 @@ class Edge:
         Least and largest height of the rim.
     hollow : float
         Largest distance of the rim from its hull.
+    end : int
+        0 at the start of the part, 1 at its end.
     crease : tuple of float
         Least and largest angle, in radians, by which the prism turns from the part at the rim, towards the axis:
         negative where it stands up from the part, so that the fibre would lift off there.
@@ -56,6 +58,7 @@ class Edge:
     lowest: float
     highest: float
     hollow: float
+    end: int
     crease: tuple[float, float]
 
     def around(self, u: Floats) -> Floats:
@@ -68,8 +71,9 @@ class Edge:
         """Points (n, 3) of the prism at lengths (n,) along the hull and heights (n,)."""
         return np.asarray(self.origin + self.hull.at(around) @ self.across + height[:, None] * self.axis)
 
-    def normals(self, around: Floats) -> Floats:
-        """Outward unit normals (n, 3) of the prism at lengths (n,) along the hull."""
+    def normals(self, around: Floats, height: Floats) -> Floats:
+        """Outward unit normals (n, 3) of the prism at lengths (n,) along the hull and heights (n,)."""
+        del height  # a prism is the same at all of them
         angle = self.hull.normal_angle(around)
         return np.asarray(np.stack([np.cos(angle), np.sin(angle)], axis=1) @ self.across)
 
@@ -96,15 +100,18 @@ class Legs:
         return Legs(self.around[index], self.height[index], self.angle[index], self.points[index], self.sense)
 
 
-def edge(surface: Surface, v: float) -> Edge:
-    """The prism on a rim of a surface that closes in u.
+def edge(surface: Surface, v: float, end: int | None = None) -> Edge:
+    """The prism on a rim, or another level line, of a surface that closes in u.
 
     Parameters
     ----------
     surface : Surface
         Surface of the part.
     v : float
-        0 for the start rim or 1 for the end rim.
+        0 for the start rim, 1 for the end rim, or that of a line between.
+    end : int, optional
+        0 if the prism goes on beyond the line towards the start, 1 if it goes on towards the end; by default that of
+        the rim.
 
     Returns
     -------
@@ -117,8 +124,9 @@ def edge(surface: Surface, v: float) -> Edge:
         If the rim is so uneven that no prism continues it.
     """
     u = np.arange(_SAMPLES) / _SAMPLES
+    end = round(v) if end is None else end
     frames = surface.frames(np.stack([u, np.full_like(u, v)], axis=1))
-    rim, along = frames[:, S], frames[:, SV] if v else -frames[:, SV]
+    rim, along = frames[:, S], frames[:, SV] if end else -frames[:, SV]
     middle = rim.mean(axis=0)
     area = np.cross(rim - middle, np.roll(rim, -1, axis=0) - middle).sum(axis=0)
     if not np.linalg.norm(area) > 0.0:
@@ -138,27 +146,27 @@ def edge(surface: Surface, v: float) -> Edge:
         raise BadInputError("a rim that runs along its own axis has no turnaround; open the part by a plane")
     made = Edge(
         frozen(middle), frozen(axis), frozen(across), hull, frozen(u[corners]), float(height.min()),
-        float(height.max()), 0.0, (0.0, 0.0),
+        float(height.max()), 0.0, end, (0.0, 0.0),
     )  # fmt: skip
     around = made.around(u)
     hollow = np.linalg.norm(flat - hull.at(around), axis=1).max() if len(corners) < _SAMPLES else 0.0
     outward = unit(np.cross(frames[:, SU], frames[:, SV]))
-    su, normal = frames[:, SU], made.normals(around)
+    su, normal = frames[:, SU], made.normals(around, height)
     normal = unit(normal - ((normal * su).sum(axis=1) / (su**2).sum(axis=1))[:, None] * su)
     turn = np.arcsin(np.clip((np.cross(outward, normal) * unit(np.cross(along, outward))).sum(axis=1), -1.0, 1.0))
     return replace(made, hollow=float(hollow), crease=(float(turn.min()), float(turn.max())))
 
 
-def legs(on: Edge, paths: Paths, v: float, family: int) -> Legs:
-    """The fibres of a family where they cross the rim at v: those of +1 arrive at v=1 and leave at v=0."""
+def legs(on: Edge, paths: Paths, family: int) -> Legs:
+    """The fibres of a family where they cross the edge: those of +1 arrive at the part's end and leave its start."""
     surface, rows = paths.surface, np.flatnonzero(paths.family == family)
-    last = slice(None, -5, -1) if v else slice(0, 4)
+    last = slice(None, -5, -1) if on.end else slice(0, 4)
     points = paths.points[rows][:, last]
     touching: Bools = np.all(paths.on_surface[rows][:, last], axis=1, keepdims=True)
-    uv = paths.uv[rows, -1 if v else 0]
+    uv = paths.uv[rows, -1 if on.end else 0]
     # outwards: from the part over the rim
     ahead = np.where(touching, np.einsum("k,nkc->nc", _ONE_SIDED, points), points[:, 0] - points[:, 1])
-    sense = family if v else -family
+    sense = family if on.end else -family
     rim = sense * unit(surface.frames(np.ascontiguousarray(uv))[:, SU])
     from_rim = np.arccos(np.clip((unit(ahead) * rim).sum(axis=1), -1.0, 1.0))
     slope = np.arcsin(np.clip(rim @ on.axis, -1.0, 1.0))

@@ -11,6 +11,8 @@ from meshwind.core.parsing import AUTO
 from meshwind.filament.collar_turn import Collar
 from meshwind.filament.edge import Edge, Legs, edge, legs
 from meshwind.filament.joining import Surplus
+from meshwind.filament.part_edge import part_edge
+from meshwind.filament.part_turn import Bend
 from meshwind.filament.pin_turn import Pins, Shaft
 from meshwind.filament.turnaround import Turnaround
 from meshwind.path import Paths
@@ -53,6 +55,8 @@ class LayerPlan:
         from the opening, so that the revolutions are not kept.
     clearance : float, default 0
         Distance at which fibres pass the opening of a cap, in the surface's units.
+    between : tuple of float, default (0, 1)
+        The v of the lines that the paths start and end on.  Within the part they turn beyond these lines, on the part.
     """
 
     paths: int
@@ -61,6 +65,7 @@ class LayerPlan:
     particles: int | None = PARTICLES
     turns: tuple[str, str] = (AUTO, AUTO)
     clearance: float = 0.0
+    between: tuple[float, float] = (0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -74,13 +79,13 @@ class End:
 
     def shares(self, paths: Paths, family: int) -> Floats:
         """Shares of the rim's length, unwrapped, at which the paths of a family cross it."""
-        u = paths.uv[paths.family == family, -1 if self.v else 0, 0]
+        u = paths.uv[paths.family == family, -self.edge.end, 0]
         return rim(self.surface, self.v).shares(u)
 
     def pairs(self, paths: Paths) -> "Pairs":
         """The legs that arrive and those that leave."""
-        families_ = (1, -1) if self.v else (-1, 1)
-        into, out = (legs(self.edge, paths, self.v, family) for family in families_)
+        families_ = (1, -1) if self.edge.end else (-1, 1)
+        into, out = (legs(self.edge, paths, family) for family in families_)
         at, off = (self.shares(paths, family) for family in families_)
         return Pairs(self, into, out, at, off)
 
@@ -133,16 +138,19 @@ class Pairs:
             dwell += short
             if not dwell < _LONGEST_DWELL:
                 raise BadInputError(
-                    f"the turnaround at the {'end' if self.end.v else 'start'} ({self.end.turnaround.name}) would take "
+                    f"the turnaround at the {'end' if edge_.end else 'start'} ({self.end.turnaround.name}) would take "
                     f"more than {_LONGEST_DWELL:g} turns; give pins or a shaft, more friction, or a larger angle"
                 )
         return dwell + 2.0 * ROOM
 
 
-def choose_end(surface: Surface, v: float, plan: LayerPlan, word: str, scouts: Paths) -> End:
-    """An end with the turnaround that was asked for, or that suits it."""
+def choose_end(surface: Surface, end: int, plan: LayerPlan, word: str, scouts: Paths) -> End:
+    """An end, 0 or 1, with the turnaround that was asked for, or that suits it."""
+    v, held = plan.between[end], friction_of(surface, plan.friction)
+    if 0.0 < v < 1.0:
+        return _within(surface, end, v, word, held.smallest)
     on = edge(surface, v)
-    friction = float(friction_of(surface, plan.friction).table[:, -1 if v else 0].min())
+    friction = float(held.table[:, -end].min())
     pitch = on.hull.perimeter / plan.paths
     pins = Pins(on, _PIN_HIGH * pitch, _PIN_WIDE * pitch, pitch)
     if word == "pins":
@@ -156,7 +164,22 @@ def choose_end(surface: Surface, v: float, plan: LayerPlan, word: str, scouts: P
         collar = Collar(on, friction)
         if word == "collar":
             return End(surface, v, on, collar)
-        tops = [collar.reached(legs(on, scouts, v, family), np.zeros(len(scouts) // 2))[1].max() for family in (1, -1)]
+        tops = [collar.reached(legs(on, scouts, family), np.zeros(len(scouts) // 2))[1].max() for family in (1, -1)]
         if max(tops) - on.highest <= _LONGEST_COLLAR * on.hull.perimeter / np.pi:
             return End(surface, v, on, collar)
     return End(surface, v, on, pins)
+
+
+def _within(surface: Surface, end: int, v: float, word: str, friction: float) -> End:
+    """The end of a layer within the part."""
+    if word not in (AUTO, "collar"):
+        raise BadInputError(
+            f"{word} stands at a rim, and the layer ends at v={v:.3g}; leave {word} out, or let it end at the rim"
+        )
+    if not friction > 0.0:
+        raise BadInputError(
+            f"a layer that ends at v={v:.3g} turns on the part, which takes friction; give friction, or let it end at "
+            "the rims"
+        )
+    on = part_edge(surface, v, end)
+    return End(surface, v, on, Bend(on, friction))

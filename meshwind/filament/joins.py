@@ -10,19 +10,23 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import AUTO
 from meshwind.filament.cap_turn import Cap
 from meshwind.filament.closing import ClosedLayer
 from meshwind.filament.course import Course, Kind, joined
 from meshwind.filament.edge import Edge, Legs, legs
 from meshwind.filament.ends import choose_end
 from meshwind.filament.hoop import Hoop, HoopPlan, begins_at, hoop
-from meshwind.filament.spiral import Ground, between_hoops, from_path, most_slip, to_path
+from meshwind.filament.part_turn import Bend
+from meshwind.filament.spiral import Ground, between_hoops, from_path, most_slip, path_on, to_path
 from meshwind.filament.turnaround import Turnaround
 
 _AROUND = 360
 """Places round a rim at which a way to a hoop may begin."""
 _SAME = 1e-9
-"""Distance in v at which two lines are one."""
+"""Distance in v at which two lines are one, ..."""
+_CLOSE = 1e-3
+"""... and at which a fibre that touches one of them is taken to the other as it goes round."""
 _SETTLED = 8
 """Rounds in which the least dwell to a place is found: each is a whole turn more at most."""
 
@@ -99,22 +103,16 @@ def strand_of_paths(closed: ClosedLayer, tail: Tail | None, ground: Ground, fric
         )
     if tail is None:
         return _begun(closed, None, 0, 0)
-    end = tail.end
-    turn, rows = closed.turnarounds[end], np.flatnonzero(closed.paths.family == _away(end))
-    if isinstance(turn, Cap):
-        starts = closed.paths.uv[rows, -end]
-        reached = _to_cap(tail, ground, closed, float(starts[:, 1].mean()), friction)
-        ahead = starts[:, 0] + np.ceil(reached.u - starts[:, 0])
-        first = int(np.argmin(ahead))
-        way = ground.round(reached.u, reached.v, (float(ahead[first]), float(starts[first, 1])))
-        ways, slip = [*reached.ways, way], max(reached.slip, most_slip(way))
+    turn = closed.turnarounds[tail.end]
+    if isinstance(turn, Cap | Bend):
+        first, ways, slip = _on_part(closed, turn, tail, ground, friction)
     else:
-        leaving = legs(turn.edge, closed.paths, end, _away(end))
+        leaving = legs(turn.edge, closed.paths, _away(tail.end))
         arriving, ways, slip = _arriving(tail, turn.edge, ground, closed)
         first, later = _next(turn, arriving, leaving)
         ways = [*ways, turn.courses(arriving, leaving.chosen(np.array([first])), later).course]
         slip = max(slip, turn.slip)
-    return _begun(closed, _as_join(ways), end, first, slip)
+    return _begun(closed, _as_join(ways), tail.end, first, slip)
 
 
 def strand_of_hoop(plan: HoopPlan, tail: Tail | None, ground: Ground, friction: float) -> tuple[Strand, Hoop]:
@@ -150,43 +148,74 @@ def _away(end: int) -> int:
     return -1 if end else 1
 
 
+def _on_part(
+    closed: ClosedLayer, turn: Cap | Bend, tail: Tail, ground: Ground, friction: float
+) -> tuple[int, list[Course], float]:
+    """The ways to a path whose layer begins on the part, which path it is, and the friction that they need.
+
+    The fibre goes round as a hoop, where those of the layer turn, until it can bend into a path.
+    """
+    rows = np.flatnonzero(closed.paths.family == _away(tail.end))
+    starts = closed.paths.uv[rows, -tail.end]
+    line = float(starts[:, 1].mean())
+    if isinstance(turn, Cap):
+        reached, bent = _onto(tail, ground, line, friction), None
+    else:
+        reached = _onto(tail, ground, turn.line, friction)
+        bent = to_path(ground, 0.0, turn.line, line, ground.course_of(closed.paths))
+    leaves = starts[:, 0] - (0.0 if bent is None else bent.u)
+    ahead = leaves + np.ceil(reached.u - leaves)
+    first = int(np.argmin(ahead))
+    at = float(starts[first, 1]) if isinstance(turn, Cap) else turn.line
+    ring = ground.round(reached.u, reached.v, (float(ahead[first]), at))
+    ways, slip = [*reached.ways, ring], max(reached.slip, most_slip(ring))
+    if bent is not None:
+        way = to_path(ground, float(ahead[first]), at, line, ground.course_of(closed.paths))
+        ways, slip = [*ways, way.course], max(slip, way.slip)
+    return first, ways, slip
+
+
 def _onto(tail: Tail, ground: Ground, to: float, friction: float) -> _Reached:
     """From the end of a layer to the line `to` on the part, there as a hoop."""
-    layer, end = tail.layer, tail.end
-    if layer is None or tail.turnaround is None:
+    layer = tail.layer
+    if layer is None:
         if abs(to - tail.v) <= _SAME:
             return _Reached([], tail.u, tail.v, 0.0)
-        if layer is None:
-            over = between_hoops(ground, tail.u, tail.v, to, friction)
-        else:
-            over = from_path(ground, tail.u, tail.v, to, ground.course_of(layer.paths))
+        over = between_hoops(ground, tail.u, tail.v, to, friction)
         return _Reached([over.course], over.u, over.v, over.slip)
-    surface = ground.surface
-    turn = choose_end(surface, float(end), layer.plan, tail.turnaround.name, layer.paths).turnaround
-    arriving = _arrived(tail, turn.edge)
     course = ground.course_of(layer.paths)
+    beyond = to >= tail.v - _SAME if tail.end else to <= tail.v + _SAME
+    if tail.turnaround is None or beyond:
+        if abs(to - tail.v) <= _CLOSE:
+            return _Reached([], tail.u, tail.v, 0.0)
+        over = from_path(ground, tail.u, tail.v, to, course)
+        return _Reached([over.course], over.u, over.v, over.slip)
+    turn = choose_end(ground.surface, tail.end, layer.plan, _word(tail.turnaround), layer.paths).turnaround
     u = np.arange(_AROUND) / _AROUND
-    leaving = _legs_at(turn.edge, ground, u, end, float(course[-end]), -1)
+    leaving = _legs_at(turn.edge, ground, u, tail.v, float(np.interp(tail.v, ground.lines.v, course)), -1)
+    arriving = _arrived(tail, turn.edge)
     first, later = _next(turn, arriving, leaving)
-    over = from_path(ground, float(u[first]), end, to, course)
+    over = from_path(ground, float(u[first]), tail.v, to, course)
     way = turn.courses(arriving, leaving.chosen(np.array([first])), later).course
     return _Reached([way, over.course], over.u, over.v, max(over.slip, turn.slip))
 
 
-def _to_cap(tail: Tail, ground: Ground, closed: ClosedLayer, to: float, friction: float) -> _Reached:
-    """From the end of a layer to the line where paths touch the opening of a cap."""
-    if tail.layer is not None:
-        return _Reached([], tail.u, tail.v, 0.0) if tail.turnaround is None else _onto(tail, ground, to, friction)
-    way = to_path(ground, tail.u, tail.v, to, ground.course_of(closed.paths))
-    return _Reached([way.course], way.u, way.v, way.slip)
+def _word(turn: Turnaround) -> str:
+    """The word that asks for such a turnaround."""
+    return AUTO if isinstance(turn, Bend) else turn.name
 
 
 def _arriving(tail: Tail, on: Edge, ground: Ground, closed: ClosedLayer) -> tuple[Legs, list[Course], float]:
     """The leg over the rim on which the fibre comes from a layer, the ways to it, and the friction that they need."""
-    if tail.turnaround is not None:
+    rim = float(tail.end)
+    if tail.turnaround is not None and abs(tail.v - rim) <= _SAME:
         return _arrived(tail, on), [], 0.0
-    way = to_path(ground, tail.u, tail.v, tail.end, ground.course_of(closed.paths))
-    return _legs_at(on, ground, np.array([way.u]), tail.end, way.comes, 1), [way.course], way.slip
+    course = ground.course_of(closed.paths)
+    if tail.layer is None:
+        way = to_path(ground, tail.u, tail.v, rim, course)
+    else:
+        way = path_on(ground, tail.u, tail.v, rim, (ground.course_of(tail.layer.paths), course))
+    return _legs_at(on, ground, np.array([way.u]), rim, way.comes, 1), [way.course], way.slip
 
 
 def _arrived(tail: Tail, on: Edge) -> Legs:
@@ -194,12 +223,12 @@ def _arrived(tail: Tail, on: Edge) -> Legs:
     assert tail.layer is not None
     paths = tail.layer.paths
     mine = np.flatnonzero(paths.family == -_away(tail.end))
-    return legs(on, paths, tail.end, -_away(tail.end)).chosen(np.flatnonzero(mine == tail.path))
+    return legs(on, paths, -_away(tail.end)).chosen(np.flatnonzero(mine == tail.path))
 
 
-def _legs_at(on: Edge, ground: Ground, u: Floats, end: int, angle: float, sense: int) -> Legs:
-    """Legs that cross the rim at u (n,), all at one angle."""
-    points = ground.surface.points(np.stack([u, np.full_like(u, end)], axis=1))
+def _legs_at(on: Edge, ground: Ground, u: Floats, v: float, angle: float, sense: int) -> Legs:
+    """Legs that cross an edge at u (n,), all at one angle."""
+    points = ground.surface.points(np.stack([u, np.full_like(u, v)], axis=1))
     height = (points - on.origin) @ on.axis
     return Legs(frozen(on.around(u)), frozen(height), frozen(np.full_like(u, angle)), frozen(points), sense)
 

@@ -10,6 +10,7 @@ from meshwind.filament.hoop import Hoop
 from meshwind.filament.joins import Strand
 from meshwind.filament.levels import Levels
 from meshwind.filament.offset import Raised, raised
+from meshwind.filament.part_turn import Bend
 from meshwind.filament.stations import Stations, helix_stations, hoop_stations
 from meshwind.filament.thickness import Laying, Thickness, Tracks, deposit, tracks
 from meshwind.path.paths import Paths
@@ -78,8 +79,8 @@ class LaidLayer:
 
     @property
     def fibre_length(self) -> float:
-        """Length of its band, in the surface's units."""
-        return self.tracks.length
+        """Length of its band where it lies on the part or bridges it, in the surface's units."""
+        return self.tracks.length + sum(each.length for each in _bends(self.strand))
 
     @property
     def circuits(self) -> int:
@@ -130,7 +131,7 @@ class Ply:
 
 def helical_layer(paths: Paths, ply: Ply, lines: Levels, left_out: int = 0, strand: Strand | None = None) -> LaidLayer:
     """The layer of taut paths, deposited on their surface with these level lines, and the surface above it."""
-    thickness, above = _deposited(paths.surface, tracks(paths), ply)
+    thickness, above = _deposited(paths.surface, [tracks(paths), *_bends(strand)], ply)
     stations = helix_stations(paths, lines, ply.laying.width)
     return LaidLayer(
         paths.surface, paths, None, ply.laying, thickness, above, stations, ply.friction, left_out, ply.roving, strand
@@ -139,12 +140,21 @@ def helical_layer(paths: Paths, ply: Ply, lines: Levels, left_out: int = 0, stra
 
 def hoop_layer(surface: Surface, laid: Hoop, ply: Ply, lines: Levels, strand: Strand | None = None) -> LaidLayer:
     """The layer of a hoop, deposited on its surface with these level lines, and the surface above it."""
-    thickness, above = _deposited(surface, laid.tracks, ply)
+    thickness, above = _deposited(surface, [laid.tracks], ply)
     stations = hoop_stations(laid, lines, ply.laying.width)
     return LaidLayer(surface, None, laid, ply.laying, thickness, above, stations, ply.friction, 0, ply.roving, strand)
 
 
-def _deposited(surface: Surface, laid: Tracks, ply: Ply) -> tuple[Thickness, Raised]:
+def _bends(strand: Strand | None) -> list[Tracks]:
+    """The turnarounds of a layer that lie on the part."""
+    closed = None if strand is None else strand.tail.layer
+    bends = [] if closed is None else [each for each in closed.turnarounds if isinstance(each, Bend)]
+    return [each.tracks for each in bends if each.tracks is not None]
+
+
+def _deposited(surface: Surface, laid: list[Tracks], ply: Ply) -> tuple[Thickness, Raised]:
     """The thickness of fibres that lie there, and the surface above them."""
-    thickness = deposit(surface, laid, ply.laying)
+    thickness, *others = (deposit(surface, each, ply.laying) for each in laid)
+    for other in others:
+        thickness = thickness.and_(other)
     return thickness, raised(surface, thickness, ply.laying.width)

@@ -132,6 +132,16 @@ def to_path(on: Ground, u: float, v: float, to: float, course: Floats) -> Spiral
     return min(map(tried, _LATE), key=lambda way: way.slip)
 
 
+def path_on(on: Ground, u: float, v: float, to: float, courses: tuple[Floats, Floats]) -> Spiral:
+    """A way from (u, v) to the line `to`, at first as paths of one course (k,) lie and at last as those of another."""
+    first, last = (np.asarray(each) for each in courses)
+
+    def mixed(share: Floats, v: Floats, _: Floats) -> Floats:
+        return np.asarray((1.0 - share) * np.interp(v, on.lines.v, first) + share * np.interp(v, on.lines.v, last))
+
+    return on.way(u, v, to, mixed)
+
+
 def between_hoops(on: Ground, u: float, v: float, to: float, friction: float) -> Spiral:
     """A way from a hoop at v to one on the line `to`: as steep as friction holds, or as needs least friction."""
 

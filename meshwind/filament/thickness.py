@@ -1,7 +1,7 @@
 """The thickness of the laminate: the volume of the bands, deposited on the cells of the surface."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -134,6 +134,15 @@ class Thickness:
     def mean(self) -> float:
         """Mean thickness over the area."""
         return self.volume / float(self.area.sum())
+
+    def and_(self, other: "Thickness") -> "Thickness":
+        """The thickness of both, over the same cells."""
+        return replace(
+            self,
+            cells=frozen(self.cells + other.cells),
+            filler=frozen(np.maximum(self.filler, other.filler)),
+            over_rim=self.over_rim + other.over_rim,
+        )
 
     def at(self, uv: Floats) -> Floats:
         """Thickness at uv (n, 2), linear between the centres of the cells."""

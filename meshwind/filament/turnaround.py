@@ -15,14 +15,18 @@ _STEP = np.radians(3.0)
 class Turnaround(Protocol):
     """A turnaround at one end of the part.
 
-    name: its word of `core.defaults.TURNAROUNDS`; edge: the prism that it stands on; rule: how its hold is proved;
-    slip: the largest friction that it needs.
+    name: its word of `core.defaults.TURNAROUNDS`, or "bend" on the part; rule: how its hold is proved; slip: the
+    largest friction that it needs.
     """
 
     name: str
-    edge: Edge
     rule: str
     slip: float
+
+    @property
+    def edge(self) -> Edge:
+        """The prism that it stands on."""
+        ...
 
     def surplus(self, arriving: Legs, leaving: Legs, later: Floats) -> Floats:
         """Turns (n,) to spare from n legs that arrive to those that leave next, at lengths `later` along the hull."""
@@ -63,7 +67,7 @@ def on_prism(edge: Edge, at: Place, angle: Floats, slip: Floats, count: Ints, ki
     around, height = at
     none = np.full(len(around), -1)
     course = Course(
-        edge.points(around, height), edge.normals(around), np.minimum(angle, np.pi - angle), slip,
+        edge.points(around, height), edge.normals(around, height), np.minimum(angle, np.pi - angle), slip,
         np.full(len(around), int(kind)), none, none, none,
     )  # fmt: skip
     return Courses(course, count)

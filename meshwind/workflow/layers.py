@@ -123,13 +123,8 @@ def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options) -> LaidLaye
     helices = Helices(surface, between, ply.friction, lines)
     count, turns = helices.settled(plan.angle, plan.revolutions, plan.paths, ply.laying.width)
     if options.continuous:
-        if between != (0.0, 1.0):
-            raise BadInputError(
-                "a helical layer that ends on the part has no turnaround there; let it go from end to end, or wind "
-                "without continuous (--continuous)"
-            )
         closing = ClosingPlan(
-            count, turns, ply.friction, options.particles, plan.turns(options), 0.5 * ply.laying.width
+            count, turns, ply.friction, options.particles, plan.turns(options), 0.5 * ply.laying.width, between
         )
         closed = close_layer(surface, closing)
         strand = strand_of_paths(closed, below.tail, ground, ply.friction)

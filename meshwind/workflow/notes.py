@@ -9,6 +9,7 @@ from meshwind.chart import Chart
 from meshwind.core.errors import BadInputError
 from meshwind.filament.closing import ClosedLayer
 from meshwind.filament.ends import CAP
+from meshwind.filament.part_turn import Bend
 from meshwind.layup.layup import Layup
 from meshwind.mesh import Annulus, Mesh
 from meshwind.mesh.opening.branches import BRANCHES, CUT
@@ -160,6 +161,15 @@ def about_filament(layer: ClosedLayer, caps: tuple[bool, bool], units: str = "")
     for name, turn in zip(("start", "end"), layer.turnarounds, strict=True):
         held = f"at slip {turn.slip:.3g}" if turn.slip > 0.0 else "without friction"
         notes.append(Note(f"{turn.name} at the {name}{_reach(turn.reach, units)}, {held}: {turn.rule}"))
+        if isinstance(turn, Bend) and turn.slip > turn.steered:
+            needed = f"needs a friction of {turn.slip:.3g}" if np.isfinite(turn.slip) else "lifts off"
+            notes.append(
+                Note(
+                    f"the {turn.name} at the {name} {needed}, and there is {turn.steered:g}: let the layer end where "
+                    "the part is more like a cylinder, or at a rim with pins",
+                    True,
+                )
+            )
         standing = -np.degrees(turn.edge.crease[0])
         if standing > _STANDS_UP:
             notes.append(
@@ -180,7 +190,7 @@ def about_filament(layer: ClosedLayer, caps: tuple[bool, bool], units: str = "")
 
 
 def _reach(reach: float, units: str) -> str:
-    return f", {quantity(reach, units, 3)} beyond the rim" if reach > 0.0 else ""
+    return f", {quantity(reach, units, 3)} beyond it" if reach > 0.0 else ""
 
 
 def about_layup(layup: Layup) -> tuple[Note, ...]:
