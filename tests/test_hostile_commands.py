@@ -26,7 +26,8 @@ KNOWN = {
     "--ends": ["z", "auto", "0,0,0 0,0,3", "loops 0 1", "loops 0 0", "1,2"], "--opening": ["0.2"],
     "--tolerance": ["1e-3"], "--threshold": ["0", "1e-3"], "--worst-fit": ["0.5"], "--units": ["mm"],
     "--particles": ["33", "3"],
-    "--band-width": ["0.1"], "--linear-density": ["1"], "--pins": ["part.obj", "pins.csv"], "--out": ["out", "a/b"],
+    "--band-width": ["0.1"], "--tex": ["800"], "--tows": ["2"], "--band-thickness": ["0.1"],
+    "--pins": ["part.obj", "pins.csv"], "--out": ["out", "a/b"],
 }  # fmt: skip
 ODD = st.one_of(st.sampled_from(STRANGE), st.text(max_size=12), st.floats().map(str), st.integers().map(str))
 OPTION = st.sampled_from(list(KNOWN)).flatmap(

@@ -1,4 +1,4 @@
-"""The whole of a run with revolutions, spacing, band, density and pins, in its files and its report."""
+"""The whole of a run with revolutions, spacing, band, its material and pins, in its files and its report."""
 
 import json
 from pathlib import Path
@@ -36,9 +36,9 @@ def test_auto_winds_within_its_bound_and_says_why(tmp_path: Path) -> None:
     assert np.sum(report["crossings"]["by_region"]) == report["crossings"]["count"]
 
 
-def test_spacing_width_and_density_are_in_the_report(tmp_path: Path) -> None:
+def test_spacing_width_and_mass_are_in_the_report(tmp_path: Path) -> None:
     mw.wind(DATA / "elbow.obj", revolutions=1.0, paths=6, particles=145, spacing=15.0, band_width=4.0,
-            linear_density=0.0012, out=tmp_path, render=False)  # fmt: skip
+            tex=600.0, tows=2, fibre_volume=0.5, out=tmp_path, render=False)  # fmt: skip
     report = json.loads((tmp_path / "report.json").read_text())
     near = report["spacing"]
     assert near["neighbours"]["max"] <= 15.0
@@ -50,7 +50,10 @@ def test_spacing_width_and_density_are_in_the_report(tmp_path: Path) -> None:
     assert sum(cover[share] for share in ("bare", "once", "twice", "more")) == pytest.approx(1.0)
     assert cover["on_part"] == pytest.approx(1.0, abs=5e-3)
     assert cover["bare_caps"] == pytest.approx([np.pi * 30**2] * 2, rel=1e-3)
-    assert report["fibre"]["mass"] == pytest.approx(0.0012 * report["paths"]["length_total"])
+    fibre = report["fibre"]
+    assert fibre["fibre_mass"] == pytest.approx(0.0012 * report["paths"]["length_total"])
+    assert fibre["resin_mass"] == pytest.approx(fibre["fibre_mass"] * 1.2 / 1.8)
+    assert fibre["band_thickness"] == pytest.approx(1.2 / 1.8 / 0.5 / 4.0)
     assert report["quads"]["convex_inner"] >= 0.95
     layers = meshio.read(tmp_path / "surface.vtu").point_data["layers"]
     assert (layers == 0).mean() == pytest.approx(cover["bare"], abs=0.05)

@@ -42,7 +42,13 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"revolutions": "many"}, "revolutions is 'many'; give a number from 0 up"),
     ({"spacing": 0.0}, "spacing is 0; give a number above 0"),
     ({"band_width": float("nan")}, "band_width is nan; give a number above 0"),
-    ({"linear_density": -1.0}, "linear_density is -1; give a number above 0"),
+    ({"tex": -1.0}, "tex is -1; give a number above 0"),
+    ({"tows": 1.5}, "tows is 1.5; give a whole number from 1 up"),
+    ({"fibre_volume": 1.5}, "fibre_volume is 1.5; give a number above 0 and up to 1"),
+    ({"fibre_density": 2.6}, "fibre_density says nothing without tex"),
+    ({"band_thickness": 0.2}, "band_thickness needs the band's width"),
+    ({"band_thickness": 0.2, "tex": 800.0}, "give one of both"),
+    ({"angle": 30.0, "revolutions": 0.5}, "give one of them"),
     ({"pins": ""}, "pins is ''; give the path of a CSV file"),
     ({"pins": 3}, "pins is 3; give the path of a CSV file"),
     ({"pins": "pins.csv", "spacing": 1.0}, "give one of both"),
@@ -92,7 +98,8 @@ def test_the_command_line_has_the_same_defaults() -> None:
     for option in fields(Options):
         default = parameters[option.name].default
         wanted = option.default
-        assert default == (str(wanted) if options_of(Options)[option.name].read else wanted), option.name
+        is_text = options_of(Options)[option.name].read is not None and wanted is not None
+        assert default == (str(wanted) if is_text else wanted), option.name
 
 
 def test_numbers_of_any_kind_are_taken() -> None:
@@ -100,6 +107,7 @@ def test_numbers_of_any_kind_are_taken() -> None:
     assert (options.paths, options.revolutions, options.opening, options.tolerance) == (5, 5 / 12, 2.0, 1.0)
     assert [type(value) for value in (options.paths, options.revolutions, options.opening)] == [int, float, float]
     assert Options(revolutions=100, particles=801).revolutions == 100.0
+    assert (Options().revolutions, Options().turns) == (None, 0.5)
 
 
 def test_a_result_shows_itself_in_one_line() -> None:

@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 
 from meshwind.appearance.words import quantity, ratio, size
+from meshwind.cli.layer_table import layer_table
 from meshwind.core.units import reported_unit
-from meshwind.results.laminate_types import LayerFigures
 from meshwind.results.pattern_types import AlternativeFigures, PatternFigures
 from meshwind.results.redesign_report_types import RedesignFigures, RedesignReport, RoundFigures
-from meshwind.results.report_types import Failure, PathsFigures, Report, SurfaceFigures
+from meshwind.results.report_types import Failure, PathsFigures, Report, StationFigures, SurfaceFigures
 
 
 def run_lines(report: Report) -> list[str]:
@@ -21,7 +21,7 @@ def run_lines(report: Report) -> list[str]:
         *_paths(report["paths"], units),
         *_layup(report, units),
         *_patterns(report.get("pattern", []), units),
-        *(_layer(each, units) for each in report.get("laminate", [])),
+        *layer_table(report, units),
         *_not_converged(report["paths"]["not_converged"], report["paths"]["advice"]["text"]),
         *(f"repair    {act}" for act in part["repairs"]),
         *(note_line(note) for note in report["notes"]),
@@ -75,8 +75,8 @@ def _paths(paths: PathsFigures, units: str) -> list[str]:
 
 
 def _layup(report: Report, units: str) -> list[str]:
-    """Coverage and spacing; the fibre's mass where it is known."""
-    cover, near, fibre = report["coverage"], report["spacing"], report["fibre"]
+    """Coverage and spacing, and the winding angle along the part."""
+    cover, near = report["coverage"], report["spacing"]
     shares = {"bare": cover["bare"], "once": cover["once"], "twice": cover["twice"], "more": cover["more"]}
     covered = ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in shares.items())
     lines = [f"coverage  band {quantity(cover['band_width'], units, 3)}: {covered}"]
@@ -86,9 +86,17 @@ def _layup(report: Report, units: str) -> list[str]:
         many = len(near["partings"])
         lines[0] += f", {'but one pair' if many == 1 else f'but {many} pairs'} that part round a body, by up to "
         lines[0] += quantity(near["widest_parting"], units, 3)
-    if fibre["mass"] is not None:
-        lines.append(f"fibre     {quantity(fibre['length'], units)}, mass {fibre['mass']:.4g}")
+    if report.get("angle_stations"):
+        lines.append(_angles(report["angle_stations"]))
     return lines
+
+
+def _angles(stations: Sequence[StationFigures]) -> str:
+    """The winding angle by station: the median over the paths, and its extremes."""
+    shown = [f"{each['angle']['median']:.1f} at v={each['v']:.3g}" for each in stations[::2]]
+    least = min(each["angle"]["min"] or 0.0 for each in stations)
+    most = max(each["angle"]["max"] or 0.0 for each in stations)
+    return f"angle     {', '.join(shown)} degrees (median of the paths; {least:.1f} to {most:.1f} over all of them)"
 
 
 def _patterns(layers: Sequence[PatternFigures], units: str) -> list[str]:
@@ -124,21 +132,6 @@ def _alternative(each: AlternativeFigures, angle: float) -> str:
 def _turn(layer: PatternFigures, k: int) -> str:
     turn = layer["turnarounds"][k]
     return f"{turn['kind']} at the {turn['end']}"
-
-
-def _layer(layer: LayerFigures, units: str) -> str:
-    """One layer of a laminate."""
-    angle, cover, thick = layer["angle"], layer["cover"], layer["thickness"]
-    many = f"{layer['circuits']} {'passes' if layer['kind'] == 'hoop' else 'paths a family'}"
-    line = (
-        f"layer {layer['layer'] + 1:<4}{layer['kind']:<8}{angle['min']:.1f} to {angle['max']:.1f} degrees, {many}, "
-        f"cover {cover['min']:.3g} to {cover['max']:.3g}; thickness {quantity(thick['min'], units, 3)} to "
-        f"{quantity(thick['max'], units, 3)}, median {quantity(thick['median'], units, 3)}; fibre "
-        f"{quantity(layer['fibre_length'], units)}"
-    )
-    if layer["fibre_mass"] is None or layer["resin_mass"] is None:
-        return line
-    return f"{line}, {layer['fibre_mass']:.4g} g with {layer['resin_mass']:.4g} g of resin"
 
 
 def _not_converged(failures: Sequence[Failure], holds: str) -> list[str]:

@@ -2,6 +2,8 @@
 
 PATHS = 12
 """Paths per family."""
+REVOLUTIONS = 0.5
+"""Turns of a path from end to end."""
 PARTICLES = 401
 """Particles per path: lengths are then right to 1e-5 on paths of up to about one turn."""
 FIT_TOLERANCE = 1e-5

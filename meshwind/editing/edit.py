@@ -137,7 +137,7 @@ def edit(
         raise BadInputError("every control point is frozen; leave some free to move")
     cost = energy(surface, options.fairness)
     problem = _Problem(surface, moves, cost, options.pressing / surface.size, options.bound, limit)
-    revolutions, particles = float(winding.revolutions), winding.particles
+    revolutions, particles = float(winding.turns), winding.particles
     paths = winding.paths or PATHS
     per_gap = -(-surface.control_points.shape[0] // paths)
     ends = families(surface, paths * per_gap, revolutions)

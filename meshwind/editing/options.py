@@ -8,7 +8,8 @@ from typing import Any
 from meshwind.core.errors import BadInputError
 from meshwind.core.option import option
 from meshwind.core.parsing import AUTO
-from meshwind.workflow.options import FIELD, IN_MESH_UNITS
+from meshwind.workflow.option_checks import FIELD
+from meshwind.workflow.options import IN_MESH_UNITS
 
 EDIT = "The edit"
 """Group of these options."""

@@ -53,5 +53,5 @@ def prove(mesh: Mesh, winding: Options, threshold: float | None) -> Proof:
 def prove_fitted(part: Part, winding: Options) -> Proof:
     """Wind a part that is fitted; the number of revolutions must be given."""
     surface = part.surface
-    laid = lay(surface, winding, float(winding.revolutions))
+    laid = lay(surface, winding, float(winding.turns))
     return Proof(part.chart, surface, laid, threshold_of(surface))

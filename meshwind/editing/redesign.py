@@ -227,7 +227,7 @@ def redesign(  # noqa: PLR0913
         after=best.proof,
         stages=stages,
         outcome=outcome,
-        revolutions=float(winding.revolutions),
+        revolutions=float(winding.turns),
         chosen=chosen,
         volume=volume(vertices, faces),
         volume_change=volume_change(source.mesh, best.moves),

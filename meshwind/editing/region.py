@@ -13,7 +13,7 @@ from meshwind.editing.stencil import weights
 from meshwind.mesh import Annulus
 from meshwind.mesh.io.scalars import Scalars
 from meshwind.surface.surface import Surface
-from meshwind.workflow.options import FIELD
+from meshwind.workflow.option_checks import FIELD
 from meshwind.workflow.part import MeshLike, on_wound_skin, read_field
 
 SAMPLES_PER_SPAN = 6

@@ -28,9 +28,9 @@ def write_fibers(folder: Path, elements: Elements, laid: Plies, units: str = "")
 def cell_data(laid: Plies) -> dict[str, Floats]:
     """Fields of k cells; those of family +1 are numbered 1, those of family -1 are numbered 2.
 
-    fibre_1 and its alias FIB_DIR1 (k, 3) unit tangents of the fibres; angle_1 (k,) in degrees from the meridian, 0
-    along the part, positive towards growing u; layers_1, thickness_1 (k,) in mesh units; thickness (k,) of both
-    together; normal (k, 3) outward.
+    fibre_1 and its alias FIB_DIR1 (k, 3) unit tangents of the fibres; angle_1 (k,) in degrees from the direction
+    along the part, square to the level line of v, positive towards growing u; layers_1, thickness_1 (k,) in mesh units;
+    thickness (k,) of both together; normal (k, 3) outward.
     """
     data: dict[str, Floats] = {}
     for ply in laid.families:

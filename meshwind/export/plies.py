@@ -8,7 +8,8 @@ from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.export.elements import Elements
 from meshwind.layup.coverage import coverage
-from meshwind.layup.direction import axes, directions, fibres_of
+from meshwind.layup.direction import directions, fibres_of
+from meshwind.path.winding_angle import axes
 from meshwind.results.reading import Results
 
 LAYER = 1e-3
@@ -19,7 +20,8 @@ LAYER = 1e-3
 class Ply:
     """One family on k elements: unit tangent of the fibres (k, 3), their angle (k,), layers (k,), thickness (k,).
 
-    The angle is in radians from the meridian s_v, positive towards s_u; thickness is layers times that of one layer.
+    The angle is in radians from the direction along the part, square to the level line of v, and positive towards s_u;
+    thickness is layers times that of one layer.
     """
 
     family: int

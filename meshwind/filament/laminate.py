@@ -45,6 +45,8 @@ class LaidLayer:
         What its band is made of, where that is known.
     strand : Strand or None
         Its fibre in the laminate's filament, and the join that leads to it, where the layers are one.
+    shortfall : str
+        What was wound instead of an angle that is out of reach, and why; "" where it is met.
     """
 
     surface: Surface
@@ -58,6 +60,7 @@ class LaidLayer:
     left_out: int = 0
     roving: Roving | None = None
     strand: Strand | None = None
+    shortfall: str = ""
 
     @property
     def closed(self) -> ClosedLayer | None:

@@ -88,7 +88,7 @@ def station(place: float | str, lines: Levels) -> float:
     ----------
     place : float or str
         v from 0 to 1 as a number or as "v=0.3"; "z=120" for a height along the axis, in the part's coordinates;
-        "fraction=0.3" for a share of the mean length along the part.
+        "fraction=0.3" for a share of the mean length along the part; in capitals, too.
     lines : Levels
         The surface's level lines.
 
@@ -124,7 +124,7 @@ def _named(place: float | str) -> tuple[str, float]:
         value = float(text)
     except ValueError:
         value = np.nan
-    name = name.strip() or "v"
+    name = name.strip().lower() or "v"
     if name not in ("v", "z", "fraction") or not np.isfinite(value):
         raise BadInputError(
             f"{shortened(repr(place))} is no place along the part; give a v from 0 to 1, z=120 or fraction=0.3"

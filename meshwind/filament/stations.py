@@ -3,12 +3,15 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
-from meshwind.core.cast import Floats, frozen
+from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.filament.hoop import Hoop
 from meshwind.filament.levels import Levels
 from meshwind.path.paths import Paths
 from meshwind.path.winding_angle import winding_angle
+from meshwind.surface.evaluate import SU
+from meshwind.surface.grid import rings
 
 STATIONS = 65
 """Level lines, evenly spaced in v, on which figures along the part are given."""
@@ -27,13 +30,18 @@ class Stations:
     angle : ndarray of float, shape (k,)
         Median winding angle in radians, from the normal of the level line in the surface: 0 along the part, pi/2 hoop.
     cover : ndarray of float, shape (k,)
-        Cover factor: 1 where one family's bands, or the hoop's turns of one pass, lie edge to edge on average.
+        Cover factor: 1 where the bands of the family that covers less, or the hoop's turns of one pass, lie edge to
+        edge on average.
+    least, most : ndarray of float, shape (k,)
+        Smallest and largest winding angle over the paths, in radians.
     """
 
     v: Floats
     height: Floats
     angle: Floats
     cover: Floats
+    least: Floats
+    most: Floats
 
     @property
     def angles(self) -> tuple[float, float, float]:
@@ -53,12 +61,51 @@ def angles_at(paths: Paths, v: Floats) -> Floats:
 
     Where a path passes a line several times it is the first time.
     """
-    p, angle = len(paths), winding_angle(paths)
+    return _passing(paths, winding_angle(paths), v)
+
+
+def _passing(paths: Paths, values: Floats, v: Floats) -> Floats:
+    """Values (p, k) of paths, known at particles (p, n), where they first pass level lines v (k,); NaN where not."""
     height = np.maximum.accumulate(paths.uv[..., 1], axis=1)
-    apart = 3.0 * np.arange(p)[:, None]  # v is in [0, 1]: one row of all paths, on which they do not meet
-    found = np.interp(np.clip(v, -1.0, 2.0)[None] + apart, (height + apart).ravel(), angle.ravel())
+    apart = 3.0 * np.arange(len(paths))[:, None]  # v is in [0, 1]: one row of all paths, on which they do not meet
+    found = np.interp(np.clip(v, -1.0, 2.0)[None] + apart, (height + apart).ravel(), values.ravel())
     passed = (v[None] >= height[:, :1] - 1e-12) & (v[None] <= height[:, -1:] + 1e-12)
     return np.asarray(np.where(passed, found, np.nan))
+
+
+def to_cover(paths: Paths, v: Floats) -> tuple[Floats, Ints]:
+    """What each of f families has to cover (f, k) on level lines v (k,), and its number of paths (f,).
+
+    It is the integral of the cosine of the winding angle along the line, a smooth function through its values at the
+    paths; NaN where none passes.
+    """
+    surface, families = paths.surface, np.unique(paths.family)
+    angle, u = angles_at(paths, v), _passing(paths, paths.uv[..., 0], v)
+    many = _AROUND * surface.spans[0]
+    around = np.arange(many) / many
+    speed = np.linalg.norm(rings(surface, v, many)[:, :, SU], axis=2)
+    needed = np.full((len(families), len(v)), np.nan)
+    for row, family in enumerate(families):
+        mine = paths.family == family
+        for k in np.flatnonzero(np.isfinite(angle[mine]).any(axis=0)):
+            here = mine & np.isfinite(angle[:, k])
+            needed[row, k] = (_around(u[here, k], np.cos(angle[here, k]), around) * speed[k]).mean()
+    return needed, np.array([(paths.family == family).sum() for family in families], dtype=np.int64)
+
+
+def _around(u: Floats, values: Floats, at: Floats) -> Floats:
+    """Values (m,) at `at`, from values (p,) at u in turns, smooth without overshoot and with the period 1."""
+    place, first = np.unique(np.mod(u, 1.0), return_index=True)
+    padded = np.concatenate([place - 1.0, place, place + 1.0])
+    return np.asarray(PchipInterpolator(padded, np.tile(values[first], 3))(at))
+
+
+def covers(paths: Paths, v: Floats, width: float) -> Floats:
+    """Cover factors (k,) on level lines v (k,) of the family that covers less; NaN where no path passes."""
+    needed, many = to_cover(paths, v)
+    laid = width * many[:, None]
+    cover = np.divide(laid, needed, out=np.full(needed.shape, np.inf), where=needed > 0.0)
+    return np.asarray(np.where(np.isnan(needed), np.nan, cover).min(axis=0))
 
 
 def helix_stations(paths: Paths, lines: Levels, width: float) -> Stations:
@@ -66,15 +113,11 @@ def helix_stations(paths: Paths, lines: Levels, width: float) -> Stations:
     v = np.linspace(0.0, 1.0, STATIONS)
     angle = angles_at(paths, v)
     here = np.isfinite(angle).any(axis=0)
-    median, cosine = np.full(STATIONS, np.nan), np.full(STATIONS, np.nan)
-    median[here] = np.nanmedian(angle[:, here], axis=0)
-    cosine[here] = np.nanmean(np.cos(angle[:, here]), axis=0)
-    families = max(len(np.unique(paths.family)), 1)
-    square = np.interp(v, lines.v, lines.length) * cosine  # what one family has to cover
-    cover = np.divide(len(paths) / families * width, square, out=np.full(STATIONS, np.inf), where=square > 0.0)
-    return Stations(
-        frozen(v), frozen(np.interp(v, lines.v, lines.height)), frozen(median), frozen(np.where(here, cover, np.nan))
-    )  # fmt: skip
+    spread = np.full((3, STATIONS), np.nan)
+    spread[:, here] = np.nanquantile(angle[:, here], [0.0, 0.5, 1.0], axis=0)
+    height = np.interp(v, lines.v, lines.height)
+    least, median, most = spread
+    return Stations(*map(frozen, (v, height, median, covers(paths, v, width), least, most)))
 
 
 def hoop_stations(laid: Hoop, lines: Levels, width: float) -> Stations:
@@ -86,18 +129,18 @@ def hoop_stations(laid: Hoop, lines: Levels, width: float) -> Stations:
     angle = np.interp(v, along[order], laid.course.angle[order])
     apart = lines.apart.mean(axis=1) / lines.apart.max(axis=1) * laid.pitch
     cover = width / np.interp(v, lines.v, apart)
-    return Stations(
-        frozen(v), frozen(np.interp(v, lines.v, lines.height)), frozen(np.where(here, angle, np.nan)),
-        frozen(np.where(here, cover, np.nan)),
-    )  # fmt: skip
+    height = np.interp(v, lines.v, lines.height)
+    angle, cover = np.where(here, angle, np.nan), np.where(here, cover, np.nan)
+    return Stations(*map(frozen, (v, height, angle, cover, angle, angle)))
 
 
 def circuits_to_cover(paths: Paths, lines: Levels, width: float) -> int:
-    """Paths a family that cover the part: the largest over v of (length of the level times mean cosine) over width."""
-    cover = helix_stations(paths, lines, width).covers[0]
-    families = max(len(np.unique(paths.family)), 1)
-    return max(int(np.ceil(len(paths) / families / cover - _SLACK)), 1)
+    """Paths of each family with which the bands of both cover the part on every level line, at the angles of these."""
+    needed, _ = to_cover(paths, lines.v)
+    return max(int(np.ceil(np.nanmax(needed) / width * (1.0 - COVERED))), 1)
 
 
-_SLACK = 1e-6
-"""A band that is too narrow by less than this share of one circuit covers all the same."""
+COVERED = 1e-6
+"""Bands that are too narrow by less than this share cover all the same."""
+_AROUND = 4
+"""Points around a level line for each span of the surface, between which the integral is a sum."""

@@ -11,9 +11,9 @@ from meshwind.core.cast import Floats, Ints
 from meshwind.core.lists import spread
 from meshwind.core.vectors import unit
 from meshwind.path.paths import Paths, converged_or_all
-from meshwind.surface.evaluate import SU, SV
+from meshwind.path.winding_angle import axes, headings
+from meshwind.path.winding_angle import winding_angle as angle_of
 from meshwind.surface.grid import MOST, PER_SPAN
-from meshwind.surface.surface import Surface
 
 
 def fibres_of(paths: Paths, family: int) -> Paths:
@@ -21,22 +21,15 @@ def fibres_of(paths: Paths, family: int) -> Paths:
     return paths.subset(converged_or_all(paths.status, paths.family == family))
 
 
-def axes(surface: Surface, uv: Floats) -> tuple[Floats, Floats, Floats]:
-    """Unit vectors (k, 3) at uv (k, 2): along the meridian s_v, across it towards s_u, and the outward normal."""
-    frames = surface.frames(uv)
-    along, normal = unit(frames[:, SV]), unit(np.cross(frames[:, SU], frames[:, SV]))
-    return along, np.cross(along, normal), normal
-
-
 def winding_angle(paths: Paths, nu: int, nv: int) -> Floats:
-    """Angle (nu, nv) between the fibres of family +1 and the meridian s_v, in radians, 0 along v, pi/2 hoop.
+    """Winding angle (nu, nv) of the fibres of family +1, in radians, as `meshwind.path.winding_angle` defines it.
 
     On the points of `grid`; 0 where there is no fibre of the family.
     """
     mine = fibres_of(paths, 1)
     u = np.arange(nu) / nu if paths.surface.periodic else np.linspace(0.0, 1.0, nu)
     at = _passages(mine, nv)
-    first, last = _ends(_angles(mine))
+    first, last = _ends(angle_of(mine))
     angle = first[at.segment] + at.share * (last[at.segment] - first[at.segment])
     return _spread(at, angle, u, nv, paths.surface.periodic)
 
@@ -44,7 +37,8 @@ def winding_angle(paths: Paths, nu: int, nv: int) -> Floats:
 def directions(paths: Paths, uv: Floats) -> tuple[Floats, Floats]:
     """Unit tangents (k, 3) of the fibres at uv (k, 2) and their angle (k,) in radians.
 
-    The angle is from the meridian s_v, 0 along the part, positive towards s_u; between the rows it is linear, too.
+    The angle is from the direction along the part, square to the level line of v, and positive towards s_u; between the
+    rows it is linear, too.
     """
     surface = paths.surface
     nu, nv = (min(PER_SPAN * spans, MOST) + 1 for spans in surface.spans)
@@ -61,8 +55,8 @@ def directions(paths: Paths, uv: Floats) -> tuple[Floats, Floats]:
     above = (1.0 - f) * field[i, j + 1] + f * field[i + 1, j + 1]
     mixed = unit((1.0 - g) * below + g * above)
     mixed = np.where((mixed == 0.0).all(axis=1)[:, None], [1.0, 0.0], mixed)
-    along, across, _ = axes(surface, uv)
-    return mixed[:, :1] * along + mixed[:, 1:] * across, np.arctan2(mixed[:, 1], mixed[:, 0])
+    along, around, _ = axes(surface, uv)
+    return mixed[:, :1] * along + mixed[:, 1:] * around, np.arctan2(mixed[:, 1], mixed[:, 0])
 
 
 @dataclass(frozen=True)
@@ -117,24 +111,6 @@ def _spread(at: _Passages, values: Floats, u: Floats, nv: int, closed: bool) -> 
     return np.ascontiguousarray(field[:, nearest])
 
 
-def _angles(paths: Paths) -> Floats:
-    """Angle (p, n) between each fibre's direction and the meridian, 0 to pi/2, at the particle or its foot."""
-    tangent, frames = _tangents(paths)
-    meridian = frames[:, SV]
-    across = np.linalg.norm(np.cross(tangent, meridian), axis=1)
-    return np.asarray(np.arctan2(across, np.abs((tangent * meridian).sum(axis=1))).reshape(paths.gap.shape))
-
-
 def _headings(paths: Paths) -> Floats:
-    """Cosine and sine (p, n, 2) of the angle of each path from the meridian, at the particle or its foot."""
-    tangent, _ = _tangents(paths)
-    along, across, _ = axes(paths.surface, np.ascontiguousarray(paths.uv.reshape(-1, 2)))
-    both = np.stack([(tangent * along).sum(axis=1), (tangent * across).sum(axis=1)], axis=1)
-    return unit(both).reshape(paths.uv.shape)
-
-
-def _tangents(paths: Paths) -> tuple[Floats, Floats]:
-    """Tangents (p n, 3) of the fibres, of any length, and the surface's frames (p n, 6, 3), at particles or feet."""
-    frames = paths.surface.frames(np.ascontiguousarray(paths.uv.reshape(-1, 2)))
-    step = np.gradient(paths.uv, axis=1).reshape(-1, 2)
-    return frames[:, SU] * step[:, :1] + frames[:, SV] * step[:, 1:], frames
+    """Cosine and sine (p, n, 2) of the angle of each path from the direction along the part, at particle or foot."""
+    return unit(np.stack(headings(paths), axis=1)).reshape(paths.uv.shape)

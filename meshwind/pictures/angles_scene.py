@@ -3,7 +3,7 @@
 import numpy as np
 
 from meshwind.filament.levels import levels
-from meshwind.filament.stations import angles_at, helix_stations
+from meshwind.filament.stations import helix_stations
 from meshwind.path.paths import converged_or_all
 from meshwind.pictures.scenes import AnglesScene
 from meshwind.pictures.subject import Subject
@@ -14,9 +14,8 @@ def angles_scene(of: Subject) -> AnglesScene:
     paths = of.paths.subset(converged_or_all(of.paths.status))
     width, lines = of.layup.coverage.width, levels(paths.surface)
     at = helix_stations(paths, lines, width)
-    angle = np.degrees(angles_at(paths, at.v))
-    here = np.isfinite(angle).any(axis=0) & np.isfinite(at.cover)
-    spread = np.nanquantile(angle[:, here], [0.0, 0.5, 1.0], axis=0)
+    here = np.isfinite(at.angle) & np.isfinite(at.cover)
+    spread = np.degrees(np.stack([at.least, at.angle, at.most])[:, here])
     cover = at.cover[here] if width > 0.0 else None
     subtitle = f"{spread[0].min():.1f}° to {spread[2].max():.1f}°, median {np.median(spread[1]):.1f}°"
     if cover is not None:

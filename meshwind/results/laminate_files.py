@@ -1,5 +1,6 @@
 """The laminate's files and figures: what each layer is, along the part and over it."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,9 +11,12 @@ from meshwind.core.cast import Floats
 from meshwind.core.units import MILLIMETRES, millimetres
 from meshwind.filament.joins import Strand
 from meshwind.filament.laminate import LaidLayer, Laminate
+from meshwind.filament.stations import Stations
+from meshwind.filament.thickness import Thickness
 from meshwind.layup.direction import winding_angle
 from meshwind.results import schema
 from meshwind.results.laminate_types import JoinFigures, LayerFigures
+from meshwind.results.station_figures import angle_figures, cover_figures, thickness_figures
 from meshwind.results.vtk_files import write_faces, write_lines
 from meshwind.surface.grid import Grid, grid
 
@@ -21,7 +25,7 @@ _HEAD = "v,z,layer,angle,thickness,cover"
 
 def write_laminate(out: Path, laminate: Laminate, units: str = "") -> None:
     """Write laminate.csv, laminate.vtu, laminate.npz and layers.vtp into an existing folder."""
-    _write_stations(out / schema.STATIONS, laminate)
+    write_stations(out / schema.STATIONS, [(layer.stations, layer.thickness) for layer in laminate.layers])
     _write_maps(out / schema.LAMINATE, laminate, units)
     _write_fibres(out / schema.LAYER_FIBRES, laminate, units)
     with (out / schema.LAYER_SURFACES).open("wb") as file:
@@ -30,18 +34,18 @@ def write_laminate(out: Path, laminate: Laminate, units: str = "") -> None:
         np.savez(file, **arrays)
 
 
-def _write_stations(path: Path, laminate: Laminate) -> None:
-    """A row for each station and layer; a layer has none where it is not."""
+def write_stations(path: Path, layers: Sequence[tuple[Stations, Thickness | None]]) -> None:
+    """A row for each station and layer; a layer has none where it is not, and no thickness where that is not known."""
     with path.open("w", encoding="ascii") as file:
         file.write(f"{_HEAD}\n")
-        for number, layer in enumerate(laminate.layers):
-            at = layer.stations
-            rings = layer.thickness.along()
-            thickness = np.interp(at.v, (np.arange(len(rings)) + 0.5) / len(rings), rings)
+        for number, (at, over) in enumerate(layers):
             here = np.isfinite(at.angle)
-            column = np.full(len(at.v), number)
-            rows = np.stack([at.v, at.height, column, np.degrees(at.angle), thickness, at.cover], axis=1)[here]
-            np.savetxt(file, rows, fmt="%.17g,%.17g,%d,%.17g,%.17g,%.17g")
+            columns = [at.v, at.height, np.full(len(at.v), number), np.degrees(at.angle), at.cover]
+            if over is not None:
+                rings = over.along()
+                columns.insert(4, np.interp(at.v, (np.arange(len(rings)) + 0.5) / len(rings), rings))
+            thickness = "" if over is None else "%.17g"
+            np.savetxt(file, np.stack(columns, axis=1)[here], fmt=f"%.17g,%.17g,%d,%.17g,{thickness},%.17g")
 
 
 def _write_maps(path: Path, laminate: Laminate, units: str) -> None:
@@ -95,8 +99,6 @@ def laminate_figures(laminate: Laminate, units: str = "") -> list[LayerFigures]:
 
 
 def _layer_figures(number: int, layer: LaidLayer, units: str) -> LayerFigures:
-    least, median, most = np.degrees(layer.stations.angles)
-    cover = layer.stations.covers
     length, thickness, roving = layer.fibre_length, layer.thickness, layer.roving
     scale = millimetres(units) if units in MILLIMETRES else 1.0
     hoop = layer.hoop
@@ -109,9 +111,9 @@ def _layer_figures(number: int, layer: LaidLayer, units: str) -> LayerFigures:
         "band_width": layer.laying.width,
         "band_thickness": layer.laying.thickness,
         "bridges": layer.laying.bridges,
-        "angle": {"min": float(least), "median": float(median), "max": float(most)},
-        "cover": {"min": cover[0], "max": cover[1]},
-        "thickness": {"min": thickness.min, "median": thickness.median, "max": thickness.max},
+        "angle": angle_figures(layer.stations),
+        "cover": cover_figures(layer.stations),
+        "thickness": thickness_figures(thickness),
         "fibre_length": length,
         "volume": thickness.volume,
         "over_rim": thickness.over_rim / thickness.volume,

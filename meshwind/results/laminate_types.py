@@ -2,20 +2,7 @@
 
 from typing import TypedDict
 
-
-class SpreadOut(TypedDict):
-    """Least, median and largest."""
-
-    min: float
-    median: float
-    max: float
-
-
-class CoverOut(TypedDict):
-    """Least and largest cover factor."""
-
-    min: float
-    max: float
+from meshwind.results.pattern_types import CoverFigures, Spread
 
 
 class HoldFigures(TypedDict):
@@ -62,9 +49,9 @@ class LayerFigures(TypedDict):
     band_width: float
     band_thickness: float
     bridges: str
-    angle: SpreadOut
-    cover: CoverOut
-    thickness: SpreadOut
+    angle: Spread
+    cover: CoverFigures
+    thickness: Spread
     fibre_length: float
     volume: float
     over_rim: float

@@ -3,6 +3,7 @@
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.filament.plain_layer import PlainLayer
 from meshwind.layup.crossings import Crossings, counts
 from meshwind.layup.layup import Layup
 from meshwind.layup.windability import CONCAVE, CONVEX, SADDLE, Windability
@@ -19,12 +20,13 @@ from meshwind.results.report_types import (
     SpacingFigures,
     WindabilityFigures,
 )
+from meshwind.results.station_figures import angle_figures, cover_figures, thickness_figures
 
 REGIONS = (4, 8)
 """Number of equal parts of u and of v in which crossings are counted."""
 
 
-def parallel_for(values: Floats) -> Spread:
+def spread_figures(values: Floats) -> Spread:
     """Minimum, median and maximum; None if there are no values."""
     if not len(values):
         return {"min": None, "median": None, "max": None}
@@ -35,8 +37,8 @@ def crossing_figures(crossings: Crossings, own: int) -> CrossingFigures:
     """Angles in degrees, quality as |cos|, counts by region; own: crossings of fibres of the same family."""
     return {
         "count": len(crossings),
-        "angle": parallel_for(np.degrees(crossings.angle)),
-        "quality": parallel_for(np.abs(np.cos(crossings.angle))),
+        "angle": spread_figures(np.degrees(crossings.angle)),
+        "quality": spread_figures(np.abs(np.cos(crossings.angle))),
         "off_surface": int((~crossings.on_surface).sum()),
         "own_family": own,
         "by_region": counts(crossings, *REGIONS).tolist(),
@@ -67,9 +69,9 @@ def spacing_figures(layup: Layup, spaced: Spaced | None) -> SpacingFigures:
     near, width = layup.neighbours, layup.coverage.width
     largest = near.largest
     figures: SpacingFigures = {
-        "neighbours": parallel_for(largest),
-        "d1": parallel_for(layup.sides.d1),
-        "d2": parallel_for(layup.sides.d2),
+        "neighbours": spread_figures(largest),
+        "d1": spread_figures(layup.sides.d1),
+        "d2": spread_figures(layup.sides.d2),
         "widest_gap": max(float(largest.max(initial=width)) - width, 0.0),
         "neighbours_apart": float((largest > width).mean()) if len(largest) else None,
         "partings": parted(layup, spaced).tolist(),
@@ -110,9 +112,9 @@ def quad_figures(layup: Layup) -> QuadFigures:
         "quads": len(mesh.quads),
         "triangles": len(mesh.triangles),
         "convex_inner": quality.convex_share,
-        "scaled_jacobian": parallel_for(quality.jacobian),
-        "aspect": parallel_for(quality.aspect),
-        "warp": parallel_for(quality.warp),
+        "scaled_jacobian": spread_figures(quality.jacobian),
+        "aspect": spread_figures(quality.aspect),
+        "warp": spread_figures(quality.warp),
         "off_surface_points": int((~mesh.on_surface).sum()),
         "left_out": list(mesh.left_out),
         "of": "windings as asked for" if layup.initial else "paths",
@@ -120,11 +122,19 @@ def quad_figures(layup: Layup) -> QuadFigures:
     }
 
 
-def fibre_figures(layup: Layup, linear_density: float | None) -> FibreFigures:
-    """Length of all fibres, and their mass where the linear density is known."""
-    length = float(layup.paths.length.sum())
-    mass = None if linear_density is None else linear_density * length
-    return {"length": length, "linear_density": linear_density, "mass": mass}
+def fibre_figures(layup: Layup, plain: PlainLayer) -> FibreFigures:
+    """The fibres on the part as a layer, as far as its band is known."""
+    length, at = float(layup.paths.length.sum()), plain.stations
+    fibre, resin = plain.band.masses(length)
+    return {
+        "length": length,
+        "fibre_mass": fibre,
+        "resin_mass": resin,
+        "band_thickness": plain.band.thickness,
+        "thickness": None if plain.thickness is None else thickness_figures(plain.thickness),
+        "angle": None if at is None else angle_figures(at),
+        "cover": None if at is None else cover_figures(at),
+    }
 
 
 def revolution_figures(chosen: Revolutions) -> RevolutionFigures:

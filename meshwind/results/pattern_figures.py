@@ -3,24 +3,22 @@
 import numpy as np
 
 from meshwind.core.cast import Floats
-from meshwind.core.units import MILLIMETRES, millimetres
 from meshwind.filament.alternatives import alternatives
 from meshwind.filament.closing import ClosedLayer
 from meshwind.filament.filament import Filament
 from meshwind.filament.laminate import LaidLayer, Laminate
-from meshwind.filament.levels import levels
 from meshwind.filament.pin_turn import Pins, Shaft
-from meshwind.filament.stations import helix_stations
-from meshwind.path.winding_angle import winding_angle
+from meshwind.filament.plain_layer import Band, PlainLayer
 from meshwind.results.pattern_types import AlternativeFigures, MeanSpread, PatternFigures, TurnaroundFigures
+from meshwind.results.station_figures import angle_figures, cover_figures, thickness_figures
 
 
-def pattern_figures(layer: ClosedLayer, width: float, linear_density: float | None = None) -> PatternFigures:
-    """The figures of one closed layer; width: of its band; linear_density: mass of the fibre over its length."""
-    pattern, joining = layer.pattern, layer.joining
-    angle = np.degrees(winding_angle(layer.paths))
-    median = float(np.median(angle))
-    cover = helix_stations(layer.paths, levels(layer.paths.surface), width).covers
+def pattern_figures(layer: ClosedLayer, plain: PlainLayer) -> PatternFigures:
+    """The figures of one closed layer, and of what it is on the part."""
+    pattern, joining, at = layer.pattern, layer.joining, plain.stations
+    assert at is not None
+    angle = angle_figures(at)
+    fibre, resin = plain.band.masses(layer.length)
     dwells = float(joining.start_dwell.mean() + joining.end_dwell.mean())
     return {
         "circuits": pattern.circuits,
@@ -32,11 +30,13 @@ def pattern_figures(layer: ClosedLayer, width: float, linear_density: float | No
         "words": pattern.words,
         "revolutions": {"asked": layer.plan.revolutions, "wound": layer.revolutions},
         "dwell": {"start": mean_spread(joining.start_dwell), "end": mean_spread(joining.end_dwell)},
-        "angle": {"min": float(angle.min()), "median": median, "max": float(angle.max())},
+        "angle": angle,
         "turnarounds": turnaround_figures(layer),
-        "cover": {"min": cover[0], "max": cover[1]},
+        "cover": cover_figures(at),
+        "thickness": None if plain.thickness is None else thickness_figures(plain.thickness),
         "fibre_length": layer.length,
-        "fibre_mass": None if linear_density is None else linear_density * layer.length,
+        "fibre_mass": fibre,
+        "resin_mass": resin,
         "left_out": layer.left_out,
         "alternatives": [
             AlternativeFigures(
@@ -49,7 +49,7 @@ def pattern_figures(layer: ClosedLayer, width: float, linear_density: float | No
                 cover=each.cover,
                 dwell=each.dwell if dwells > 0.0 else None,
             )
-            for each in alternatives(pattern, layer.revolutions, dwells, median)
+            for each in alternatives(pattern, layer.revolutions, dwells, angle["median"] or 0.0)
         ],
     }
 
@@ -64,31 +64,31 @@ def patterns_of_layers(laminate: Laminate, filament: Filament, units: str = "") 
 
 def _of_layer(layer: LaidLayer, length: float, units: str) -> PatternFigures:
     """The figures of one of several layers, whose fibre is so long."""
-    closed, roving = layer.closed, layer.roving
-    scale = millimetres(units) if units in MILLIMETRES else 1.0
-    mass = None if roving is None else roving.fibre_mass(length * scale)
+    closed, hoop = layer.closed, layer.hoop
+    band = Band(layer.laying.width, layer.laying.thickness, layer.roving, units)
+    fibre, resin = band.masses(length)
     if closed is not None:
-        figures = pattern_figures(closed, layer.laying.width)
-        return {**figures, "fibre_length": length, "fibre_mass": mass}
-    assert layer.hoop is not None
-    least, median, most = np.degrees(layer.stations.angles)
-    cover, turns = layer.stations.covers, layer.hoop.turns
+        figures = pattern_figures(closed, PlainLayer(band, layer.stations, layer.thickness))
+        return {**figures, "fibre_length": length, "fibre_mass": fibre, "resin_mass": resin}
+    assert hoop is not None
     none: MeanSpread = {"min": 0.0, "mean": 0.0, "max": 0.0}
     return {
         "circuits": 1,
         "shift": 0,
-        "turns": round(turns),
+        "turns": round(hoop.turns),
         "pattern_number": 0,
         "leading": False,
         "filaments": 1,
-        "words": f"a hoop of {turns:.1f} turns, {layer.circuits} passes",
-        "revolutions": {"asked": turns, "wound": turns},
+        "words": f"a hoop of {hoop.turns:.1f} turns, {layer.circuits} passes",
+        "revolutions": {"asked": hoop.turns, "wound": hoop.turns},
         "dwell": {"start": none, "end": none},
-        "angle": {"min": float(least), "median": float(median), "max": float(most)},
+        "angle": angle_figures(layer.stations),
         "turnarounds": [],
-        "cover": {"min": cover[0], "max": cover[1]},
+        "cover": cover_figures(layer.stations),
+        "thickness": thickness_figures(layer.thickness),
         "fibre_length": length,
-        "fibre_mass": mass,
+        "fibre_mass": fibre,
+        "resin_mass": resin,
         "left_out": 0,
         "alternatives": [],
     }

@@ -68,7 +68,10 @@ class AlternativeFigures(TypedDict):
 
 
 class PatternFigures(TypedDict):
-    """A layer that is closed: N circuits in M turns, each K places ahead of the one before."""
+    """A layer that is closed: N circuits in M turns, each K places ahead of the one before.
+
+    angle, cover, thickness are those on the part, by station and cell; lengths and masses, in g, have the turnarounds.
+    """
 
     circuits: int
     shift: int
@@ -82,7 +85,9 @@ class PatternFigures(TypedDict):
     angle: Spread
     turnarounds: list[TurnaroundFigures]
     cover: CoverFigures
+    thickness: Spread | None
     fibre_length: float
     fibre_mass: float | None
+    resin_mass: float | None
     left_out: int
     alternatives: list[AlternativeFigures]

@@ -15,6 +15,7 @@ from meshwind.core.version import version
 from meshwind.filament.closing import ClosedLayer
 from meshwind.filament.filament import Filament
 from meshwind.filament.laminate import Laminate
+from meshwind.filament.plain_layer import PlainLayer
 from meshwind.layup.layup import Layup
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.path.paths import Paths, Status
@@ -45,6 +46,7 @@ from meshwind.results.report_types import (
     SurfaceFigures,
     WindingFigures,
 )
+from meshwind.results.station_figures import station_figures
 from meshwind.surface.surface import Surface
 
 
@@ -53,7 +55,7 @@ class RunFacts:
     """Facts about a run, beside its layup, for the report.
 
     tolerance: that of the fit; seconds: wall time per stage; notes: messages for the user; chosen, spaced: how
-    revolutions and spacing were found, if they were; linear_density: mass of the fibre over its length;
+    revolutions and spacing were found, if they were; plain: the layer that the paths are;
     closed: the layer, if it is wound as one filament; laminate: the layers, where the run has any.
     """
 
@@ -64,7 +66,7 @@ class RunFacts:
     notes: Sequence[str] = ()
     chosen: Revolutions | None = None
     spaced: Spaced | None = None
-    linear_density: float | None = None
+    plain: PlainLayer = field(default_factory=PlainLayer)
     closed: ClosedLayer | None = None
     laminate: Laminate | None = None
     filaments: Sequence[Filament] = ()
@@ -88,17 +90,19 @@ def report(layup: Layup, mesh: Mesh, chart: Chart | None, run: RunFacts) -> Repo
         "spacing": spacing_figures(layup, run.spaced),
         "windability": windability_figures(layup.windability),
         "quads": quad_figures(layup),
-        "fibre": fibre_figures(layup, run.linear_density),
+        "fibre": fibre_figures(layup, run.plain),
         "model": _model(paths),
         "seconds": dict(run.seconds),
         "notes": list(run.notes),
     }
     if run.chosen is not None:
         figures["revolutions"] = revolution_figures(run.chosen)
+    if run.plain.stations is not None:
+        figures["angle_stations"] = station_figures(run.plain.stations)
     if run.laminate is not None and run.filaments:
         figures["pattern"] = patterns_of_layers(run.laminate, run.filaments[0], mesh.units)
     elif run.closed is not None:
-        figures["pattern"] = [pattern_figures(run.closed, layup.coverage.width, run.linear_density)]
+        figures["pattern"] = [pattern_figures(run.closed, run.plain)]
     if run.laminate is not None:
         figures["laminate"] = laminate_figures(run.laminate, mesh.units)
     result: Report = plain(figures)

@@ -6,7 +6,7 @@ Lengths are in the mesh's units, angles in degrees, shares from 0 to 1; None is 
 from typing import NotRequired, TypedDict, final
 
 from meshwind.results.laminate_types import LayerFigures
-from meshwind.results.pattern_types import PatternFigures, Spread
+from meshwind.results.pattern_types import CoverFigures, PatternFigures, Spread
 
 
 class WallFigures(TypedDict):
@@ -246,11 +246,27 @@ class QuadFigures(TypedDict):
 
 
 class FibreFigures(TypedDict):
-    """Length of all fibres, and their mass if the linear density is known."""
+    """The fibres on the part as a layer: length, masses in g, thickness over the part, angle and cover along it.
+
+    Masses are None where tex is not known, thickness where that of the band is not, angle and cover on open surfaces.
+    """
 
     length: float
-    linear_density: float | None
-    mass: float | None
+    fibre_mass: float | None
+    resin_mass: float | None
+    band_thickness: float | None
+    thickness: Spread | None
+    angle: Spread | None
+    cover: CoverFigures | None
+
+
+class StationFigures(TypedDict):
+    """A level line: v, its height along the axis, winding angles over the paths in degrees, and the cover factor."""
+
+    v: float
+    z: float
+    angle: Spread
+    cover: float
 
 
 class ModelFigures(TypedDict):
@@ -322,5 +338,6 @@ class Report(TypedDict):
     seconds: dict[str, float]
     notes: list[str]
     revolutions: NotRequired[RevolutionFigures]
+    angle_stations: NotRequired[list[StationFigures]]
     pattern: NotRequired[list[PatternFigures]]
     laminate: NotRequired[list[LayerFigures]]

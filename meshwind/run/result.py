@@ -17,7 +17,7 @@ from meshwind.pictures.subject import subject_in
 from meshwind.results import folder
 from meshwind.results.config_file import write_config
 from meshwind.results.filament_file import write_filaments
-from meshwind.results.laminate_files import write_laminate
+from meshwind.results.laminate_files import write_laminate, write_stations
 from meshwind.results.layup_figures import parted
 from meshwind.results.pattern_figures import turnaround_figures
 from meshwind.results.report import RunFacts, report, write_report
@@ -30,6 +30,7 @@ from meshwind.results.schema import (
     REPORT,
     REVOLUTIONS_PICTURE,
     SHEET,
+    STATIONS,
     WINDING,
     picture,
 )
@@ -72,6 +73,8 @@ class Result(Winding):
         The layers one on another, with `layers`.
     turns : float
         Revolutions that were given, chosen, or found for an angle.
+    plain : PlainLayer
+        The layer that the paths are: angle and cover along the part, and thickness where that of the band is known.
 
     See Also
     --------
@@ -136,7 +139,7 @@ class Result(Winding):
             notes=[str(note) for note in self.notes],
             chosen=self.chosen,
             spaced=self.spaced,
-            linear_density=self.options.linear_density,
+            plain=self.plain,
             closed=self.closed,
             laminate=None if self.layered is None else self.layered.laminate,
             filaments=self.filaments,
@@ -191,6 +194,8 @@ def write_result(result: Result, out: Path, render: bool, overwrite: bool, clock
                 write_filaments(staging / FILAMENT, result.filaments, result.mesh.units)
             if result.layered is not None:
                 write_laminate(staging, result.layered.laminate, result.mesh.units)
+            elif result.plain.band.width is not None and result.plain.stations is not None:
+                write_stations(staging / STATIONS, [(result.plain.stations, result.plain.thickness)])
             if result.chosen is not None and render:
                 draw_revolutions(staging / REVOLUTIONS_PICTURE, result.chosen, result.mesh.name)
         if render:

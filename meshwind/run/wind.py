@@ -7,6 +7,7 @@ from meshwind.pictures import driver
 from meshwind.planning.pins import check_pins
 from meshwind.results import folder
 from meshwind.run.result import Result, write_result
+from meshwind.workflow.band_plan import check_band
 from meshwind.workflow.clock import Clock, Progress
 from meshwind.workflow.layer_plans import read_layers
 from meshwind.workflow.options import Options
@@ -18,7 +19,7 @@ def wind(  # noqa: PLR0913
     mesh: MeshLike,
     *,
     paths: int | None = Options.paths,
-    revolutions: float | str = Options.revolutions,
+    revolutions: float | str | None = Options.revolutions,
     friction: float | str = Options.friction,
     component: int | None = Options.component,
     ends: str = Options.ends,
@@ -32,7 +33,12 @@ def wind(  # noqa: PLR0913
     particles: int | None = Options.particles,
     spacing: float | None = Options.spacing,
     band_width: float | None = Options.band_width,
-    linear_density: float | None = Options.linear_density,
+    band_thickness: float | None = Options.band_thickness,
+    tex: float | None = Options.tex,
+    tows: int | None = Options.tows,
+    fibre_density: float | None = Options.fibre_density,
+    resin_density: float | None = Options.resin_density,
+    fibre_volume: float | None = Options.fibre_volume,
     pins: str | PathLike[str] | None = Options.pins,
     angle: float | None = Options.angle,
     angle_at: str | None = Options.angle_at,
@@ -58,8 +64,9 @@ def wind(  # noqa: PLR0913
     paths : int or None, default 12
         Number of paths per family; the two families turn in opposite senses.  None takes as many as cover the part
         with bands of `band_width`.
-    revolutions : float or str, default 0.5
-        Turns of a path from end to end; "auto" picks the value with stable paths and least bridging.
+    revolutions : float or str, optional
+        Turns of a path from end to end; "auto" picks the value with stable paths and least bridging.  By default 0.5,
+        or those of `angle`.
     friction : float or str, default 0
         Coefficient of friction between fibre and part, or "field:NAME" for a scalar of the mesh file.
     component : int, optional
@@ -91,8 +98,17 @@ def wind(  # noqa: PLR0913
         Largest distance between neighbouring paths, in the mesh's units: paths are added until it is kept.
     band_width : float, optional
         Width of the fibre band, in the mesh's units, for the coverage.  By default one layer per family.
-    linear_density : float, optional
-        Mass of the fibre per unit of its length, from which its mass is computed.
+    band_thickness : float, optional
+        Mean thickness of the band, in the mesh's units; needs `band_width`.  By default it follows from `tex` and
+        `band_width`.
+    tex : float, optional
+        Mass of one tow in g/km, from which the masses of fibre and resin follow.
+    tows : int, optional
+        Tows side by side in the band.  By default 1.
+    fibre_density, resin_density : float, optional
+        Densities in g/cm3.  By default 1.8, that of carbon, and 1.2.
+    fibre_volume : float, optional
+        Share of the fibre in the laminate's volume, above 0 and up to 1.  By default 0.6.
     pins : str or PathLike, optional
         CSV file of the paths' ends, see `read_pins`.  By default they are spread evenly over the rims.
     angle : float, optional
@@ -145,10 +161,12 @@ def wind(  # noqa: PLR0913
     pinned = fspath(pins) if isinstance(pins, PathLike) else pins
     options = Options(
         paths, revolutions, particles, friction, component, ends, opening, side, opening_by,
-        tolerance, threshold, worst_fit, units, spacing, band_width, linear_density, pinned,
-        angle, angle_at, continuous, turn_start, turn_end,
+        tolerance, threshold, worst_fit, units, spacing, band_width, band_thickness, tex, tows,
+        fibre_density, resin_density, fibre_volume, pinned, angle, angle_at, continuous, turn_start, turn_end,
     )  # fmt: skip
     plans = None if layers is None else read_layers(layers, options)
+    if plans is None:
+        check_band(options)
     clock = Clock(progress)
     target = None if out is None else folder.named(out)
     check_file(mesh)

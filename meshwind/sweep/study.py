@@ -14,6 +14,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.core.option import options_of
 from meshwind.core.parsing import nearest, read_toml
 from meshwind.core.version import version
+from meshwind.workflow.band_plan import check_band
 from meshwind.workflow.options import Options
 
 MAX_CASES = 100_000
@@ -134,6 +135,7 @@ def _case(path: Path, values: Mapping[str, Any], hashes: dict[Path, str]) -> Cas
         raise BadInputError(f"{path}: render is {render!r}; give true or false")
     try:
         options = Options(**{_NAMES[key]: _read(_NAMES[key], value) for key, value in given.items()})
+        check_band(options)
     except BadInputError as error:
         raise BadInputError(f"{path}: {error}") from error
     files = [mesh] if options.pins is None else [mesh, Path(options.pins)]

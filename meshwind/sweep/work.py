@@ -118,7 +118,7 @@ def _figures(result: Result) -> Row:
         "neighbours_max": report["spacing"]["neighbours"]["max"],
         "quads": report["quads"]["quads"],
         "triangles": report["quads"]["triangles"],
-        "mass": report["fibre"]["mass"],
+        "mass": report["fibre"]["fibre_mass"],
         "fit_error": report["surface"]["fit_error"]["relative_max"],
         "evaluations": report["model"]["surface_evaluations"],
     }

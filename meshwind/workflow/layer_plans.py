@@ -10,14 +10,12 @@ from typing import Any
 from meshwind.core.defaults import TURNAROUNDS
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import AUTO, nearest, read_toml, shortened, turns
-from meshwind.core.units import millimetres
-from meshwind.filament.band import Roving
 from meshwind.filament.laminate import Ply
 from meshwind.filament.thickness import FLAT, HOLLOW, Laying
+from meshwind.workflow.band_plan import band_plan, roving_of
 from meshwind.workflow.options import Options
 
 HELICAL, HOOP = KINDS = ("helical", "hoop")
-_MATERIAL = ("tex", "tows", "fibre_density", "resin_density", "fibre_volume")
 _ONLY = {
     HELICAL: ("angle", "revolutions", "paths", "turn_start", "turn_end"), HOOP: ("passes", "overlap", "stagger")
 }  # fmt: skip
@@ -34,9 +32,10 @@ class LayerPlan:
 
     kind: "helical" or "hoop"; angle: in degrees, at the widest place; revolutions: turns of a path; paths: a family,
     or "auto" for as many as cover the part; band_width, band_thickness: in the part's units; tex, tows, fibre_density,
-    resin_density, fibre_volume: as `Roving`; friction; start, end: places along the part, as `station` reads them;
-    repeat: times that the layer is wound; section, bridges: as `Laying`; passes, overlap, stagger: as `HoopPlan`;
-    turn_start, turn_end: how it turns at both ends, where the layers are one filament; by default as the run's.
+    resin_density, fibre_volume: as `Roving`; the run's count where these are None; friction; start, end: places along
+    the part, as `station` reads them; repeat: times that the layer is wound; section, bridges: as `Laying`; passes,
+    overlap, stagger: as `HoopPlan`; turn_start, turn_end: how it turns at both ends, where the layers are one filament;
+    by default as the run's.
     """
 
     kind: str
@@ -81,45 +80,27 @@ class LayerPlan:
                 raise BadInputError(f"{name} is {value}; give a whole number from {least} up")
         if self.friction is not None and not 0.0 <= self.friction <= 10.0:
             raise BadInputError(f"friction is {self.friction:g}; give a number from 0 to 10")
-        if self.band_thickness is not None and self.tex is not None:
-            raise BadInputError("tex gives the band's thickness, and so does band_thickness; give one of both")
         for name in ("turn_start", "turn_end"):
             word = getattr(self, name)
             if word is not None and word not in (AUTO, *TURNAROUNDS):
                 raise BadInputError(f"{name} is {shortened(repr(word))}; give {', '.join(TURNAROUNDS)} or {AUTO}")
-        if self.tex is None:
-            given = [name for name in _MATERIAL if getattr(self, name) is not None]
-            if given:
-                raise BadInputError(f"{given[0]} says nothing without tex; give tex as well, or leave it out")
 
     def ply(self, options: Options, units: str) -> Ply:
-        """Its band, with the run's width where it has none of its own; `units` are those of the part."""
-        width = self.band_width if self.band_width is not None else options.band_width
-        if width is None:
+        """Its band, with the run's values where it has none of its own; `units` are those of the part."""
+        band = band_plan(options, units, self)
+        if band.width is None:
             raise BadInputError("a layer needs the width of its band; give band_width in its table, or --band-width")
-        roving, thickness = self.roving, self.band_thickness
-        if roving is not None:
-            if not units:
-                raise BadInputError("tex is in g/km, but the part's unit is not known; give --units, or band_thickness")
-            scale = millimetres(units)
-            thickness = roving.thickness(width * scale) / scale
-        if thickness is None:
+        if band.thickness is None:
             raise BadInputError("a layer needs the thickness of its band; give band_thickness, or tex")
         friction = self.friction
         if friction is None:
             friction = options.friction if isinstance(options.friction, float) else 0.0
-        laying = Laying(width, thickness, self.section, self.bridges)
-        return Ply(laying, friction, roving)
+        laying = Laying(band.width, band.thickness, self.section, self.bridges)
+        return Ply(laying, friction, band.roving)
 
     def turns(self, options: Options) -> tuple[str, str]:
         """Its turnarounds at the start and at the end."""
         return self.turn_start or options.turn_start, self.turn_end or options.turn_end
-
-    @property
-    def roving(self) -> Roving | None:
-        """What its band is made of, where tex is given."""
-        given = {name: getattr(self, name) for name in _MATERIAL if getattr(self, name) is not None}
-        return Roving(**given) if self.tex is not None else None
 
 
 def _turned(text: str) -> float:
@@ -171,7 +152,7 @@ def read_layers(file: str | PathLike[str], options: Options) -> LayersFile:
     """
     if not fspath(file).strip():
         raise BadInputError(f"layers is {fspath(file)!r}; give the path of a TOML file of the layers")
-    for name in ("pins", "spacing"):
+    for name in ("pins", "spacing", "angle"):
         if getattr(options, name) is not None:
             raise BadInputError(f"{name} and layers both say where paths lie; give one of both")
     path = Path(fspath(file))
@@ -182,7 +163,7 @@ def read_layers(file: str | PathLike[str], options: Options) -> LayersFile:
     layers = tables.get("layer", [])
     if not isinstance(layers, list) or not layers or not all(isinstance(each, dict) for each in layers):
         raise BadInputError(f"{path} has no layer; begin each layer with [[layer]]")
-    plans = tuple(_read(path, number, table) for number, table in enumerate(layers, 1))
+    plans = tuple(_read(path, number, table, options) for number, table in enumerate(layers, 1))
     if not options.continuous:
         turned = next((k for k, plan in enumerate(plans, 1) if plan.turn_start or plan.turn_end), None)
         if turned is not None:
@@ -195,7 +176,7 @@ def read_layers(file: str | PathLike[str], options: Options) -> LayersFile:
     return LayersFile(path, plans)
 
 
-def _read(path: Path, number: int, table: Mapping[str, Any]) -> LayerPlan:
+def _read(path: Path, number: int, table: Mapping[str, Any], options: Options) -> LayerPlan:
     names = {field.name for field in fields(LayerPlan)} - set(_NAMES.values()) | set(_NAMES)
     values: dict[str, Any] = {}
     try:
@@ -212,7 +193,7 @@ def _read(path: Path, number: int, table: Mapping[str, Any]) -> LayerPlan:
             raise BadInputError(f"kind is missing; give {' or '.join(KINDS)}")
         _check_kind(values)
         plan = LayerPlan(**values)
-        _ = plan.roving  # its numbers are checked before any work
+        roving_of(options, plan)  # its numbers are checked before any work
     except BadInputError as error:
         raise BadInputError(f"{path}: layer {number}: {error}") from error
     return plan

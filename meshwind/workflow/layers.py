@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import AUTO
 from meshwind.filament.closing import close_layer
 from meshwind.filament.ends import LayerPlan as ClosingPlan
 from meshwind.filament.hoop import HoopPlan, hoop
@@ -18,6 +19,7 @@ from meshwind.filament.offset import TIGHT
 from meshwind.filament.spiral import Ground
 from meshwind.path import Status
 from meshwind.surface import Surface
+from meshwind.workflow.covering import Laid, lay_until_covered
 from meshwind.workflow.helices import Helices
 from meshwind.workflow.layer_plans import HOOP, LayerPlan, LayersFile
 from meshwind.workflow.notes import Note, about_filament
@@ -67,7 +69,7 @@ def _naming(number: int) -> Iterator[None]:
 
 def _faults(layer: LaidLayer) -> list[str]:
     """What does not hold of a layer."""
-    lines: list[str] = []
+    lines = [layer.shortfall] if layer.shortfall else []
     if layer.strand is not None and layer.strand.slip > layer.friction:
         slip = layer.strand.slip
         needed = f"needs a friction of {slip:.3g}, and has {layer.friction:g}" if np.isfinite(slip) else "lifts off"
@@ -121,19 +123,31 @@ def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options) -> LaidLaye
     if not between[0] < between[1]:
         raise BadInputError(f"it starts at v={between[0]:g} and ends at v={between[1]:g}; give its places in order")
     helices = Helices(surface, between, ply.friction, lines)
-    count, turns = helices.settled(plan.angle, plan.revolutions, plan.paths, ply.laying.width)
+    settled = helices.settled(plan.angle, plan.revolutions, plan.paths, ply.laying.width)
     if options.continuous:
         closing = ClosingPlan(
-            count, turns, ply.friction, options.particles, plan.turns(options), 0.5 * ply.laying.width, between
-        )
-        closed = close_layer(surface, closing)
+            settled.paths, settled.revolutions, ply.friction, options.particles, plan.turns(options),
+            0.5 * ply.laying.width, between,
+        )  # fmt: skip
+    else:
+        closing = None
+
+    def lay(count: int) -> Laid:
+        if closing is None:
+            return Laid(helices.laid(count, settled.revolutions, options.particles))
+        closed = close_layer(surface, replace(closing, paths=count))
+        return Laid(closed.paths, closed)
+
+    wound = lay(settled.paths) if plan.paths != AUTO else lay_until_covered(lay, settled.paths, ply.laying.width)[0]
+    paths, closed = wound.paths, wound.closed
+    if closed is not None:
         strand = strand_of_paths(closed, below.tail, ground, ply.friction)
-        return helical_layer(closed.paths, ply, lines, closed.left_out, strand)
-    paths = helices.laid(count, turns, options.particles)
+        layer = helical_layer(paths, ply, lines, closed.left_out, strand)
+        return replace(layer, shortfall=settled.shortfall)
     held = paths.status == Status.CONVERGED
     if not held.any():
         raise BadInputError(f"no path of it comes to rest: {paths.advice(0)}")
-    return helical_layer(paths.subset(held), ply, lines, int((~held).sum()))
+    return replace(helical_layer(paths.subset(held), ply, lines, int((~held).sum())), shortfall=settled.shortfall)
 
 
 def first_helical(plans: tuple[LayerPlan, ...], surface: Surface, options: Options, units: str) -> Options:
@@ -142,7 +156,7 @@ def first_helical(plans: tuple[LayerPlan, ...], surface: Surface, options: Optio
     if plan is None:
         return options
     ply = plan.ply(options, units)
-    paths, turns = Helices(surface, (0.0, 1.0), ply.friction, levels(surface)).settled(
+    paths, turns, _ = Helices(surface, (0.0, 1.0), ply.friction, levels(surface)).settled(
         plan.angle, plan.revolutions, plan.paths, ply.laying.width
     )
     return replace(options, paths=paths, revolutions=turns, friction=ply.friction, band_width=ply.laying.width)

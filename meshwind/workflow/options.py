@@ -5,26 +5,30 @@ its help, configuration files, studies, `meshwind.wind` and meshwind.toml take t
 """
 
 from dataclasses import dataclass, field, fields
-from math import isfinite
-from numbers import Integral, Real
 
-from meshwind.core.defaults import FIT_TOLERANCE, OPENED_BY, PARTICLES, PATHS, SIDES, STEPS_PER_TURN, TURNAROUNDS
+from meshwind.core.defaults import FIT_TOLERANCE, OPENED_BY, PARTICLES, PATHS, REVOLUTIONS, SIDES, TURNAROUNDS
 from meshwind.core.errors import BadInputError
 from meshwind.core.option import option
-from meshwind.core.parsing import AUTO, count, paths, shortened, turns
+from meshwind.core.parsing import AUTO, count, paths, turns
 from meshwind.core.units import ASSUMED, MILLIMETRES, check_units
+from meshwind.workflow.option_checks import (
+    FIELD,
+    check_memory,
+    check_resolution,
+    check_word,
+    number,
+    read_friction,
+    text,
+    whole,
+)
 
-FIELD = "field:"
-"""Before the name of a scalar field in a mesh file."""
-MEMORY = 4e9
-"""Most bytes that a run may take."""
-_BYTES_PER_PARTICLE, _BYTES_PER_CROSSING = 350, 1500
-"""Peak memory of a run, measured from 3e5 to 1.6e6 particles and 2e4 to 5e5 crossings."""
 _STEEPEST = 89.0
 """Degrees of the steepest helix: past them it is a hoop."""
 _MOST_CHOSEN = 1601
 """Particles per path that memory is checked for where their number is left open."""
 
+_ABOVE_NOTHING = ("opening", "spacing", "band_width", "band_thickness", "tex", "fibre_density", "resin_density")
+"""Options that are numbers above 0."""
 PART, FIBRES, SURFACE = "The part", "The fibres", "The surface"
 """Groups of the options."""
 IN_MESH_UNITS = "in the mesh's units"
@@ -35,7 +39,8 @@ OVER_DIAGONAL = "over the part's diagonal"
 class Options:
     """Options of a run; raises BadInputError for one that cannot be used, with its value and what it may be.
 
-    The fields say what each option means; `particles` is None where their number is to be chosen.
+    The fields say what each option means; `particles` is None where their number is to be chosen, and `revolutions`
+    where they are left to the default or to the angle, so that both given can be told from one.
     """
 
     paths: int | None = field(
@@ -48,12 +53,13 @@ class Options:
             read=paths,
         ),
     )
-    revolutions: float | str = field(
-        default=0.5,
+    revolutions: float | str | None = field(
+        default=None,
         metadata=option(
             "Turns of a path from end to end, as in 0.5 or 5/12; auto picks the value with stable paths and least "
             "bridging",
             FIBRES,
+            otherwise=f"{REVOLUTIONS:g}, or those of the angle",
             metavar="TURNS",
             words=(AUTO,),
             read=turns,
@@ -150,9 +156,29 @@ class Options:
         default=None,
         metadata=option("Width of the fibre band", FIBRES, unit=IN_MESH_UNITS, otherwise="one layer per family"),
     )
-    linear_density: float | None = field(
+    band_thickness: float | None = field(
         default=None,
-        metadata=option("Mass of the fibre per unit of its length, from which its mass is computed", FIBRES),
+        metadata=option(
+            "Mean thickness of the band", FIBRES, unit=IN_MESH_UNITS, otherwise="from the tex, where that is given"
+        ),
+    )
+    tex: float | None = field(
+        default=None,
+        metadata=option(
+            "Mass of one tow, in g/km: masses follow from it, and the band's thickness from it and the width", FIBRES
+        ),
+    )
+    tows: int | None = field(
+        default=None, metadata=option("Tows side by side in the band", FIBRES, metavar="COUNT", otherwise="1")
+    )
+    fibre_density: float | None = field(
+        default=None, metadata=option("Density of the fibre in g/cm3", FIBRES, otherwise="1.8, that of carbon")
+    )
+    resin_density: float | None = field(
+        default=None, metadata=option("Density of the resin in g/cm3", FIBRES, otherwise="1.2")
+    )
+    fibre_volume: float | None = field(
+        default=None, metadata=option("Share of the fibre in the laminate's volume", FIBRES, otherwise="0.6")
     )
     pins: str | None = field(
         default=None,
@@ -203,39 +229,48 @@ class Options:
 
         set_ = object.__setattr__
         if self.paths is not None:
-            set_(self, "paths", _whole(self.paths, "paths", 1))
+            set_(self, "paths", whole(self.paths, "paths", 1))
         elif self.band_width is None or self.pins is not None or self.spacing is not None:
             raise BadInputError(
                 "paths that are to cover the part need band_width (--band-width), no pins and no spacing"
             )
         if self.particles is not None:
-            set_(self, "particles", _whole(self.particles, "particles", 3))
-        if self.revolutions != AUTO:
-            set_(self, "revolutions", _number(self.revolutions, "revolutions", 0.0))
-        _check_resolution(self.revolutions, self.particles or _MOST_CHOSEN)
-        set_(self, "friction", _friction(self.friction))
+            set_(self, "particles", whole(self.particles, "particles", 3))
+        if self.revolutions is not None and self.revolutions != AUTO:
+            set_(self, "revolutions", number(self.revolutions, "revolutions", 0.0))
+        check_resolution(self.turns, self.particles or _MOST_CHOSEN)
+        set_(self, "friction", read_friction(self.friction))
         if self.component is not None:
-            set_(self, "component", _whole(self.component, "component", 0))
+            set_(self, "component", whole(self.component, "component", 0))
         parse_ends(self.ends)
-        _check_word(self.side, "side", SIDES)
-        _check_word(self.opening_by, "opening_by", OPENED_BY)
-        set_(self, "tolerance", _number(self.tolerance, "tolerance", 1e-12, 1.0))
+        check_word(self.side, "side", SIDES)
+        check_word(self.opening_by, "opening_by", OPENED_BY)
+        set_(self, "tolerance", number(self.tolerance, "tolerance", 1e-12, 1.0))
         if self.threshold is not None:
-            set_(self, "threshold", _number(self.threshold, "threshold", 0.0))
-        set_(self, "worst_fit", _number(self.worst_fit, "worst_fit", 0.0, above=True))
+            set_(self, "threshold", number(self.threshold, "threshold", 0.0))
+        set_(self, "worst_fit", number(self.worst_fit, "worst_fit", 0.0, above=True))
         if self.units is not None:
             check_units(self.units)
-        for name in ("opening", "spacing", "band_width", "linear_density"):
+        for name in _ABOVE_NOTHING:
             if getattr(self, name) is not None:
-                set_(self, name, _number(getattr(self, name), name, 0.0, above=True))
+                set_(self, name, number(getattr(self, name), name, 0.0, above=True))
+        if self.tows is not None:
+            set_(self, "tows", whole(self.tows, "tows", 1))
+        if self.fibre_volume is not None:
+            set_(self, "fibre_volume", number(self.fibre_volume, "fibre_volume", 0.0, 1.0, above=True))
         if self.pins is not None and not (isinstance(self.pins, str) and self.pins.strip()):
-            raise BadInputError(f"pins is {_text(self.pins)}; give the path of a CSV file of the paths' ends")
+            raise BadInputError(f"pins is {text(self.pins)}; give the path of a CSV file of the paths' ends")
         _check_turns(self)
         _check_angle(self)
         if self.pins is not None and self.spacing is not None:
             raise BadInputError("pins say where all paths end, and spacing adds paths between them; give one of both")
-        turned = 1.0 if isinstance(self.revolutions, str) else self.revolutions
-        _check_memory(self.paths or PATHS, self.particles or _MOST_CHOSEN, turned)
+        turned = 1.0 if isinstance(self.turns, str) else self.turns
+        check_memory(self.paths or PATHS, self.particles or _MOST_CHOSEN, turned)
+
+    @property
+    def turns(self) -> float | str:
+        """Revolutions that are given, or else the default."""
+        return REVOLUTIONS if self.revolutions is None else self.revolutions
 
     def written(self) -> dict[str, object]:
         """The options by name, as they stand in files: "auto" for a number of particles that is to be chosen."""
@@ -247,17 +282,17 @@ def _check_angle(options: Options) -> None:
     """Raise BadInputError for an angle that no helix has, or beside what sets it already."""
     if options.angle is None:
         if options.angle_at is not None:
-            raise BadInputError(f"angle_at is {_text(options.angle_at)} without an angle; give angle as well")
+            raise BadInputError(f"angle_at is {text(options.angle_at)} without an angle; give angle as well")
         return
-    object.__setattr__(options, "angle", _number(options.angle, "angle", 0.0, _STEEPEST))
-    if options.revolutions != Options.revolutions or options.pins is not None:
+    object.__setattr__(options, "angle", number(options.angle, "angle", 0.0, _STEEPEST))
+    if options.revolutions is not None or options.pins is not None:
         raise BadInputError("angle sets the revolutions, and so do revolutions and pins; give one of them")
 
 
 def _check_turns(options: Options) -> None:
     """Raise BadInputError for turnarounds without a filament, and for what cannot be wound as one."""
     for name in ("turn_start", "turn_end"):
-        _check_word(getattr(options, name), name, (AUTO, *TURNAROUNDS))
+        check_word(getattr(options, name), name, (AUTO, *TURNAROUNDS))
         if getattr(options, name) != AUTO and not options.continuous:
             raise BadInputError(f"{name} is given without continuous; set continuous (--continuous) as well")
     for name in ("spacing", "pins"):
@@ -265,65 +300,3 @@ def _check_turns(options: Options) -> None:
             raise BadInputError(
                 f"continuous needs paths that are spread evenly over the rims, and {name} sets others; give paths"
             )
-
-
-def _check_resolution(revolutions: float | str, particles: int) -> None:
-    """Raise BadInputError for more revolutions than the particles of a path can follow."""
-    most = (particles - 1) / STEPS_PER_TURN
-    if not isinstance(revolutions, str) and revolutions > most:
-        raise BadInputError(
-            f"revolutions is {_text(revolutions)}; give a number from 0 to {most:g}, the most that "
-            f"{particles} particles per path can follow, or more particles"
-        )
-
-
-def _friction(value: object) -> float | str:
-    """The coefficient, or the name of a field."""
-    if not isinstance(value, str):
-        return _number(value, "friction", 0.0, 10.0)
-    if value.startswith(FIELD) and value.removeprefix(FIELD).strip():
-        return value
-    try:
-        number = float(value)
-    except ValueError:
-        raise BadInputError(
-            f"friction is {value!r}; give a coefficient such as 0.2, or {FIELD}NAME for a scalar of the mesh file"
-        ) from None
-    return _number(number, "friction", 0.0, 10.0)
-
-
-def _whole(value: object, name: str, least: int) -> int:
-    if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
-        raise BadInputError(f"{name} is {_text(value)}; give a whole number from {least} up")
-    return int(value)
-
-
-def _number(value: object, name: str, low: float, high: float | None = None, above: bool = False) -> float:
-    """A finite number from low (or, with `above`, above low) to high."""
-    number = float(value) if isinstance(value, Real) and not isinstance(value, bool) else float("nan")
-    inside = isfinite(number) and (number > low if above else number >= low) and (high is None or number <= high)
-    if inside:
-        return number
-    allowed = f"above {low:g}" if above else f"from {low:g} up" if high is None else f"from {low:g} to {high:g}"
-    raise BadInputError(f"{name} is {_text(value)}; give a number {allowed}")
-
-
-def _check_word(value: object, name: str, words: tuple[str, ...]) -> None:
-    if value not in words:
-        raise BadInputError(f"{name} is {_text(value)}; give {', '.join(words[:-1])} or {words[-1]}")
-
-
-def _text(value: object) -> str:
-    """A value as a few characters of text."""
-    text = f"{float(value):g}" if isinstance(value, Real) and not isinstance(value, bool) else repr(value)
-    return shortened(text)
-
-
-def _check_memory(paths: int, particles: int, revolutions: float) -> None:
-    crossings = 2.0 * revolutions * float(paths) ** 2
-    needed = 2.0 * paths * particles * _BYTES_PER_PARTICLE + crossings * _BYTES_PER_CROSSING
-    if needed > MEMORY:
-        raise BadInputError(
-            f"{paths} paths per family of {particles} particles and {revolutions:g} revolutions would need about "
-            f"{needed / 1e9:,.0f} GB of memory, and {MEMORY / 1e9:.0f} are allowed; give fewer paths"
-        )

@@ -14,7 +14,8 @@ from meshwind.mesh.io.read import path_of
 from meshwind.mesh.io.scalars import Scalars, read_scalars
 from meshwind.surface import Surface, fit
 from meshwind.workflow.clock import Clock
-from meshwind.workflow.options import FIELD, Options
+from meshwind.workflow.option_checks import FIELD
+from meshwind.workflow.options import Options
 
 MeshLike: TypeAlias = str | PathLike[str] | Mesh | Any
 """A mesh, the path of its file, or a mesh of another library as `read` takes it."""

@@ -1,7 +1,7 @@
 """Wind a fitted part and assess what was laid."""
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +13,7 @@ from meshwind.filament.closing import ClosedLayer, close_layer
 from meshwind.filament.ends import LayerPlan
 from meshwind.filament.filament import Filament, filament_of_layers, filaments_of
 from meshwind.filament.levels import levels
+from meshwind.filament.plain_layer import Band, PlainLayer, plain_layer
 from meshwind.layup.layup import Layup, assess
 from meshwind.mesh import Mesh
 from meshwind.path import Paths, solve
@@ -22,8 +23,10 @@ from meshwind.planning.pins import PARAMETRIC, pin_table, read_pins
 from meshwind.planning.revolutions import Revolutions, choose_revolutions
 from meshwind.planning.spacing import Spaced, space_out
 from meshwind.surface import Surface
+from meshwind.workflow.band_plan import about_band, band_plan
 from meshwind.workflow.clock import Clock
-from meshwind.workflow.helices import Helices
+from meshwind.workflow.covering import Laid, lay_until_covered
+from meshwind.workflow.helices import Helices, Turned
 from meshwind.workflow.layer_plans import LayersFile
 from meshwind.workflow.layers import Layered, about_layers, first_helical, lay_layers
 from meshwind.workflow.notes import (
@@ -60,6 +63,7 @@ class Winding:
     closed: ClosedLayer | None = None
     layered: Layered | None = None
     turns: float = 0.0
+    plain: PlainLayer = field(default_factory=PlainLayer)
 
     @cached_property
     def filaments(self) -> tuple[Filament, ...]:
@@ -88,13 +92,13 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: 
         )
         friction = _friction(part, options)
     chosen = chosen_revolutions(surface, options, clock, friction)
-    revolutions = float(options.revolutions) if chosen is None else chosen.choice
-    given = options
+    revolutions = float(options.turns) if chosen is None else chosen.choice
+    given, turned = options, None
     if options.angle is not None or options.paths is None:
         with clock.stage("choose"):
-            options, more = _planned(surface, options, revolutions, friction)
+            options, turned, more = _planned(surface, options, revolutions, friction)
             notes = (*notes, *more)
-        revolutions = float(options.revolutions)
+        revolutions = float(options.turns)
     layered, first = None, None
     if layers is not None:
         with clock.stage("layers"):
@@ -102,8 +106,16 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: 
             first = layered.laminate.layers[0].closed
             notes = (*notes, *more)
     with clock.stage("wind"):
-        closed = close(surface, options, revolutions, friction) if options.continuous and layered is None else first
-        laid = lay(surface, options, revolutions, friction) if closed is None else closed.paths
+        closing = options.continuous and layered is None
+        wound = partial(_wound, surface, options, revolutions, friction, closing)
+        if first is not None:
+            laid_ = Laid(first.paths, first)
+        elif given.paths is None and options.band_width is not None:
+            laid_, note = lay_until_covered(wound, _count(options), options.band_width)
+            notes = (*notes, note)
+        else:
+            laid_ = wound(_count(options))
+        closed, laid = laid_.closed, laid_.paths
         spaced = None if options.spacing is None else space_out(laid, revolutions, options.spacing, friction)
         laid = laid if spaced is None else spaced.paths
         notes = (*notes, *about_paths(laid), *about_choice(chosen), *about_spacing(spaced, units))
@@ -111,16 +123,30 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: 
         if layered is not None:
             notes = (*notes, *about_layers(layered, caps, units))
         elif closed is not None:
-            notes = (*notes, *about_filament(closed, caps, units))
+            notes = (*notes, *about_filament(closed, caps, units), *(turned.moved(laid) if turned is not None else ()))
         notes = (*notes, *about_contact(laid, units), *about_other_rests(laid, units))
     with clock.stage("assess"):
         layup = assess(laid, options.band_width)
-        notes = (*notes, *about_layup(layup))
+        # a laminate has bands of its own
+        band = band_plan(options, units) if layers is None else Band(options.band_width, units=units)
+        plain = plain_layer(laid, band, layup.coverage.width)
+        notes = (*notes, *about_layup(layup), *about_band(band))
     source = part.source
     return Winding(
         source.mesh, part.chart, layup, given, command, clock.seconds, notes, chosen, spaced, source.file,
-        closed, layered, revolutions,
+        closed, layered, revolutions, plain,
     )  # fmt: skip
+
+
+def _wound(
+    surface: Surface, options: Options, revolutions: float, friction: float | Friction, closing: bool, paths: int
+) -> Laid:
+    """So many paths a family, as one filament if they are to close."""
+    options = replace(options, paths=paths)
+    if not closing:
+        return Laid(lay(surface, options, revolutions, friction))
+    closed = close(surface, options, revolutions, friction)
+    return Laid(closed.paths, closed)
 
 
 def lay(surface: Surface, options: Options, revolutions: float, friction: float | Friction = 0.0) -> Paths:
@@ -134,19 +160,22 @@ def lay(surface: Surface, options: Options, revolutions: float, friction: float 
 
 def _planned(
     surface: Surface, options: Options, revolutions: float, friction: float | Friction
-) -> tuple[Options, tuple[Note, ...]]:
-    """The options with the revolutions of their angle, and with as many paths as cover the part."""
-    helices, notes = Helices(surface, (0.0, 1.0), friction, levels(surface), options.paths or PATHS), []
+) -> tuple[Options, Turned | None, tuple[Note, ...]]:
+    """The options with the revolutions of their angle, if any, and with as many paths as cover the part."""
+    helices = Helices(surface, (0.0, 1.0), friction, levels(surface), options.paths or PATHS)
+    turned, notes = None, []
     if options.angle is not None:
-        revolutions = helices.revolutions_at(np.radians(options.angle), options.angle_at)
-        where = "the widest place" if options.angle_at is None else options.angle_at
-        notes.append(Note(f"{options.angle:g} degrees at {where} take {revolutions:.6g} revolutions"))
+        turned = helices.turned_to(np.radians(options.angle), options.angle_at)
+        revolutions = turned.revolutions
+        where = f"v={turned.v:.3g}, {'the widest place' if options.angle_at is None else options.angle_at},"
+        taken = f"{options.angle:g} degrees at {where} take {revolutions:.6g} revolutions"
+        notes.append(Note(turned.shortfall.removeprefix("its ") or taken, warning=not turned.met))
     paths = options.paths
     if paths is None:
         assert options.band_width is not None
         paths = helices.circuits(revolutions, options.band_width)
-        notes.append(Note(f"{paths} paths of each family cover the part where they have most to cover"))
-    return replace(options, paths=paths, revolutions=revolutions, angle=None, angle_at=None), tuple(notes)
+    options = replace(options, paths=paths, revolutions=revolutions, angle=None, angle_at=None)
+    return options, turned, tuple(notes)
 
 
 def close(surface: Surface, options: Options, revolutions: float, friction: float | Friction = 0.0) -> ClosedLayer:
@@ -183,7 +212,7 @@ def chosen_revolutions(
     surface: Surface, options: Options, clock: Clock, friction: float | Friction = 0.0, further: bool = True
 ) -> Revolutions | None:
     """Choose the revolutions where they are "auto"; further as in `choose_revolutions`."""
-    if options.revolutions != AUTO:
+    if options.turns != AUTO:
         return None
     paths, particles = options.paths or PATHS, options.particles
     with clock.stage("choose"):
