@@ -51,7 +51,7 @@ def layers(result: mw.Result) -> str:
     """The layers in the order of winding."""
     report = result.report()
     rows = [
-        ["layer", "pattern", "angle", "cover", "median thickness", "fibre", "join before it", "fibre mass", "resin mass"],
+        ["layer", "pattern", "angle", "cover", "thickness", "fibre", "join before it", "fibre mass", "resin mass"],
         *(
             [
                 f"{number} {layer['kind']}",
