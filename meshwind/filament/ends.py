@@ -1,6 +1,7 @@
 """The two ends of a layer: which turnaround suits each, and how long the dwell there must be."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from meshwind.filament.pin_turn import Pins, Shaft
 from meshwind.filament.turnaround import Turnaround
 from meshwind.path import Paths
 from meshwind.path.friction import Friction, friction_of
-from meshwind.surface.rims import rim
+from meshwind.surface.rims import Rim, rim
 from meshwind.surface.surface import Surface
 
 CAP = "cap"
@@ -80,7 +81,11 @@ class End:
     def shares(self, paths: Paths, family: int) -> Floats:
         """Shares of the rim's length, unwrapped, at which the paths of a family cross it."""
         u = paths.uv[paths.family == family, -self.edge.end, 0]
-        return rim(self.surface, self.v).shares(u)
+        return self._rim.shares(u)
+
+    @cached_property
+    def _rim(self) -> Rim:
+        return rim(self.surface, self.v)
 
     def pairs(self, paths: Paths) -> "Pairs":
         """The legs that arrive and those that leave."""

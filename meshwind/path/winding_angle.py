@@ -25,8 +25,9 @@ def winding_angle(paths: Paths) -> Floats:
         Angles in radians, from 0, along the part, to pi/2, a hoop.
     """
     frames = _frames(paths)
-    way, around = _directions(paths, frames), _axes(frames)[1]
-    share = np.abs((way * around).sum(axis=1)) / np.maximum(np.linalg.norm(way, axis=1), TINY)
+    way, around = _directions(paths, frames), frames[:, SU]
+    size = np.sqrt(np.einsum("ij,ij->i", way, way) * np.einsum("ij,ij->i", around, around))
+    share = np.abs(np.einsum("ij,ij->i", way, around)) / np.maximum(size, TINY)
     return np.asarray(np.arcsin(np.minimum(share, 1.0)).reshape(paths.gap.shape))
 
 
@@ -57,9 +58,11 @@ def _directions(paths: Paths, frames: Floats) -> Floats:
     On the surface they are taken by the parameters, as chords of many turns cut their corners; in the air from the
     fibre itself.
     """
-    points, rate = _gradient(paths.points), _gradient(paths.uv)
-    on = frames[:, SU] * rate[:, :1] + frames[:, SV] * rate[:, 1:]
-    return np.where(paths.on_surface.reshape(-1, 1), on, points)
+    rate, lifted = _gradient(paths.uv), ~paths.on_surface.ravel()
+    way = frames[:, SU] * rate[:, :1] + frames[:, SV] * rate[:, 1:]
+    if lifted.any():
+        way[lifted] = _gradient(paths.points)[lifted]
+    return np.asarray(way)
 
 
 def _gradient(values: Floats) -> Floats:
