@@ -186,7 +186,7 @@ def passes_between_caps(
     touch = maps.touches(np.asarray(theta))
     touch[:, 2] = np.append(touch[1:, 0], touch[0, 0] + chosen)
     found = met(ends, legs, touch)
-    order = [*found.legs[0], *(pair[::-1] for pair in found.legs[1])]
+    order = [*zip(*found.legs[0], strict=True), *zip(*found.legs[1][::-1], strict=True)]
     fibres = [
         [Stretch(at_start, ends[0].half, False), Stretch(at_end, ends[1].half, True)] for at_start, at_end in order
     ]
@@ -260,7 +260,7 @@ def passes_over_a_cap(
             f"a fibre that touches the opening at the {cap} at u={touch[np.argmax(lost)] % 1.0:.3f} does not reach the"
             " rim across from it: it turns back before; give an opening as narrow as the part is at its narrowest"
         )
-    fibres = [[Stretch(trace, end.half, at_end)] for legs in (there, back) for trace in legs.traces]
+    fibres = [[Stretch(trace, end.half, at_end)] for legs in (there, back) for trace in legs.marched.traces()]
     paths = _as_paths(surface, (end,), fibres, evenly(surface, fibres, particles), friction)
     return PolarPasses(paths, frozen(np.zeros((2 * circuits, 2))), frozen(np.zeros(2 * circuits)))
 

@@ -13,8 +13,8 @@ from scipy.interpolate import CubicSpline, PPoly
 from meshwind.core.cast import Bools, Floats
 from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import unit
-from meshwind.march.forward import traces
-from meshwind.march.traced import Stop, Trace
+from meshwind.march.forward import Marched, marched, traces
+from meshwind.march.traced import Stop
 from meshwind.surface.evaluate import DEGREE, SU, SV
 from meshwind.surface.surface import Surface
 
@@ -22,7 +22,7 @@ _SAMPLES = 256
 """Points of an opening at a distance from its rim: its curve is then exact to about 1e-9 turns where it is smooth."""
 _LONGEST = 50.0
 """Sizes of the part that a half-leg may be long: one that is longer circles for ever, as on a prism at 90 degrees."""
-_FINEST = 1e-12
+FINEST = 1e-12
 """Tolerance of the marches, that of `traces`."""
 
 
@@ -115,7 +115,7 @@ class Legs:
 
     u: Floats
     angle: Floats
-    traces: tuple[Trace, ...]
+    marched: Marched
 
     @property
     def arrived(self) -> Bools:
@@ -135,7 +135,7 @@ class End:
         """The end in words."""
         return "end" if self.opening.end else "start"
 
-    def march(self, u: Floats, slip: Floats, leaving: bool, tolerance: float = _FINEST) -> Legs:
+    def march(self, u: Floats, slip: Floats, leaving: bool, tolerance: float = FINEST) -> Legs:
         """March half-legs from touch points u (n,) with slips (n,), in the order of winding.
 
         leaving: whether the fibre leaves the opening, rather than arrives; slips are positive to the fibre's left on
@@ -145,15 +145,15 @@ class End:
         scale = np.array([1.0, 1.0 / (self.half.last - self.half.first)])
         start, way = self.half.into(self.opening.at(u)), sign * self.opening.tangent(u) * scale
         surface = self.half.surface
-        found = traces(
+        found = marched(
             surface, start, way, _LONGEST * surface.size, slip=sign * slip, press="ignore", tolerance=tolerance
         )
-        wanted = Stop.RIM_START if self.opening.end else Stop.RIM_END
-        last = np.array([trace.uv[-1] for trace in found])
-        tangent = sign * np.array([trace.tangent[-1] for trace in found])
-        frames = surface.frames(last)
-        along = unit(frames[:, SV])
-        across = unit(np.cross(frames[:, SV], np.cross(frames[:, SU], frames[:, SV])))
+        last = found.last
+        frames = surface.frames(np.ascontiguousarray(last[:, 1:3]))
+        su, sv = frames[:, SU], frames[:, SV]
+        tangent = sign * (last[:, 3:4] * su + last[:, 4:5] * sv)
+        along = unit(sv)
+        across = unit(np.cross(sv, np.cross(su, sv)))
         angle = np.arctan2((tangent * across).sum(axis=1), (tangent * along).sum(axis=1))
-        there = np.array([trace.stop == wanted for trace in found])
-        return Legs(np.where(there, last[:, 0], np.nan), np.where(there, angle, np.nan), found)
+        there = found.stop == (Stop.RIM_START if self.opening.end else Stop.RIM_END)
+        return Legs(np.where(there, last[:, 1], np.nan), np.where(there, angle, np.nan), found)

@@ -5,6 +5,7 @@ where they touch, and a planner's tool of its own: with a constant slip, kg = sl
 geodesic by as much as a friction of |slip| can hold (3.12).
 """
 
+from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -153,6 +154,59 @@ def traces(  # noqa: PLR0913
     >>> [fibre.stop.name for fibre in fibres]
     ['RIM_END', 'RIM_END']
     """
+    return marched(
+        surface, start, direction, length, slip=slip, method=method, step=step, tolerance=tolerance, press=press
+    ).traces()
+
+
+@dataclass(frozen=True)
+class Marched:
+    """p fibres as they were marched: rows (n, 5) each of arc length, u, v and their rates; slip (p,); counts (p, 7).
+
+    Points, frames and curvatures are worked out only where `traces` are asked for.
+    """
+
+    surface: Surface
+    rows: tuple[Floats, ...]
+    slip: Floats
+    counts: Ints
+
+    @property
+    def last(self) -> Floats:
+        """The last row (p, 5) of each."""
+        return np.array([row[-1] for row in self.rows])
+
+    @property
+    def stop(self) -> Ints:
+        """Why each ended (p,), as `Stop`."""
+        return np.asarray(self.counts[:, STOP])
+
+    def put(self, at: Ints, by: "Marched", which: Ints) -> "Marched":
+        """The same with those of numbers `at` (k,) replaced by those that have the numbers `which` (k,) in `by`."""
+        rows, slip, counts = list(self.rows), self.slip.copy(), self.counts.copy()
+        for old, new in zip(at, which, strict=True):
+            rows[old] = by.rows[new]
+        slip[at], counts[at] = by.slip[which], by.counts[which]
+        return Marched(self.surface, tuple(rows), slip, counts)
+
+    def traces(self) -> tuple[Trace, ...]:
+        """The fibres with all that is known of their points."""
+        return _finish(self.surface, list(self.rows), self.slip, self.counts)
+
+
+def marched(  # noqa: PLR0913
+    surface: Surface,
+    start: ArrayLike,
+    direction: ArrayLike,
+    length: ArrayLike,
+    *,
+    slip: ArrayLike = 0.0,
+    method: Method = "adaptive",
+    step: float | None = None,
+    tolerance: float = 1e-12,
+    press: Press = "stop",
+) -> Marched:
+    """March a batch of fibres; see `traces`, of which this is all but the last step."""
     _check(method, press, step, tolerance)
     at = floats(start, "start", -1, 2)
     if np.any((at[:, 1] < 0) | (at[:, 1] > 1)) or (not surface.periodic and np.any((at[:, 0] < 0) | (at[:, 0] > 1))):
@@ -181,7 +235,7 @@ def traces(  # noqa: PLR0913
     first = np.column_stack([np.zeros(count), at, rates])
     marches = Marches(slips, lengths, state, counts, np.empty((count, 0, 5)))
     rows = _march(Spline(np.array(surface.net), surface.periodic), rules, marches, first)
-    return _finish(surface, rows, slips, counts)
+    return Marched(surface, tuple(rows), slips, counts)
 
 
 def _march(spline: Spline, rules: Rules, start: Marches, first: Floats) -> list[Floats]:
