@@ -117,12 +117,12 @@ class Hoop:
         u, v = self.worst
         if self.lifts > 0.0:
             return (
-                f"{100.0 * self.lifts:.2g} % of the hoop does not press on the part, worst at u={u:.3g}, v={v:.3g}: it "
+                f"{_percent(self.lifts)} of the hoop does not press on the part, worst at u={u:.3g}, v={v:.3g}: it "
                 "bridges there, whatever the friction; end the hoop before it, or wind at a smaller angle"
             )
         if self.friction > friction:
             return (
-                f"{100.0 * self.slips(friction):.2g} % of the hoop slips off: it needs a friction of "
+                f"{_percent(self.slips(friction))} of the hoop slips off: it needs a friction of "
                 f"{self.friction:.3g} at u={u:.3g}, v={v:.3g}, and has {friction:g}; end the hoop before it"
             )
         return ""
@@ -182,6 +182,11 @@ def hoop(surface: Surface, plan: HoopPlan) -> Hoop:
     lifts = float(weight[lifted].sum() / weight.sum())
     where = float(worst[0] % 1.0), float(worst[1])
     return Hoop(course, laid, pitch, float(u[-1] - u[0]), _cover(lines, plan, ends), slip, lifts, where)
+
+
+def _percent(share: float) -> str:
+    """A share in per cent, to two digits."""
+    return f"{float(f'{100.0 * share:.2g}'):g} %"
 
 
 def _weights(steps: Floats) -> Floats:

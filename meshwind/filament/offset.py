@@ -14,7 +14,7 @@ from meshwind.surface.evaluate import S
 from meshwind.surface.forms import fundamental_forms
 from meshwind.surface.grid import mean_speeds, midpoints, parameter_grid
 from meshwind.surface.interpolate import sites, through
-from meshwind.surface.principal import principal
+from meshwind.surface.principal import Principal, principal
 from meshwind.surface.surface import Surface
 
 _SPEED_SAMPLES = 32
@@ -138,7 +138,7 @@ def _offset(surface: Surface, uv: Floats, thickness: Floats) -> tuple[Floats, Fl
     frames = surface.frames(uv)
     forms = fundamental_forms(frames)
     bent = principal(frames, forms)
-    _check_folds(thickness, bent.smallest, uv)
+    _check_folds(thickness, bent, uv)
     height = _height(thickness, 0.5 * (bent.largest + bent.smallest), bent.largest * bent.smallest)
     return frames[:, S] + height[:, None] * forms.normal, height
 
@@ -155,13 +155,15 @@ def _hollows(surface: Surface, thickness: Floats) -> tuple[Floats, float, tuple[
     return height.reshape(nu, nv), max(float(depth[worst]), 0.0), (float(uv[worst, 0]), float(uv[worst, 1]))
 
 
-def _check_folds(thickness: Floats, smallest: Floats, uv: Floats) -> None:
-    """Raise BadInputError where a layer is thicker than the radius of a hollow below it."""
-    depth = -thickness * smallest
-    worst = int(np.argmax(depth))
-    if depth[worst] >= 1.0:
+def _check_folds(thickness: Floats, bent: Principal, uv: Floats) -> None:
+    """Raise BadInputError where a layer takes more room than there is up to the middle of a hollow's curvature."""
+    hollow = np.maximum(-bent.smallest, TINY)
+    # h + H h^2 + K h^3 / 3 at the height h = 1 / hollow is the room
+    over = np.where(bent.smallest < 0.0, 6.0 * thickness * hollow**2 / np.maximum(3.0 * hollow + bent.largest, TINY), 0)
+    worst = int(np.argmax(over))
+    if over[worst] >= 1.0:
         raise BadInputError(
-            f"a layer {thickness[worst]:.3g} thick folds in a hollow of radius {-1.0 / smallest[worst]:.3g} at "
+            f"a layer {thickness[worst]:.3g} thick folds in a hollow of radius {1.0 / hollow[worst]:.3g} at "
             f"u={uv[worst, 0]:.3g}, v={uv[worst, 1]:.3g}; give a thinner band or fewer paths"
         )
 
