@@ -172,3 +172,5 @@ MAPS: dict[str, Look] = {
     schema.FIT_ERROR: Look("fit error", "distance\nto the mesh", schema.LENGTHS, "distance", decades, log=True),
 }  # fmt: skip
 """The scalar maps of surface.vtu."""
+LAMINATE = Look("thickness of the laminate", "thickness of\nall layers", schema.LENGTHS, SEQUENTIAL, from_zero)
+"""The thickness of laminate.vtu, whose points are those of surface.vtu."""

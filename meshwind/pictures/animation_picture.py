@@ -12,20 +12,20 @@ from meshwind.appearance.view import View
 from meshwind.core.cast import Floats
 from meshwind.pictures import bodies, canvas, movie, winding_picture
 from meshwind.pictures.page import Page
-from meshwind.pictures.scenes import AnimationScene
+from meshwind.pictures.scenes import AnimationScene, Motion
 
 _HOLD = 1.5
 """Seconds for which the finished winding is shown."""
 
 
-def draw(window: Any, scene: AnimationScene, page: Page, drawn: Callable[[], None]) -> None:
-    """Draw all frames into the movies of the scene; `drawn` is called after each."""
-    files = [Path(name) for name in scene.movies]
-    with movie.writers(files, page, scene.frames_per_second, scene.encoder) as write:
-        for frame in frames(window, scene, page):
+def draw(shown: Iterator[Any], motion: Motion, page: Page, drawn: Callable[[], None]) -> None:
+    """Draw all frames that are shown into the movies; `drawn` is called after each."""
+    files = [Path(name) for name in motion.movies]
+    with movie.writers(files, page, motion.frames_per_second, motion.encoder) as write:
+        for frame in shown:
             write(frame)
             drawn()
-        for _ in range(round(_HOLD * scene.frames_per_second)):
+        for _ in range(round(_HOLD * motion.frames_per_second)):
             write(frame)
 
 
@@ -38,17 +38,22 @@ def frames(window: Any, scene: AnimationScene, page: Page) -> Iterator[Any]:
     bodies.add_part(window, part)
     grown = [*_fibres(window, scene, thick), *_bridges(window, scene, thick)]
     head = window.add_mesh(pv.Sphere(radius=2.2 * thick), color=canvas.INK, render=False)
-    for k in range(scene.frames):
-        done = scene.total * k / (scene.frames - 1)
+    for k, (done, view) in enumerate(steps(scene.motion, frame.view)):
         for actor, whole in grown:
-            clipped = k < scene.frames - 1
+            clipped = k < scene.motion.frames - 1
             actor.mapper.dataset = whole.clip_scalar(scalars="laid", value=done) if clipped else whole
         head.position = _head(scene, done, thick)
-        head.visibility = 0 < k < scene.frames - 1
-        view = _turned(frame.view, scene.spin, -2.0 * np.pi * scene.turns * k / (scene.frames - 1))
+        head.visibility = 0 < k < scene.motion.frames - 1
         image = canvas.portrait(window, page, view, part.points)
         seen = replace(winding, frame=replace(frame, view=view))
-        yield _counted(winding_picture.lettered(image, seen, page), page, done, scene.total, frame.units)
+        yield counted(winding_picture.lettered(image, seen, page), page, done, scene.motion.total, frame.units)
+
+
+def steps(motion: Motion, view: View) -> Iterator[tuple[float, View]]:
+    """The length of fibre that is laid at each frame, and the view of the part, which turns."""
+    for k in range(motion.frames):
+        share = k / (motion.frames - 1)
+        yield share * motion.total, _turned(view, motion.spin, -2.0 * np.pi * motion.turns * share)
 
 
 def _fibres(window: Any, scene: AnimationScene, thick: float) -> Iterator[tuple[Any, Any]]:
@@ -94,7 +99,7 @@ def _turned(view: View, spin: Floats, angle: float) -> View:
     return replace(view, right=turn @ view.right, up=turn @ view.up, eye=turn @ view.eye)
 
 
-def _counted(image: Any, page: Page, done: float, total: float, units: str) -> Any:
+def counted(image: Any, page: Page, done: float, total: float, units: str) -> Any:
     """The image with a progress bar of the laid fibre."""
     s = page.unit
     left, width = 0.5 * page.width, 300.0 * s

@@ -1,14 +1,16 @@
-"""Scene of the animation: the fibres in the order of laying, and the axis about which the part turns."""
+"""Scenes of movies: fibres or a filament in the order of laying, and the axis about which the part turns."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from meshwind.appearance.view import View
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.path.lengths import lengths
-from meshwind.pictures.scenes import AnimationScene
+from meshwind.pictures.filament_scene import filament_scene
+from meshwind.pictures.scenes import AnimationScene, Motion, ReelScene
 from meshwind.pictures.subject import Subject
 from meshwind.pictures.winding_scene import winding_scene
 
@@ -25,16 +27,14 @@ def animation_scene(of: Subject, seconds: float, movies: list[Path], encoder: st
 
     Raises BadInputError if `seconds` is out of range.
     """
-    if not SHORTEST <= seconds <= LONGEST:
-        raise BadInputError(f"seconds is {seconds:g}; give a number from {SHORTEST:g} to {LONGEST:g}")
     seen = winding_scene(of)
     view, fibres, bridges = seen.frame.view, seen.fibres, seen.bridges
     thin = -(-fibres.points.shape[0] * fibres.points.shape[1] // _MOST_POINTS)
     chosen = np.unique(np.r_[np.arange(0, len(of.kept), thin), len(of.kept) - 1])
     arc = lengths(of.paths).arc_length
     before = laid_before(of.paths.family, arc[:, -1])[:, None] + arc
-    spin, centre, extent = turning(of.points, of.paths.points.reshape(-1, 3), view.up, view.right)
-    view = replace(view, centre=centre, width=float(extent[0]), height=float(extent[1]))
+    total = float(arc[:, -1].sum())
+    view, motion = moving(of.points, of.paths.points.reshape(-1, 3), view, Reel(total, seconds, movies, encoder))
     winding = replace(
         seen,
         frame=replace(seen.frame, view=view),
@@ -44,14 +44,47 @@ def animation_scene(of: Subject, seconds: float, movies: list[Path], encoder: st
         winding=winding,
         laid=before[:, of.kept[chosen]],
         bridge_laid=before[bridges.path, bridges.particle],
-        total=float(arc[:, -1].sum()),
+        motion=motion,
+    )
+
+
+def reel_scene(of: Subject, seconds: float, movies: list[Path], encoder: str = "") -> ReelScene:
+    """The filaments of a winding in the order of winding; arguments and errors as of `animation_scene`."""
+    seen = filament_scene(of)
+    everything = np.concatenate([seen.ribbons.points.reshape(-1, 3), seen.gear.points])
+    total = float(seen.ribbons.laid[-1])
+    view, motion = moving(of.points, everything, seen.frame.view, Reel(total, seconds, movies, encoder))
+    return ReelScene(replace(seen, frame=replace(seen.frame, view=view)), motion)
+
+
+@dataclass(frozen=True)
+class Reel:
+    """Length of fibre that a movie lays, its seconds, its files, and the path of FFmpeg."""
+
+    total: float
+    seconds: float
+    movies: list[Path]
+    encoder: str
+
+
+def moving(points: Floats, fibres: Floats, view: View, reel: Reel) -> tuple[View, Motion]:
+    """The view, wide enough for every turn of the part and its fibres, and the motion of the movie.
+
+    Raises BadInputError if the seconds are out of range.
+    """
+    if not SHORTEST <= reel.seconds <= LONGEST:
+        raise BadInputError(f"seconds is {reel.seconds:g}; give a number from {SHORTEST:g} to {LONGEST:g}")
+    spin, centre, extent = turning(points, fibres, view.up, view.right)
+    motion = Motion(
+        total=reel.total,
         spin=spin,
         turns=_TURNS,
-        frames=round(FRAMES_PER_SECOND * seconds),
+        frames=round(FRAMES_PER_SECOND * reel.seconds),
         frames_per_second=FRAMES_PER_SECOND,
-        movies=tuple(str(movie.absolute()) for movie in movies),
-        encoder=encoder,
+        movies=tuple(str(movie.absolute()) for movie in reel.movies),
+        encoder=reel.encoder,
     )
+    return replace(view, centre=centre, width=float(extent[0]), height=float(extent[1])), motion
 
 
 def laid_before(family: Ints, length: Floats) -> Floats:

@@ -202,8 +202,9 @@ def axes(pen: Any, page: Page, view: View) -> None:
         pen.text(tuple(label), "xyz"[axis], colour, font=face(page, 25), anchor="mm")
 
 
-def note(pen: Any, page: Page, lines: list[str]) -> None:
-    """Write a few lines where other pictures have their legend."""
+def note(pen: Any, page: Page, lines: list[str], below: int = 0) -> None:
+    """Write a few lines where other pictures have their legend, below so many rows of it."""
     s = page.unit
+    top = TOP + 40 + 44 * below
     for k, line in enumerate(lines):
-        pen.text((legend_left(page), s * (TOP + 40 + 32 * k)), line, INK, font=face(page, 23))
+        pen.text((legend_left(page), s * (top + 32 * k)), line, INK, font=face(page, 23))

@@ -5,82 +5,97 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 
-from meshwind.appearance.looks import colour_map
+from meshwind.appearance.looks import Scale, colour_map
+from meshwind.appearance.strips import Gear, Ribbons
 from meshwind.core.cast import Floats, Ints
-from meshwind.core.lists import spread
 from meshwind.pictures import bodies, canvas
 from meshwind.pictures.page import Page
-from meshwind.pictures.scenes import FilamentScene, Ribbons
+from meshwind.pictures.scenes import FilamentScene, Groups
 
-GEAR, SIGNAL = "#aab4be", "#e0218a"
-_BANDS = {0.0: "#9cc3dc", 1.0: "#f2cf8d"}
-"""Paler than the fibres of the families, so that the signal colour stands out."""
+BASE, HELD, SIGNAL = "#bcc5ce", "#3d4852", "#e0218a"
 _RIM = "#1c1c1c"
 _RIM_OPACITY, _RIM_WIDTH = 0.45, 1.3
 
 
 def draw(window: Any, scene: FilamentScene, page: Page) -> Any:
     """Draw part, turnarounds and bands, with text."""
-    view, signal = scene.frame.view, scene.scale is None
-    body = bodies.body(scene.part)
-    canvas.add_smooth(
-        window, body, color=SIGNAL if signal else canvas.PART, ambient=0.6 if signal else 0.3,
-        diffuse=0.5 if signal else 0.8,
-        backface_params={"color": canvas.INSIDE, "ambient": 0.25, "interpolation": "Phong"},
-    )  # fmt: skip
-    if len(scene.gear.quads):
-        gear = pv.PolyData.from_regular_faces(scene.gear.points, scene.gear.quads)
-        window.add_mesh(gear, color=GEAR, ambient=0.35, diffuse=0.7, render=False)
-    _add_ribbons(window, scene)
-    _add_edges(window, scene.ribbons, page)
-    image = canvas.portrait(window, page, view, scene.part.points)
+    add_stand(window, scene)
+    window.add_mesh(bands(scene), scalars="colour", rgb=True, ambient=0.45, diffuse=0.6, render=False)
+    for lines in edges(scene.ribbons):
+        add_edge(window, lines, page)
+    image = canvas.portrait(window, page, scene.frame.view, scene.part.points)
+    return lettered(image, scene, page)
+
+
+def lettered(image: Any, scene: FilamentScene, page: Page) -> Any:
+    """The image with its title, legend, scale, ruler and axes."""
+    view = scene.frame.view
     pen = canvas.titled(image, page, scene.frame)
-    rows = [(GEAR, scene.gear.words)] if scene.gear.words else []
-    if scene.scale is None:
-        rows = [(_BANDS[0.0], "passes out"), (_BANDS[1.0], "passes back"), (SIGNAL, "bare"), *rows]
-    else:
+    if scene.scale is not None:
         canvas.scale_bar(image, pen, page, scene.scale)
-    canvas.legend(pen, page, rows)
+    canvas.legend(pen, page, rows(scene))
     canvas.ruler(pen, page, canvas.fitting(page, view), scene.frame.units)
     canvas.axes(pen, page, view)
     return image
 
 
-def _add_ribbons(window: Any, scene: FilamentScene) -> None:
-    """Add the bands with their colours."""
-    ribbons = scene.ribbons
-    mesh = pv.PolyData.from_regular_faces(ribbons.points.reshape(-1, 3), cells(ribbons))
-    shares = np.repeat(ribbons.shares, ribbons.points.shape[1])
-    if scene.scale is None:
-        table = np.array([_rgb(_BANDS[0.0]), _rgb(_BANDS[1.0])], dtype=np.uint8)
-        mesh.point_data["colour"] = table[(shares > 0.5).astype(np.int64)]
-        window.add_mesh(mesh, scalars="colour", rgb=True, ambient=0.45, diffuse=0.6, render=False)
-        return
-    mesh.point_data["share"] = shares
-    window.add_mesh(
-        mesh, scalars="share", cmap=colour_map(scene.scale.colours), clim=[0.0, 1.0], show_scalar_bar=False,
-        ambient=0.45, diffuse=0.6, render=False,
+def rows(scene: FilamentScene) -> list[tuple[str, str]]:
+    """Rows of the legend: colours and words."""
+    groups, stands = scene.groups, scene.gear
+    found = [] if groups is None else [*zip(groups.colours, groups.names, strict=True), (SIGNAL, "bare")]
+    return found + [
+        (colour, words) for colour, words in ((HELD, stands.held_words), (BASE, stands.base_words)) if words
+    ]
+
+
+def add_stand(window: Any, scene: FilamentScene) -> None:
+    """Add the part, in a signal colour where bands are in groups, and what the turnarounds stand on."""
+    signal = scene.groups is not None
+    canvas.add_smooth(
+        window, bodies.body(scene.part), color=SIGNAL if signal else canvas.PART, ambient=0.6 if signal else 0.3,
+        diffuse=0.5 if signal else 0.8,
+        backface_params={"color": canvas.INSIDE, "ambient": 0.25, "interpolation": "Phong"},
     )  # fmt: skip
+    _add_gear(window, scene.gear)
 
 
-def cells(ribbons: Ribbons) -> Ints:
-    """Quads (q, 4) of all ribbons between their points in a row."""
-    across = ribbons.points.shape[1]
-    begin = np.cumsum(ribbons.sizes) - ribbons.sizes
-    row = spread(begin, ribbons.sizes - 1)
-    corner = (row[:, None] * across + np.arange(across - 1)).ravel()
-    return np.stack([corner, corner + 1, corner + across + 1, corner + across], axis=1)
+def _add_gear(window: Any, stands: Gear) -> None:
+    for quads, colour in ((stands.base, BASE), (stands.held, HELD)):
+        if len(quads):
+            body = pv.PolyData.from_regular_faces(stands.points, quads)
+            window.add_mesh(body, color=colour, ambient=0.35, diffuse=0.7, render=False)
 
 
-def _add_edges(window: Any, ribbons: Ribbons, page: Page) -> None:
-    """Add the two edges of every band as thin lines, so that bands that touch can be told apart."""
-    for side in (0, -1):
-        lines = bodies.polylines(np.ascontiguousarray(ribbons.points[:, side]), ribbons.sizes)
-        window.add_mesh(
-            lines, color=_RIM, opacity=_RIM_OPACITY, line_width=max(_RIM_WIDTH * page.unit, 0.5), lighting=False,
-            render=False,
-        )  # fmt: skip
+def bands(scene: FilamentScene, ribbons: Ribbons | None = None) -> Any:
+    """The bands, or the first of them, with their colours."""
+    made = scene.ribbons if ribbons is None else ribbons
+    mesh = pv.PolyData.from_regular_faces(made.points.reshape(-1, 3), made.quads)
+    colours = _of_order(scene.scale, made) if scene.groups is None else _of_group(scene.groups, len(made.laid))
+    mesh.point_data["colour"] = np.repeat(colours, made.points.shape[1], axis=0)
+    return mesh
 
 
-def _rgb(colour: str) -> Floats:
-    return np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)], dtype=np.float64)
+def _of_order(scale: Scale | None, made: Ribbons) -> Ints:
+    """Colours (k, 3) of rows by the length of fibre that is laid before."""
+    assert scale is not None
+    return np.asarray(255.0 * colour_map(scale.colours)(scale.shares(made.laid))[:, :3]).astype(np.uint8)
+
+
+def _of_group(groups: Groups, count: int) -> Ints:
+    """Colours (count, 3) of the first rows by their group."""
+    table = np.array([[int(each[k : k + 2], 16) for k in (1, 3, 5)] for each in groups.colours], dtype=np.uint8)
+    return np.asarray(table[groups.of_rows[:count]])
+
+
+def edges(ribbons: Ribbons) -> list[Any]:
+    """The two edges of every band, which tell bands apart that touch."""
+    sides: list[Floats] = [np.ascontiguousarray(ribbons.points[:, side]) for side in (0, -1)]
+    return [bodies.polylines(points, ribbons.sizes) for points in sides]
+
+
+def add_edge(window: Any, lines: Any, page: Page) -> Any:
+    """Add edges of bands as thin lines."""
+    return window.add_mesh(
+        lines, color=_RIM, opacity=_RIM_OPACITY, line_width=max(_RIM_WIDTH * page.unit, 0.5), lighting=False,
+        render=False,
+    )  # fmt: skip

@@ -8,19 +8,20 @@ from PIL import Image
 
 from meshwind.pictures.angles_scene import angles_scene
 from meshwind.pictures.filament_scene import bands_scene, filament_scene
+from meshwind.pictures.laminate_scene import laminate_scene
 from meshwind.pictures.layup_scenes import crossings_scene, quads_scene, slip_scene, unrolled_scene
 from meshwind.pictures.map_scene import coverage_scene, fit_map_scene, windability_scene
 from meshwind.pictures.page import LEAST, Page
 from meshwind.pictures.scenes import Drawing, Scene
 from meshwind.pictures.subject import Subject
 from meshwind.pictures.winding_scene import winding_scene
-from meshwind.results.schema import FIT, FIT_ERROR, OF_FILAMENT, PICTURES, SHEET, picture
+from meshwind.results.schema import FIT, FIT_ERROR, OF_FILAMENT, OF_LAMINATE, PICTURES, SHEET, picture
 
 CELL = 800, 600
 """Largest size of a picture on the sheet, in pixels."""
 _SCENES: tuple[Callable[[Subject], Scene], ...] = (
     winding_scene, crossings_scene, coverage_scene, windability_scene, slip_scene, fit_map_scene, unrolled_scene,
-    quads_scene, angles_scene, filament_scene, bands_scene,
+    quads_scene, angles_scene, filament_scene, bands_scene, laminate_scene,
 )  # fmt: skip
 """In the order of PICTURES."""
 
@@ -28,11 +29,17 @@ _SCENES: tuple[Callable[[Subject], Scene], ...] = (
 def scenes_of(of: Subject) -> dict[str, Scene]:
     """Scenes of a winding by name of the picture.
 
-    That of the fit error is missing if the error is not known, and those of a filament if there is none.
+    That of the fit error is missing if the error is not known, and those of a filament or a laminate if there is none.
     """
     lacking = {FIT} if FIT_ERROR not in of.maps else set()
-    lacking |= set(OF_FILAMENT) if not of.filaments else set()
+    lacking |= {*OF_FILAMENT, *OF_LAMINATE} - set(names_of(of))
     return {name: make(of) for name, make in zip(PICTURES, _SCENES, strict=True) if name not in lacking}
+
+
+def names_of(of: Subject) -> tuple[str, ...]:
+    """Names of the pictures that only a continuous winding or one with layers has, as far as it is one."""
+    names = (*(OF_FILAMENT if of.filaments else ()), *(OF_LAMINATE if of.laminate is not None else ()))
+    return tuple(dict.fromkeys(names))
 
 
 def placed(

@@ -10,12 +10,12 @@ from meshwind.appearance.view import NAMED
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import reported_unit
 from meshwind.pictures import driver
-from meshwind.pictures.animation_scene import animation_scene
+from meshwind.pictures.animation_scene import animation_scene, reel_scene
 from meshwind.pictures.gallery import placed, scenes_of, write_sheet
 from meshwind.pictures.movie import encoder
 from meshwind.pictures.page import Page
 from meshwind.pictures.redesign_scene import redesign_in
-from meshwind.pictures.scenes import AnimationScene, Drawing, Scene
+from meshwind.pictures.scenes import AnimationScene, Drawing, ReelScene, Scene
 from meshwind.pictures.subject import Subject, subject_of
 from meshwind.results.folder import beside
 from meshwind.results.reading import is_redesign, read_report, read_results
@@ -141,12 +141,13 @@ def _part(source: Path) -> tuple[str, str]:
 
 
 def _animation(of: Subject, seconds: float, movies: list[Path], ffmpeg: str, page: Page) -> Drawing:
-    return Drawing(animation_scene(of, seconds, movies, ffmpeg), replace(page, transparent=False))
+    make = reel_scene if of.filaments else animation_scene
+    return Drawing(make(of, seconds, movies, ffmpeg), replace(page, transparent=False))
 
 
 def _paint(drawings: Mapping[Path, Drawing], progress: PictureProgress | None) -> None:
     scenes = [drawing.scene for drawing in drawings.values()]
-    total = sum(1 + (scene.frames if isinstance(scene, AnimationScene) else 0) for scene in scenes)
+    total = sum(1 + (scene.motion.frames if isinstance(scene, AnimationScene | ReelScene) else 0) for scene in scenes)
     done = 0
 
     def count(word: str) -> None:

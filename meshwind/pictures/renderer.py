@@ -19,9 +19,11 @@ from meshwind.pictures import (
     crossings_picture,
     filament_picture,
     fit_picture,
+    laminate_picture,
     map_picture,
     quads_picture,
     redesign_picture,
+    reel_picture,
     scenes,
     slip_picture,
     unrolled_picture,
@@ -39,6 +41,11 @@ DRAWN_BY: dict[type, Callable[..., Any]] = {
     scenes.RedesignScene: redesign_picture.draw,
     scenes.FilamentScene: filament_picture.draw,
     scenes.AnglesScene: angles_picture.draw,
+    scenes.LaminateScene: laminate_picture.draw,
+}
+MOVED_BY: dict[type, Callable[..., Any]] = {
+    scenes.AnimationScene: animation_picture.frames,
+    scenes.ReelScene: reel_picture.frames,
 }
 FRAME = "frame"
 
@@ -49,8 +56,9 @@ def main() -> None:
     say("ready")
     for file, drawing in scenes.unpack(sys.stdin.buffer.read()):
         window.clear_actors()
-        if isinstance(drawing.scene, scenes.AnimationScene):
-            animation_picture.draw(window, drawing.scene, drawing.page, lambda: say(FRAME))
+        if isinstance(drawing.scene, scenes.AnimationScene | scenes.ReelScene):
+            frames = MOVED_BY[type(drawing.scene)](window, drawing.scene, drawing.page)
+            animation_picture.draw(frames, drawing.scene.motion, drawing.page, lambda: say(FRAME))
         else:
             image = DRAWN_BY[type(drawing.scene)](window, drawing.scene, drawing.page)
             image.save(str(file), compress_level=1)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshwind.appearance.looks import Scale
+from meshwind.appearance.strips import Gear, Ribbons
 from meshwind.appearance.view import View
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.pictures.page import Page
@@ -80,16 +81,13 @@ class WindingScene:
 
 
 @dataclass(frozen=True)
-class AnimationScene:
-    """A winding with the length of fibre laid before each point of its fibres (p, n) and of its bridges (k,).
+class Motion:
+    """How a movie goes, from nothing to the whole length of fibre, `total`.
 
-    total: length of all fibres; spin (3,): axis about which the part turns; turns: number of its turns; frames: number
-    of frames; movies: files to write; encoder: path of FFmpeg.
+    spin (3,): axis about which the part turns; turns: number of its turns; frames: number of frames; movies: files to
+    write; encoder: path of FFmpeg.
     """
 
-    winding: WindingScene
-    laid: Floats
-    bridge_laid: Floats
     total: float
     spin: Floats
     turns: int
@@ -97,6 +95,16 @@ class AnimationScene:
     frames_per_second: int
     movies: tuple[str, ...]
     encoder: str
+
+
+@dataclass(frozen=True)
+class AnimationScene:
+    """A winding with the length of fibre laid before each point of its fibres (p, n) and of its bridges (k,)."""
+
+    winding: WindingScene
+    laid: Floats
+    bridge_laid: Floats
+    motion: Motion
 
 
 @dataclass(frozen=True)
@@ -224,32 +232,50 @@ class RedesignScene:
 
 
 @dataclass(frozen=True)
-class Ribbons:
-    """Bands as strips, one after the other: points (k, m, 3), m across the band; shares (k,) on a scale; sizes (l,)."""
+class Groups:
+    """Rows of ribbons in groups (k,), with a colour and a name for each group."""
 
-    points: Floats
-    shares: Floats
-    sizes: Ints
-
-
-@dataclass(frozen=True)
-class Gear:
-    """What the turnarounds stand on: quads (q, 4) between points (n, 3), and its name for the legend."""
-
-    points: Floats
-    quads: Ints
-    words: str
+    of_rows: Ints
+    colours: tuple[str, ...]
+    names: tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class FilamentScene:
-    """The bands of a filament by the order of winding or, without a scale, by family over a part in a signal colour."""
+    """The bands of a filament by the order of winding, on a scale, or in groups over a part in a signal colour."""
 
     frame: Frame
     part: Part
     ribbons: Ribbons
     gear: Gear
     scale: Scale | None = None
+    groups: Groups | None = None
+
+
+@dataclass(frozen=True)
+class ReelScene:
+    """The bands of a filament as they are wound."""
+
+    filament: FilamentScene
+    motion: Motion
+
+
+@dataclass(frozen=True)
+class LaminateScene:
+    """The thickness of a laminate on the part, (k,) on a scale, and that of its layers along the part.
+
+    stations (s,): lengths along the part; thickness, angles (l, s): of each layer, angles in degrees, NaN where it is
+    not; names: words for each layer.
+    """
+
+    frame: Frame
+    part: Part
+    scale: Scale
+    shares: Floats
+    stations: Floats
+    thickness: Floats
+    angles: Floats
+    names: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -268,8 +294,10 @@ class AnglesScene:
 Scene: TypeAlias = (
     WindingScene
     | FilamentScene
+    | LaminateScene
     | AnglesScene
     | AnimationScene
+    | ReelScene
     | CrossingsScene
     | MapScene
     | SlipScene

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from meshwind.appearance.ribbons import turned_by
+from meshwind.appearance.strips import Turned
 from meshwind.appearance.view import View, best_view, named_view
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.filament.filament import Filament
@@ -17,7 +19,9 @@ from meshwind.path.lengths import lengths
 from meshwind.path.paths import Paths, Status
 from meshwind.pictures.scenes import Frame, Part
 from meshwind.results.figures import PathFigures, path_figures
-from meshwind.results.pattern_types import TurnaroundFigures
+from meshwind.results.laminate_reading import ReadLaminate, read_laminate
+from meshwind.results.laminate_types import LayerFigures
+from meshwind.results.pattern_types import PatternFigures
 from meshwind.results.reading import Results, read_surface_grid
 from meshwind.results.schema import NORMAL
 from meshwind.surface.grid import grid
@@ -27,21 +31,13 @@ _MOST_POINTS, _FEWEST_POINTS, _ALL_POINTS = 250, 40, 60_000
 
 
 @dataclass(frozen=True)
-class Turned:
-    """What turns a filament at one end: a word for it, its reach over the rim, and the radius of pins or shaft."""
-
-    kind: str
-    reach: float
-    radius: float
-
-
-@dataclass(frozen=True)
 class Subject:
     """A layup and its surface as outward quads (q, 4) between points (k, 3) with normals (k, 3) and maps (k,).
 
     name and units of the part for titles and legends; revolutions: as given, None if that is not known; seen_from:
     "auto", the name of a side, or a view; partings (k, 2): pairs of neighbours that part round a body.
-    filaments of a continuous winding, its pattern in words, and what turns them at the start and at the end.
+    filaments of a continuous winding, its pattern in words, and what turns them at the start and at the end; laminate of
+    a winding with layers, and the report's figures of these.
     """
 
     layup: Layup
@@ -57,6 +53,8 @@ class Subject:
     filaments: tuple[Filament, ...] = ()
     pattern: str = ""
     turned: tuple[Turned, ...] = ()
+    laminate: ReadLaminate | None = None
+    layers: tuple[LayerFigures, ...] = ()
 
     @property
     def paths(self) -> Paths:
@@ -67,6 +65,11 @@ class Subject:
     def converged(self) -> Bools:
         """Which paths (p,) converged."""
         return np.asarray(self.paths.status == Status.CONVERGED)
+
+    @property
+    def widths(self) -> tuple[float, ...]:
+        """Width of the band of each layer."""
+        return tuple(each["band_width"] for each in self.layers) or (self.layup.coverage.width,)
 
     @cached_property
     def figures(self) -> PathFigures:
@@ -114,10 +117,15 @@ class Subject:
         """The words and the view."""
         return Frame(title, subtitle, self.units, view or self.view)
 
-    def wound(self, filaments: Sequence[Filament], pattern: str, turnarounds: Sequence[TurnaroundFigures]) -> "Subject":
-        """The same as a continuous winding."""
-        turned = tuple(Turned(each["kind"], each["reach"], each["radius"] or 0.0) for each in turnarounds)
-        return replace(self, filaments=tuple(filaments), pattern=pattern, turned=turned)
+    def wound(self, filaments: Sequence[Filament], patterns: Sequence[PatternFigures]) -> "Subject":
+        """The same as a continuous winding; patterns: the report's figures of it."""
+        words = patterns[0]["words"] if len(patterns) == 1 else ""
+        turned = turned_by(patterns[0]["turnarounds"]) if patterns else ()
+        return replace(self, filaments=tuple(filaments), pattern=words, turned=turned)
+
+    def layered(self, laminate: ReadLaminate | None, layers: Sequence[LayerFigures]) -> "Subject":
+        """The same as a laminate, if there is one; layers: the report's figures of it."""
+        return self if laminate is None or not layers else replace(self, laminate=laminate, layers=tuple(layers))
 
 
 def subject(
@@ -153,7 +161,5 @@ def subject_of(results: Results, seen_from: str = "auto") -> Subject:
     turns = results.revolutions
     of = subject_in(results.folder, results.layup, results.name, results.units, turns, seen_from, trusted=False)
     of = replace(of, partings=results.partings)
-    if not results.filaments or not results.patterns:
-        return of
-    first = results.patterns[0]
-    return of.wound(results.filaments, first["words"], first["turnarounds"])
+    of = of.layered(read_laminate(results.folder, results.surface), results.layers)
+    return of.wound(results.filaments, results.patterns) if results.filaments else of

@@ -20,6 +20,7 @@ from meshwind.layup.layup import Layup, assess
 from meshwind.path.paths import Counters, Paths, Status
 from meshwind.results import schema
 from meshwind.results.filament_file import read_filaments
+from meshwind.results.laminate_types import LayerFigures
 from meshwind.results.pattern_types import PatternFigures
 from meshwind.results.redesign_report_types import RedesignReport
 from meshwind.results.report_types import Report
@@ -102,6 +103,12 @@ class Results:
     def patterns(self) -> list[PatternFigures]:
         """The report's figures of the pattern, an entry a layer; none where the winding is not continuous."""
         found = _under(self.report, "pattern")
+        return found if isinstance(found, list) else []
+
+    @property
+    def layers(self) -> list[LayerFigures]:
+        """The report's figures of the laminate, an entry a layer; none where the run has no layers."""
+        found = _under(self.report, "laminate")
         return found if isinstance(found, list) else []
 
     @property

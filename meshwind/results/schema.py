@@ -164,10 +164,15 @@ CONFIG = File("meshwind.toml")
 # pictures
 
 WINDING, FIT, REDESIGN, SHEET = "winding", "fit", "redesign", "sheet"
-FILAMENTS, BANDS = "filament", "bands"
+FILAMENTS, BANDS, LAMINATE_PICTURE = "filament", "bands", "laminate"
 OF_FILAMENT = FILAMENTS, BANDS
-"""Pictures of a continuous winding alone."""
-PICTURES = WINDING, "crossings", "coverage", "windability", "slip", FIT, "unrolled", "quads", "angles", *OF_FILAMENT
+"""Pictures of a continuous winding alone, ..."""
+OF_LAMINATE = BANDS, LAMINATE_PICTURE
+"""... and those of layers one on another."""
+PICTURES = (
+    WINDING, "crossings", "coverage", "windability", "slip", FIT, "unrolled", "quads", "angles", FILAMENTS, BANDS,
+    LAMINATE_PICTURE,
+)  # fmt: skip
 """The pictures of a winding; REDESIGN is that of a redesign, SHEET shows all of a folder on one page."""
 MOVIES = "gif", "mp4"
 

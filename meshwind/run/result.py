@@ -9,7 +9,7 @@ from meshwind.core.version import version
 from meshwind.path import Paths, Status
 from meshwind.pictures import driver
 from meshwind.pictures.fit_scene import fit_scene
-from meshwind.pictures.gallery import placed, scenes_of, write_sheet
+from meshwind.pictures.gallery import names_of, placed, scenes_of, write_sheet
 from meshwind.pictures.page import Page
 from meshwind.pictures.revolutions_picture import draw_revolutions
 from meshwind.pictures.scenes import Drawing
@@ -18,15 +18,14 @@ from meshwind.results import folder
 from meshwind.results.config_file import write_config
 from meshwind.results.filament_file import write_filaments
 from meshwind.results.laminate_files import write_laminate, write_stations
+from meshwind.results.laminate_reading import read_laminate
 from meshwind.results.layup_figures import parted
-from meshwind.results.pattern_figures import turnaround_figures
 from meshwind.results.report import RunFacts, report, write_report
 from meshwind.results.report_types import Report
 from meshwind.results.schema import (
     CONFIG,
     FILAMENT,
     FIT_PICTURE,
-    OF_FILAMENT,
     REPORT,
     REVOLUTIONS_PICTURE,
     SHEET,
@@ -223,10 +222,11 @@ def _draw(result: Result, out: Path) -> str:
     name, units = result.mesh.name, result.mesh.units
     of = subject_in(out, result.layup, name, units, result.revolutions)
     of = replace(of, partings=parted(result.layup, result.spaced))
-    if result.closed is not None:
-        closed = result.closed
-        of = of.wound(list(result.filaments), closed.pattern.words, turnaround_figures(closed))
-    asked = (WINDING, SHEET, *(OF_FILAMENT if result.closed is not None else ()))
+    if result.filaments or result.layered is not None:
+        figures = result.report()
+        of = of.layered(read_laminate(out, result.surface), figures.get("laminate", []))
+        of = of.wound(result.filaments, figures.get("pattern", [])) if result.filaments else of
+    asked = (WINDING, SHEET, *names_of(of))
     with TemporaryDirectory(dir=out) as cells:  # within, so that a killed run leaves nothing elsewhere
         pictures = placed(scenes_of(of), asked, Page(), out, Path(cells))
         work = dict(pictures)

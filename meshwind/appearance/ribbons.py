@@ -1,0 +1,212 @@
+"""Bands of fibre as ribbons of their true width, bent across as what they lie on."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from meshwind.appearance.strips import Ribbons, Turned
+from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.core.vectors import TINY, unit
+from meshwind.filament.course import Kind
+from meshwind.filament.filament import Filament
+from meshwind.results.pattern_types import TurnaroundFigures
+from meshwind.surface.forms import components, fundamental_forms
+from meshwind.surface.grid import grid
+from meshwind.surface.surface import Surface
+
+ACROSS = 7
+"""Points across a ribbon."""
+MOST_ROWS = 30_000
+"""Rows of all ribbons together, about: more are not visible, and take 170 bytes each."""
+_SHORT = 24
+"""Points of a run of one kind that are all kept."""
+_LIFT = 1e-3, 5e-3
+"""Height of the first and the last fibre over the part, over its diagonal: what is wound later lies above."""
+_TIGHTEST = 0.5 * np.pi
+"""Largest angle that a band bends through from its middle to its edge."""
+_ROUND = 64
+"""Points round a rim of which the middle is taken."""
+
+
+@dataclass(frozen=True)
+class Fineness:
+    """How fine ribbons are: points across one, an odd number, and about how many rows all have together."""
+
+    across: int = ACROSS
+    rows: int = MOST_ROWS
+
+
+@dataclass(frozen=True)
+class Line:
+    """The drawn points of one filament (k,): their numbers in it, and the curvature (k,) across the fibre there."""
+
+    filament: Filament
+    kept: Ints
+    across: Floats
+
+
+def ribbons(
+    filaments: Sequence[Filament],
+    surface: Surface,
+    widths: Sequence[float],
+    turned: Sequence[Turned] = (),
+    fineness: Fineness | None = None,
+) -> Ribbons:
+    """The bands of filaments, lifted off the part in the order of winding; widths: of the band of each layer.
+
+    All comes from the filaments' own points and normals; the surface of the part only bends the bands across. turned:
+    what turns them at the start and at the end; pins gather a band to their own width.
+    """
+    fine = fineness or Fineness()
+    body = _Body(surface)
+    pins = [(surface.points(_rim(v)).mean(axis=0), 2.0 * one.pin) for v, one in zip((0.0, 1.0), turned, strict=False)]
+    step = -(-sum(len(each.course) for each in filaments) // fine.rows)
+    lines = [drawn(each, body, step) for each in filaments]
+    total = sum(float(each.course.arc_length[-1]) for each in filaments)
+    strips, laid, before = [], [], 0.0
+    for line in lines:
+        arc = line.filament.course.arc_length
+        laid.append(before + arc[line.kept])
+        before += float(arc[-1])
+        lift = surface.size * (_LIFT[0] + (_LIFT[1] - _LIFT[0]) * laid[-1] / max(total, TINY))
+        width = np.asarray(widths, dtype=np.float64)[np.minimum(line.filament.layer[line.kept], len(widths) - 1)]
+        strips.append(strip(line, gathered(line, width, pins), lift, fine.across))
+
+    def of_courses(name: str) -> Floats:
+        return np.concatenate([getattr(line.filament.course, name)[line.kept] for line in lines])
+
+    def of_filaments(name: str) -> Floats:
+        return np.concatenate([getattr(line.filament, name)[line.kept] for line in lines])
+
+    return Ribbons(
+        points=np.concatenate(strips),
+        laid=np.concatenate(laid),
+        kind=of_courses("kind"),
+        layer=of_filaments("layer"),
+        circuit=of_courses("circuit"),
+        passed=of_courses("passed"),
+        path=of_courses("path"),
+        angle=np.degrees(of_courses("angle")),
+        slip=of_courses("slip"),
+        thickness=of_filaments("thickness"),
+        sizes=np.array([len(each) for each in strips]),
+    )
+
+
+def turned_by(turnarounds: Sequence[TurnaroundFigures]) -> tuple[Turned, ...]:
+    """What turns a filament at the start and at the end, from the report's figures of a pattern."""
+    return tuple(Turned(each["kind"], each["reach"], each["radius"] or 0.0) for each in turnarounds)
+
+
+def _rim(v: float) -> Floats:
+    """Parameters (k, 2) of points round a rim."""
+    u = np.arange(_ROUND) / _ROUND
+    return np.stack([u, np.full(_ROUND, v)], axis=1)
+
+
+def gathered(line: Line, width: Floats, pins: Sequence[tuple[Floats, float]]) -> Floats:
+    """Width (k,) of a band that pins gather; pins: the middle of each rim, and the width of a band there.
+
+    It has its whole width on the part and the pins' between them, and changes evenly on the way.
+    """
+    if not pins:
+        return width
+    course = line.filament.course
+    points, kind, arc = course.points[line.kept], course.kind[line.kept], course.arc_length[line.kept]
+    off = np.stack([np.linalg.norm(points - middle, axis=1) for middle, _ in pins])
+    at_pins = np.array([wide or np.inf for _, wide in pins])[off.argmin(axis=0)]
+    known = kind != Kind.TURN
+    narrow = np.where(kind == Kind.DWELL, np.minimum(at_pins, width), width)
+    return np.asarray(np.interp(arc, arc[known], narrow[known])) if known.any() else width
+
+
+def drawn(filament: Filament, body: "_Body", step: int = 1) -> Line:
+    """Every `step`-th point of a filament, and all of its short runs of one kind."""
+    course = filament.course
+    run = np.concatenate([[0], np.cumsum((np.diff(course.kind) != 0) | (np.diff(course.passed) != 0))])
+    size = np.bincount(run)
+    first = np.cumsum(size) - size
+    place = np.arange(len(run)) - first[run]
+    keep: Bools = (place % step == 0) | (place == size[run] - 1) | (size[run] <= _SHORT)
+    kept = np.flatnonzero(keep)
+    return Line(filament, kept, curvature_across(filament, body)[kept])
+
+
+def strip(line: Line, width: Floats, lift: Floats, across: int = ACROSS) -> Floats:
+    """Points (k, m, 3) across a band: arcs of length width (k,), square to the fibre, lifted by (k,) along the normal.
+
+    In the air a band is ruled: its points go straight from where it lifts off to where it lands.
+    """
+    course = line.filament.course
+    middle, normal = course.points[line.kept], course.normal[line.kept]
+    steps = unit(np.diff(middle, axis=0))
+    ahead = unit(np.concatenate([steps[:1], steps[:-1] + steps[1:], steps[-1:]]))
+    aside = unit(np.cross(normal, ahead))
+    up = np.cross(ahead, aside)
+    off = width[:, None] * np.linspace(-0.5, 0.5, across)
+    tightest = 2.0 * _TIGHTEST / np.maximum(width, TINY)
+    bend = np.clip(line.across, -tightest, tightest)[:, None]
+    angle = bend * off
+    flat = np.abs(angle) < 1e-6
+    safe = np.where(flat, 1.0, bend)
+    out = np.where(flat, off, np.sin(np.where(flat, 1.0, angle)) / safe)
+    down = np.where(flat, -0.5 * bend * off**2, (np.cos(angle) - 1.0) / safe)
+    centre = middle + lift[:, None] * normal
+    rows = centre[:, None] + out[..., None] * aside[:, None] + down[..., None] * up[:, None]
+    return _ruled(rows, course.arc_length[line.kept], course.kind[line.kept] == Kind.BRIDGE)
+
+
+def _ruled(rows: Floats, arc: Floats, air: Bools) -> Floats:
+    """Rows (k, m, 3) in which those in the air (k,) are between the last before them and the first after them."""
+    ground = np.flatnonzero(~air)
+    inside = np.flatnonzero(air)
+    if not len(ground) or not len(inside):
+        return np.asarray(rows)
+    at = np.searchsorted(ground, inside)
+    before, after = ground[np.maximum(at - 1, 0)], ground[np.minimum(at, len(ground) - 1)]
+    share = np.clip((arc[inside] - arc[before]) / np.maximum(arc[after] - arc[before], TINY), 0.0, 1.0)
+    weight = share[:, None, None]
+    out = np.array(rows)
+    out[inside] = (1.0 - weight) * rows[before] + weight * rows[after]
+    return out
+
+
+class _Body:
+    """The part's curvature at the point of its grid that is nearest to any point."""
+
+    def __init__(self, surface: Surface) -> None:
+        self._frames = grid(surface).frames
+        self._tree = cKDTree(self._frames[:, 0])
+
+    def bent(self, points: Floats, ahead: Floats) -> Floats:
+        """Normal curvature (n,) square to directions (n, 3) at points (n, 3), positive where the part bulges out."""
+        frames = self._frames[self._tree.query(points)[1]]
+        forms = fundamental_forms(frames)
+        aside = np.cross(forms.normal, ahead)
+        two, (du, dv) = forms.second, components(frames, aside).T
+        bent = two.uu * du**2 + 2.0 * two.uv * du * dv + two.vv * dv**2
+        return np.asarray(bent / np.maximum((aside**2).sum(axis=1), TINY))
+
+
+def curvature_across(filament: Filament, body: _Body) -> Floats:
+    """Normal curvature (n,) square to the fibre of what it lies on, positive where that bulges outwards.
+
+    On the part it is the surface's; on a prism that goes straight on along its axis, the part of the section's that a
+    fibre at this angle leaves across itself.
+    """
+    course = filament.course
+    step = np.diff(course.points, axis=0)
+    size = np.maximum((step**2).sum(axis=1), TINY)
+    along = (np.diff(course.normal, axis=0) * step).sum(axis=1) / size
+    # at a place where the fibre leaves one body for another only one side is true: the flatter one
+    both = np.stack([np.append(along[0], along), np.append(along, along[-1])])
+    along = both[np.abs(both).argmin(axis=0), np.arange(both.shape[1])]
+    hoop = np.maximum(np.sin(course.angle), 0.1)
+    turning = (course.kind == Kind.TURN) | (course.kind == Kind.DWELL)
+    across = np.where(turning, along * (np.cos(course.angle) / hoop) ** 2, 0.0)
+    on = np.flatnonzero(~turning)
+    if len(on):
+        across[on] = body.bent(course.points[on], np.gradient(course.points, axis=0)[on])
+    return np.asarray(across)

@@ -1,0 +1,59 @@
+"""winding.gif and winding.mp4 of a filament: its band is laid in the order of winding while the part turns."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+
+from meshwind.appearance.strips import WORDS, Ribbons
+from meshwind.core.cast import Floats
+from meshwind.filament.course import Kind
+from meshwind.pictures import animation_picture, canvas, filament_picture
+from meshwind.pictures.page import Page
+from meshwind.pictures.scenes import ReelScene
+
+_FREE = 0.16
+"""Length of the free fibre that is drawn ahead of the band, over the largest extent of the picture."""
+_THICK = 1.6
+"""Half the width of the free fibre, in pixels of the designed page."""
+
+
+def frames(window: Any, scene: ReelScene, page: Page) -> Iterator[Any]:
+    """The frames in sequence; the last one shows the finished winding."""
+    filament, last = scene.filament, scene.motion.frames - 1
+    frame = filament.frame
+    filament_picture.add_stand(window, filament)
+    whole = filament.ribbons
+    band = window.add_mesh(
+        filament_picture.bands(filament), scalars="colour", rgb=True, ambient=0.45, diffuse=0.6, render=False
+    )
+    rims = [filament_picture.add_edge(window, lines, page) for lines in filament_picture.edges(whole)]
+    free = window.add_mesh(pv.Line(), color=canvas.INK, line_width=2.0 * _THICK * page.unit, render=False)
+    for k, (done, view) in enumerate(animation_picture.steps(scene.motion, frame.view)):
+        laid = whole if k == last else whole.until(done)
+        band.mapper.dataset = filament_picture.bands(filament, laid)
+        for rim, lines in zip(rims, filament_picture.edges(laid), strict=True):
+            rim.mapper.dataset = lines
+        free.mapper.dataset = pv.Line(*_free(laid, _FREE * max(frame.view.width, frame.view.height)))
+        free.visibility = 0 < k < last
+        image = canvas.portrait(window, page, view, filament.part.points)
+        seen = replace(filament, frame=replace(frame, view=view))
+        image = filament_picture.lettered(image, seen, page)
+        canvas.note(canvas.pen(image), page, said(laid), below=len(filament_picture.rows(filament)))
+        yield animation_picture.counted(image, page, done, scene.motion.total, frame.units)
+
+
+def _free(laid: Ribbons, reach: float) -> tuple[Floats, Floats]:
+    """Both ends of the fibre that comes to the point where it is laid, straight on from the band."""
+    middle = laid.points[:, laid.points.shape[1] // 2]
+    step = middle[-1] - middle[-2]
+    return middle[-1], middle[-1] + reach * step / max(float(np.linalg.norm(step)), 1e-300)
+
+
+def said(laid: Ribbons) -> list[str]:
+    """What the fibre does where it is being laid."""
+    lines = [f"layer {laid.layer[-1] + 1}"] if laid.layer.max() > 0 else []
+    lines += [f"circuit {laid.circuit[-1] + 1}", f"pass {'back' if laid.passed[-1] % 2 else 'out'}"]
+    return [*lines, f"{laid.angle[-1]:.1f}°", *WORDS[Kind(int(laid.kind[-1]))].split(", ")]
