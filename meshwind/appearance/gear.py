@@ -19,7 +19,7 @@ _SIDES = 17
 """Points round a pin."""
 _PAST = 0.15
 """Share of the reach by which a collar goes on past the fibre."""
-_INTO, _BEYOND = 3.0, 4.0
+_INTO, _BEYOND = 3.0, 2.5
 """Lengths of a shaft from the fibre round it into the part and out to the machine, over its radius."""
 _STUB = 4.0
 """Length of a pin over its radius: it stands clear of the bands that it holds."""
@@ -48,7 +48,7 @@ def gear(surface: Surface, filaments: Sequence[Filament], turned: Sequence[Turne
         end = _End(v, edge(surface, v), one, filaments)
         if one.kind == "shaft":
             held += [_shaft(end), _slim_pins(end)]
-            names[1].append("pins and shaft")
+            names[1].extend(("pins", "shaft"))
             continue
         base.append(_collar(surface, end))
         names[0].append("collar" if one.kind == "collar" else "ring of the pins")

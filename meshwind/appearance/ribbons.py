@@ -2,8 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from meshwind.appearance.strips import Ribbons, Turned
@@ -74,10 +76,10 @@ def ribbons(
         width = np.asarray(widths, dtype=np.float64)[np.minimum(line.filament.layer[line.kept], len(widths) - 1)]
         strips.append(strip(line, gathered(line, width, pins), lift, fine.across))
 
-    def of_courses(name: str) -> Floats:
+    def of_courses(name: str) -> NDArray[Any]:
         return np.concatenate([getattr(line.filament.course, name)[line.kept] for line in lines])
 
-    def of_filaments(name: str) -> Floats:
+    def of_filaments(name: str) -> NDArray[Any]:
         return np.concatenate([getattr(line.filament, name)[line.kept] for line in lines])
 
     return Ribbons(

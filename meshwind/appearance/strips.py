@@ -3,12 +3,13 @@
 Importing this module loads nothing heavy, as the process that draws needs it, too.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.lists import spread
+from meshwind.core.vectors import TINY, unit
 from meshwind.filament.course import Kind
 
 WORDS = {
@@ -50,6 +51,26 @@ class Ribbons:
         row = spread(begin, self.sizes - 1)
         corner = (row[:, None] * across + np.arange(across - 1)).ravel()
         return np.stack([corner, corner + 1, corner + across + 1, corner + across], axis=1)
+
+    @property
+    def normals(self) -> Floats:
+        """Unit normals (k, m, 3) of the strips."""
+        ahead = np.zeros_like(self.points)
+        steps = np.diff(self.points, axis=0)
+        steps[np.cumsum(self.sizes)[:-1] - 1] = 0.0  # from one strip to the next
+        ahead[:-1] += steps
+        ahead[1:] += steps
+        return unit(np.cross(np.gradient(self.points, axis=1), ahead))
+
+    def before(self, eye: Floats, depth: float) -> "Ribbons":
+        """The same as an eye in direction (3,) shall see it: what is laid later before what is laid earlier.
+
+        Fibres are computed one by one. Where they cross in the air the later one would lie on the earlier one, but they
+        would cut through each other; so bands on the part and over hollows come nearer to the eye by up to `depth`.
+        """
+        share = self.laid / max(float(self.laid[-1]), TINY)
+        nearer = np.where((self.kind == Kind.LAID) | (self.kind == Kind.BRIDGE), depth * share, 0.0)
+        return replace(self, points=self.points + nearer[:, None, None] * eye)
 
     def until(self, done: float) -> "Ribbons":
         """What is laid when a length of fibre is laid; the last row of it is between two of these."""

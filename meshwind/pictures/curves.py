@@ -26,8 +26,9 @@ class Curves:
     def axes(self, box: tuple[float, float, float, float], stations: Floats) -> Any:
         """Axes over stations (s,) in a box: left, base, width and height, for a page of 1600 x 1200."""
         page, s = self._page, self._page.unit
-        sides = page.width, page.height, page.width, page.height
-        made = self._figure.add_axes([s * part / side for part, side in zip(box, sides, strict=True)], facecolor="none")
+        left, width = (s * box[k] / page.width for k in (0, 2))
+        base, height = (s * box[k] / page.height for k in (1, 3))
+        made = self._figure.add_axes((left, base, width, height), facecolor="none")
         made.set_xlim(stations.min(), stations.max())
         made.grid(color="#dddddd", linewidth=s)
         made.tick_params(labelsize=TICKS * s, length=6 * s, width=s)

@@ -7,6 +7,7 @@ import pyvista as pv
 
 from meshwind.appearance.looks import Scale, colour_map
 from meshwind.appearance.strips import Gear, Ribbons
+from meshwind.appearance.view import View
 from meshwind.core.cast import Floats, Ints
 from meshwind.pictures import bodies, canvas
 from meshwind.pictures.page import Page
@@ -15,14 +16,14 @@ from meshwind.pictures.scenes import FilamentScene, Groups
 BASE, HELD, SIGNAL = "#bcc5ce", "#3d4852", "#e0218a"
 _RIM = "#1c1c1c"
 _RIM_OPACITY, _RIM_WIDTH = 0.45, 1.3
+_DEPTH = 0.03
+"""Depth, over the extent of the picture, by which the last band is seen before the first."""
 
 
 def draw(window: Any, scene: FilamentScene, page: Page) -> Any:
     """Draw part, turnarounds and bands, with text."""
     add_stand(window, scene)
-    window.add_mesh(bands(scene), scalars="colour", rgb=True, ambient=0.45, diffuse=0.6, render=False)
-    for lines in edges(scene.ribbons):
-        add_edge(window, lines, page)
+    add_bands(window, scene, page)
     image = canvas.portrait(window, page, scene.frame.view, scene.part.points)
     return lettered(image, scene, page)
 
@@ -66,13 +67,25 @@ def _add_gear(window: Any, stands: Gear) -> None:
             window.add_mesh(body, color=colour, ambient=0.35, diffuse=0.7, render=False)
 
 
-def bands(scene: FilamentScene, ribbons: Ribbons | None = None) -> Any:
-    """The bands, or the first of them, with their colours."""
-    made = scene.ribbons if ribbons is None else ribbons
-    mesh = pv.PolyData.from_regular_faces(made.points.reshape(-1, 3), made.quads)
-    colours = _of_order(scene.scale, made) if scene.groups is None else _of_group(scene.groups, len(made.laid))
-    mesh.point_data["colour"] = np.repeat(colours, made.points.shape[1], axis=0)
-    return mesh
+def add_bands(window: Any, scene: FilamentScene, page: Page) -> list[Any]:
+    """Add the bands and their edges; return what was added."""
+    band, *edges = bands(scene, scene.ribbons, scene.frame.view)
+    added = window.add_mesh(band, scalars="colour", rgb=True, ambient=0.45, diffuse=0.6, render=False)
+    added.prop.interpolation = "Phong"
+    look = {"color": _RIM, "opacity": _RIM_OPACITY, "line_width": max(_RIM_WIDTH * page.unit, 0.5), "lighting": False}
+    return [added, *(window.add_mesh(edge, render=False, **look) for edge in edges)]
+
+
+def bands(scene: FilamentScene, ribbons: Ribbons, view: View) -> list[Any]:
+    """The bands of a scene, or the first of them, with their colours, and their two edges, which tell them apart."""
+    seen = ribbons.before(view.eye, _DEPTH * max(view.width, view.height))
+    mesh = pv.PolyData.from_regular_faces(seen.points.reshape(-1, 3), seen.quads)
+    mesh.point_data["Normals"] = ribbons.normals.reshape(-1, 3)
+    mesh.point_data.active_normals_name = "Normals"
+    colours = _of_order(scene.scale, seen) if scene.groups is None else _of_group(scene.groups, len(seen.laid))
+    mesh.point_data["colour"] = np.repeat(colours, seen.points.shape[1], axis=0)
+    sides: list[Floats] = [np.ascontiguousarray(seen.points[:, side]) for side in (0, -1)]
+    return [mesh, *(bodies.polylines(points, seen.sizes) for points in sides)]
 
 
 def _of_order(scale: Scale | None, made: Ribbons) -> Ints:
@@ -85,17 +98,3 @@ def _of_group(groups: Groups, count: int) -> Ints:
     """Colours (count, 3) of the first rows by their group."""
     table = np.array([[int(each[k : k + 2], 16) for k in (1, 3, 5)] for each in groups.colours], dtype=np.uint8)
     return np.asarray(table[groups.of_rows[:count]])
-
-
-def edges(ribbons: Ribbons) -> list[Any]:
-    """The two edges of every band, which tell bands apart that touch."""
-    sides: list[Floats] = [np.ascontiguousarray(ribbons.points[:, side]) for side in (0, -1)]
-    return [bodies.polylines(points, ribbons.sizes) for points in sides]
-
-
-def add_edge(window: Any, lines: Any, page: Page) -> Any:
-    """Add edges of bands as thin lines."""
-    return window.add_mesh(
-        lines, color=_RIM, opacity=_RIM_OPACITY, line_width=max(_RIM_WIDTH * page.unit, 0.5), lighting=False,
-        render=False,
-    )  # fmt: skip

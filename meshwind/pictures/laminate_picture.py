@@ -12,13 +12,13 @@ from meshwind.pictures.scenes import LaminateScene
 
 _LAYERS = "#2f6da8", "#e08a1e", "#1c7c3c", "#8a5fb0", "#b3541e", "#5a6673"
 """Colours of layers, over and over."""
-_PART = 0.36
+_PART = 0.34
 """Share of the page's width in which the part is seen."""
 _BAR = 34.0, 460.0
 """Width and height of the scale, for a page of 1600 x 1200, ..."""
-_LEFT, _BASE, _GAP, _RIGHT = 290.0, 130.0, 90.0, 40.0
+_LEFT, _BASE, _GAP, _RIGHT = 330.0, 130.0, 90.0, 40.0
 """... margins of the curves: from the part, below, between them, and to the right."""
-_BESIDE, _ROW = 3, 0.12
+_BESIDE, _ROW = 2, 0.12
 """Names of layers in a row of the legend, and height of a row over the largest thickness."""
 
 

@@ -26,16 +26,12 @@ def frames(window: Any, scene: ReelScene, page: Page) -> Iterator[Any]:
     frame = filament.frame
     filament_picture.add_stand(window, filament)
     whole = filament.ribbons
-    band = window.add_mesh(
-        filament_picture.bands(filament), scalars="colour", rgb=True, ambient=0.45, diffuse=0.6, render=False
-    )
-    rims = [filament_picture.add_edge(window, lines, page) for lines in filament_picture.edges(whole)]
+    added = filament_picture.add_bands(window, filament, page)
     free = window.add_mesh(pv.Line(), color=canvas.INK, line_width=2.0 * _THICK * page.unit, render=False)
     for k, (done, view) in enumerate(animation_picture.steps(scene.motion, frame.view)):
         laid = whole if k == last else whole.until(done)
-        band.mapper.dataset = filament_picture.bands(filament, laid)
-        for rim, lines in zip(rims, filament_picture.edges(laid), strict=True):
-            rim.mapper.dataset = lines
+        for actor, mesh in zip(added, filament_picture.bands(filament, laid, view), strict=True):
+            actor.mapper.dataset = mesh
         free.mapper.dataset = pv.Line(*_free(laid, _FREE * max(frame.view.width, frame.view.height)))
         free.visibility = 0 < k < last
         image = canvas.portrait(window, page, view, filament.part.points)

@@ -36,8 +36,8 @@ class Subject:
 
     name and units of the part for titles and legends; revolutions: as given, None if that is not known; seen_from:
     "auto", the name of a side, or a view; partings (k, 2): pairs of neighbours that part round a body.
-    filaments of a continuous winding, its pattern in words, and what turns them at the start and at the end; laminate of
-    a winding with layers, and the report's figures of these.
+    filaments of a continuous winding, its pattern in words, and what turns them at the start and at the end;
+    laminate of a winding with layers, and the report's figures of these.
     """
 
     layup: Layup
