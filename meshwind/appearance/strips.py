@@ -14,10 +14,10 @@ from meshwind.filament.course import Kind
 
 WORDS = {
     Kind.LAID: "on the part",
-    Kind.BRIDGE: "in the air, over a hollow",
+    Kind.BRIDGE: "over a hollow",
     Kind.TURN: "in a turnaround",
-    Kind.DWELL: "waiting in a turnaround",
-    Kind.JOIN: "on its way to the next layer",
+    Kind.DWELL: "waiting at the end",
+    Kind.JOIN: "on to the next layer",
 }
 """What a fibre does, by kind, for those who watch it being laid."""
 
@@ -45,32 +45,40 @@ class Ribbons:
 
     @property
     def quads(self) -> Ints:
-        """Quads (q, 4) between the points in a row, in the order of laying."""
+        """Quads (q, 4) between the points, seen from outside against the clock, in the order of laying."""
         across = self.points.shape[1]
         begin = np.cumsum(self.sizes) - self.sizes
         row = spread(begin, self.sizes - 1)
         corner = (row[:, None] * across + np.arange(across - 1)).ravel()
-        return np.stack([corner, corner + 1, corner + across + 1, corner + across], axis=1)
+        return np.stack([corner, corner + across, corner + across + 1, corner + 1], axis=1)
 
     @property
     def normals(self) -> Floats:
-        """Unit normals (k, m, 3) of the strips."""
+        """Outward unit normals (k, m, 3) of the strips."""
         ahead = np.zeros_like(self.points)
         steps = np.diff(self.points, axis=0)
         steps[np.cumsum(self.sizes)[:-1] - 1] = 0.0  # from one strip to the next
         ahead[:-1] += steps
         ahead[1:] += steps
-        return unit(np.cross(np.gradient(self.points, axis=1), ahead))
+        return unit(np.cross(ahead, np.gradient(self.points, axis=1)))
 
     def before(self, eye: Floats, depth: float) -> "Ribbons":
         """The same as an eye in direction (3,) shall see it: what is laid later before what is laid earlier.
 
         Fibres are computed one by one. Where they cross in the air the later one would lie on the earlier one, but they
-        would cut through each other; so bands on the part and over hollows come nearer to the eye by up to `depth`.
+        would cut through each other; so bands that face the eye come nearer to it by up to `depth`, but for turnarounds
+        and what is within `depth` of them, which has pins in front of it.
         """
         share = self.laid / max(float(self.laid[-1]), TINY)
-        nearer = np.where((self.kind == Kind.LAID) | (self.kind == Kind.BRIDGE), depth * share, 0.0)
-        return replace(self, points=self.points + nearer[:, None, None] * eye)
+        turned = np.flatnonzero((self.kind == Kind.TURN) | (self.kind == Kind.DWELL))
+        clear = np.ones(len(share))
+        if len(turned):
+            at = np.searchsorted(turned, np.arange(len(share)))
+            sides = turned[np.maximum(at - 1, 0)], turned[np.minimum(at, len(turned) - 1)]
+            off = np.minimum(*(np.abs(self.laid - self.laid[side]) for side in sides))
+            clear = np.minimum(off / max(depth, TINY), 1.0)
+        facing = np.maximum(self.normals[:, self.points.shape[1] // 2] @ eye, 0.0)
+        return replace(self, points=self.points + (depth * share * clear * facing)[:, None, None] * eye)
 
     def until(self, done: float) -> "Ribbons":
         """What is laid when a length of fibre is laid; the last row of it is between two of these."""

@@ -16,7 +16,7 @@ from meshwind.pictures.scenes import FilamentScene, Groups
 BASE, HELD, SIGNAL = "#bcc5ce", "#3d4852", "#e0218a"
 _RIM = "#1c1c1c"
 _RIM_OPACITY, _RIM_WIDTH = 0.45, 1.3
-_DEPTH = 0.03
+_DEPTH = 0.12
 """Depth, over the extent of the picture, by which the last band is seen before the first."""
 
 

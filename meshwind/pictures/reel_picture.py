@@ -50,6 +50,9 @@ def _free(laid: Ribbons, reach: float) -> tuple[Floats, Floats]:
 
 def said(laid: Ribbons) -> list[str]:
     """What the fibre does where it is being laid."""
-    lines = [f"layer {laid.layer[-1] + 1}"] if laid.layer.max() > 0 else []
-    lines += [f"circuit {laid.circuit[-1] + 1}", f"pass {'back' if laid.passed[-1] % 2 else 'out'}"]
-    return [*lines, f"{laid.angle[-1]:.1f}°", *WORDS[Kind(int(laid.kind[-1]))].split(", ")]
+    where = [f"layer {laid.layer[-1] + 1}"] if laid.layer.max() > 0 else []
+    return [
+        f"circuit {laid.circuit[-1] + 1}, pass {'back' if laid.passed[-1] % 2 else 'out'}",
+        ", ".join([*where, f"{laid.angle[-1]:.1f}°"]),
+        WORDS[Kind(int(laid.kind[-1]))],
+    ]
