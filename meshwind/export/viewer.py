@@ -3,21 +3,22 @@
 The template is `viewer.html` beside this file; plotly.js is copied into it from the installed package plotly.
 """
 
-import base64
 import json
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, TypedDict
+from typing import TypedDict
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshwind.appearance.looks import MAPS, colour_map
+from meshwind.appearance.looks import LAMINATE, MAPS, Look
 from meshwind.appearance.view import best_view
 from meshwind.appearance.words import quantity
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.errors import BadInputError
+from meshwind.export.packing import Packed, Stops, packed, stops
+from meshwind.export.viewer_filament import FilamentData, filament_data
 from meshwind.path.lengths import bridged_share, bridging, lengths
+from meshwind.results.laminate_reading import read_laminate
 from meshwind.results.reading import Results, read_surface_grid
 from meshwind.results.schema import NORMAL, UV, VIEWER
 from meshwind.results.vtk_reading import Faces
@@ -26,20 +27,7 @@ _MOST = 12_000
 """Number of points of the surface that a browser turns smoothly without a graphics card."""
 _SUNK = 2e-3
 """Offset below the surface, over its size, at which it is drawn, so that fibres on it are visible."""
-_STOPS = 33
-"""Number of colours of a colour map in the page, which interpolates between them."""
 _NO_PLOTLY = 'the viewer needs the Python package plotly, for plotly.js; pip install "meshwind[viewer]"'
-
-
-Stops = list[list[float | str]]
-"""A colour map as positions from 0 to 1, each with its colour."""
-
-
-class Packed(TypedDict):
-    """An array as base64 of float32 ("f4") or int32 ("i4"), rows one after the other."""
-
-    type: str
-    data: str
 
 
 class MapData(TypedDict):
@@ -103,6 +91,7 @@ class PageData(TypedDict):
     colours: dict[str, Stops]
     max_gap: float
     camera: CameraData
+    filament: FilamentData | None
 
 
 def write_viewer(folder: Path, results: Results) -> list[str]:
@@ -129,9 +118,10 @@ def page_data(results: Results) -> PageData:
         "facts": _facts(results),
         "surface": _surface(grid, results),
         "fibres": _fibres(results),
-        "colours": {"gap": _stops("gap")},
+        "colours": {"gap": stops("gap")},
         "max_gap": float(lengths(results.paths).max_gap[results.at_rest].max(initial=0.0)),
         "camera": _camera(grid, results),
+        "filament": filament_data(results),
     }
 
 
@@ -149,17 +139,21 @@ def _surface(grid: Faces, results: Results) -> SurfaceData:
     a, b, c, d = (part.ravel() for part in (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]))
     points = grid.points[kept]
     size = np.linalg.norm(np.ptp(points, axis=0))
+    known = [(name, look, grid.point_data[name]) for name, look in MAPS.items() if name in grid.point_data]
+    laminate = read_laminate(results.folder, results.surface)
+    if laminate is not None:
+        known.insert(0, ("laminate", LAMINATE, laminate.thickness))
+    maps = [_map(name, look, values.astype(np.float64), kept, results.units) for name, look, values in known]
     return {
-        "points": _packed(points.T),
-        "drawn": _packed((points - _SUNK * size * grid.point_data[NORMAL][kept]).T),
-        "triangles": _packed(np.concatenate([np.stack([a, b, c]), np.stack([a, c, d])], axis=1)),
-        "uv": _packed(uv[kept].T),
-        "maps": [_map(name, grid, kept, results.units) for name in MAPS if name in grid.point_data],
+        "points": packed(points.T),
+        "drawn": packed((points - _SUNK * size * grid.point_data[NORMAL][kept]).T),
+        "triangles": packed(np.concatenate([np.stack([a, b, c]), np.stack([a, c, d])], axis=1)),
+        "uv": packed(uv[kept].T),
+        "maps": maps,
     }
 
 
-def _map(name: str, grid: Faces, kept: Ints, units: str) -> MapData:
-    look, values = MAPS[name], grid.point_data[name].astype(np.float64)
+def _map(name: str, look: Look, values: Floats, kept: Ints, units: str) -> MapData:
     scale = look.scale(values, units)
     marks = scale.marks
     return {
@@ -167,11 +161,11 @@ def _map(name: str, grid: Faces, kept: Ints, units: str) -> MapData:
         "title": look.title,
         "words": "<br>".join(scale.words),
         "unit": look.unit.format(u=units) if units else "",
-        "colours": _stops(scale.colours),
+        "colours": stops(scale.colours),
         "low": scale.low,
         "high": scale.high,
         "log": scale.log,
-        "values": _packed(values[kept]),
+        "values": packed(values[kept]),
         "marks": [share for share, _ in marks],
         "mark_words": [words for _, words in marks],
     }
@@ -206,14 +200,14 @@ def _lines(results: Results, kind: str, family: int, words: str, mine: Bools, wa
     breaks = np.flatnonzero(~goes_on[path, particle]) + 1
 
     def at_points(values: Floats) -> Packed:
-        return _packed(np.insert(values[path, particle], breaks, np.nan, axis=0).T)
+        return packed(np.insert(values[path, particle], breaks, np.nan, axis=0).T)
 
     return {
         "kind": kind,
         "family": family,
         "words": words,
         "count": len(path),
-        "path": _packed(np.insert(path, breaks, -1)),
+        "path": packed(np.insert(path, breaks, -1)),
         "points": at_points(paths.points),
         "uv": at_points(paths.uv),
         "gap": at_points(paths.gap),
@@ -257,23 +251,6 @@ def _thinned(count: int, share: float, closed: bool) -> Ints:
     """About `share` of the numbers below `count`, evenly spaced, with both ends or around a circle."""
     many = max(round(share * count), 3)
     return np.unique(np.rint(np.linspace(0, count - (count / many if closed else 1), many)).astype(np.int64))
-
-
-def _stops(name: str) -> Stops:
-    at = np.linspace(0.0, 1.0, _STOPS)
-    shades = colour_map(name)(at)[:, :3]
-    return [
-        [float(t), f"rgb({','.join(str(round(255 * part)) for part in shade)})"]
-        for t, shade in zip(at, shades, strict=True)
-    ]
-
-
-def _packed(values: NDArray[Any]) -> Packed:
-    kind = "<i4" if np.issubdtype(values.dtype, np.integer) else "<f4"
-    return {
-        "type": kind[1:],
-        "data": base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode("ascii"),
-    }
 
 
 def _escaped(text: str) -> str:

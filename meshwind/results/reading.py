@@ -84,6 +84,11 @@ class Results:
         return float(width) if width else None
 
     @property
+    def band_widths(self) -> tuple[float, ...]:
+        """Width of the band of each layer: that for the coverage where the run has no layers."""
+        return tuple(each["band_width"] for each in self.layers) or (self.layup.coverage.width,)
+
+    @property
     def partings(self) -> Ints:
         """Pairs (k, 2) of neighbours that part round a body; none if the report does not say."""
         pairs = _under(self.report, "spacing", "partings")

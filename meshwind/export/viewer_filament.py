@@ -1,0 +1,97 @@
+"""The filament in the page for a browser: its band in the order of winding, and what the turnarounds stand on."""
+
+from typing import TypedDict
+
+import numpy as np
+
+from meshwind.appearance.gear import gear
+from meshwind.appearance.looks import SEQUENTIAL
+from meshwind.appearance.ribbons import Fineness, ribbons, turned_by
+from meshwind.appearance.strips import WORDS
+from meshwind.core.cast import Ints
+from meshwind.export.packing import Packed, Stops, packed, stops
+from meshwind.filament.course import Kind
+from meshwind.results.reading import Results
+
+_FINE = Fineness(across=3, rows=9000)
+"""Points across the band, and rows along it, that a browser draws smoothly without a graphics card."""
+
+
+class GearData(TypedDict):
+    """What the turnarounds stand on: points, and triangles of collars and rings, and of pins and shafts."""
+
+    points: Packed
+    base: Packed
+    held: Packed
+
+
+class FilamentData(TypedDict):
+    """The band of a filament as triangles in the order of laying, and what it does at each row of `across` points.
+
+    ends: number of triangles up to each row; laid: length of fibre laid before it; total: of all fibre; words: what the
+    fibre does, by kind; layers: their number.
+    """
+
+    points: Packed
+    triangles: Packed
+    across: int
+    ends: Packed
+    laid: Packed
+    total: float
+    kind: Packed
+    layer: Packed
+    circuit: Packed
+    passed: Packed
+    path: Packed
+    angle: Packed
+    slip: Packed
+    thickness: Packed
+    words: list[str]
+    layers: int
+    colours: Stops
+    gear: GearData | None
+
+
+def filament_data(results: Results) -> FilamentData | None:
+    """The filament of a run; None if it has none."""
+    if not results.filaments:
+        return None
+    turned = turned_by(results.patterns[0]["turnarounds"]) if results.patterns else ()
+    made = ribbons(results.filaments, results.surface, results.band_widths, turned, _FINE)
+    quads = made.quads
+    corner = (made.points.shape[1] - 1) * 2
+    first = np.cumsum(made.sizes) - made.sizes
+    opens = np.zeros(len(made.laid), dtype=np.int64)
+    opens[first] = 1  # no triangles end at the first row of a strip
+    stands = gear(results.surface, results.filaments, turned)
+    return {
+        "points": packed(made.points.reshape(-1, 3).T),
+        "triangles": packed(_triangles(quads)),
+        "across": made.points.shape[1],
+        "ends": packed(corner * np.cumsum(1 - opens)),
+        "laid": packed(made.laid),
+        "total": float(made.laid[-1]),
+        "kind": packed(made.kind),
+        "layer": packed(made.layer),
+        "circuit": packed(made.circuit),
+        "passed": packed(made.passed),
+        "path": packed(made.path),
+        "angle": packed(made.angle),
+        "slip": packed(made.slip),
+        "thickness": packed(made.thickness),
+        "words": [WORDS[kind] for kind in Kind],
+        "layers": int(made.layer.max()) + 1,
+        "colours": stops(SEQUENTIAL),
+        "gear": None
+        if not len(stands.points)
+        else {
+            "points": packed(stands.points.T),
+            "base": packed(_triangles(stands.base)),
+            "held": packed(_triangles(stands.held)),
+        },
+    }
+
+
+def _triangles(quads: Ints) -> Ints:
+    """Triangles (3, 2 q) of quads (q, 4), two after two."""
+    return np.ascontiguousarray(quads[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3).T)
