@@ -2,18 +2,17 @@
 
 import json
 from collections.abc import Iterator
-from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 import pytest
 from export_results import leave, plain_results
 from layup_shapes import bridged
-from PIL import Image
 from selenium import webdriver
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
-from selenium.webdriver.support.ui import Select, WebDriverWait
+from selenium.webdriver.support.ui import Select
+from viewer_browser import opened, settled
 
 from meshwind.appearance.looks import MAPS
 from meshwind.core.cast import Floats
@@ -21,11 +20,6 @@ from meshwind.export.targets import export
 from meshwind.export.viewer import page_data
 from meshwind.path.paths import Status
 
-FLAGS = (
-    "--headless=new --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking "
-    "--disable-component-update --disable-sync --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader "
-    "--window-size=1000,700"
-)
 BLUE, ORANGE = (0, 114, 178), (230, 159, 0)
 
 
@@ -46,31 +40,8 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def browser(
     page: Path, tmp_path_factory: pytest.TempPathFactory, chromium: tuple[str, str]
 ) -> Iterator[webdriver.Chrome]:
-    options = webdriver.ChromeOptions()
-    for flag in (*FLAGS.split(), f"--user-data-dir={tmp_path_factory.mktemp('chromium')}"):
-        options.add_argument(flag)
-    options.binary_location, its_driver = chromium
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(its_driver))
-    try:
-        driver.get(page.as_uri())
-        WebDriverWait(driver, 60).until(lambda seen: seen.find_elements(By.CSS_SELECTOR, "body[data-ready=yes]"))
+    with opened(page, tmp_path_factory.mktemp("chromium"), chromium) as driver:
         yield driver
-    finally:
-        driver.quit()
-
-
-def settled(browser: webdriver.Chrome) -> Floats:
-    """A screenshot of the part, taken when two frames in a row are alike."""
-    last = np.zeros(0)
-    for _ in range(40):
-        browser.execute_async_script("requestAnimationFrame(() => setTimeout(arguments[0], 150))")
-        with Image.open(BytesIO(browser.get_screenshot_as_png())) as shot:
-            image = np.asarray(shot.convert("RGB"), dtype=float)[:, 260:880]
-        if np.array_equal(image, last):
-            return image
-        last = image
-    raise AssertionError("the picture does not come to rest")
 
 
 def share(image: Floats, colour: tuple[int, int, int]) -> float:

@@ -13,7 +13,7 @@ from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.vectors import TINY, unit
 from meshwind.filament.course import Kind
 from meshwind.filament.filament import Filament
-from meshwind.results.pattern_types import TurnaroundFigures
+from meshwind.results.pattern_types import PatternFigures
 from meshwind.surface.forms import components, fundamental_forms
 from meshwind.surface.grid import grid
 from meshwind.surface.surface import Surface
@@ -97,8 +97,9 @@ def ribbons(
     )
 
 
-def turned_by(turnarounds: Sequence[TurnaroundFigures]) -> tuple[Turned, ...]:
-    """What turns a filament at the start and at the end, from the report's figures of a pattern."""
+def turned_by(patterns: Sequence[PatternFigures]) -> tuple[Turned, ...]:
+    """What turns a filament at the start and at the end, from the report's figures of its first layer."""
+    turnarounds = patterns[0]["turnarounds"] if patterns else ()
     return tuple(Turned(each["kind"], each["reach"], each["radius"] or 0.0) for each in turnarounds)
 
 

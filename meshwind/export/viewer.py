@@ -16,7 +16,7 @@ from meshwind.appearance.words import quantity
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.export.packing import Packed, Stops, packed, stops
-from meshwind.export.viewer_filament import FilamentData, filament_data
+from meshwind.export.viewer_filament import FilamentData, filament_data, gear_of
 from meshwind.path.lengths import bridged_share, bridging, lengths
 from meshwind.results.laminate_reading import read_laminate
 from meshwind.results.reading import Results, read_surface_grid
@@ -112,6 +112,7 @@ def write_viewer(folder: Path, results: Results) -> list[str]:
 def page_data(results: Results) -> PageData:
     """Contents of the page."""
     grid = read_surface_grid(results.folder, results.surface)
+    stands = gear_of(results)
     return {
         "name": results.name,
         "units": results.units,
@@ -120,8 +121,8 @@ def page_data(results: Results) -> PageData:
         "fibres": _fibres(results),
         "colours": {"gap": stops("gap")},
         "max_gap": float(lengths(results.paths).max_gap[results.at_rest].max(initial=0.0)),
-        "camera": _camera(grid, results),
-        "filament": filament_data(results),
+        "camera": _camera(grid, results, stands.points),
+        "filament": filament_data(results, stands),
     }
 
 
@@ -216,19 +217,21 @@ def _lines(results: Results, kind: str, family: int, words: str, mine: Bools, wa
     }
 
 
-def _camera(grid: Faces, results: Results) -> CameraData:
-    """The camera, as on the pictures."""
+def _camera(grid: Faces, results: Results, beside: Floats) -> CameraData:
+    """The camera, as on the pictures, but with the part in the middle; beside (k, 3): points beyond the part."""
     nv = int((grid.point_data[UV][:, 0] == grid.point_data[UV][0, 0]).sum())
     axis = grid.points.reshape(-1, nv, 3).mean(axis=0)
     paths = results.paths
     marks = paths.points.reshape(-1, 3), paths.normal.reshape(-1, 3), paths.gap.ravel()
     view = best_view(grid.points, grid.quads, axis, *marks)
+    middle = 0.5 * (grid.points.min(axis=0) + grid.points.max(axis=0))
+    past = 2.0 * np.abs((beside - middle) @ np.stack([view.right, view.up], axis=1)).max(axis=0, initial=0.0)
     largest = float(np.ptp(grid.points, axis=0).max())
     return {
         "eye": view.eye.tolist(),
         "up": view.up.tolist(),
-        "width": view.width / largest,
-        "height": view.height / largest,
+        "width": max(view.width, float(past[0])) / largest,
+        "height": max(view.height, float(past[1])) / largest,
     }
 
 

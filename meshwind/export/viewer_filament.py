@@ -7,7 +7,7 @@ import numpy as np
 from meshwind.appearance.gear import gear
 from meshwind.appearance.looks import SEQUENTIAL
 from meshwind.appearance.ribbons import Fineness, ribbons, turned_by
-from meshwind.appearance.strips import WORDS
+from meshwind.appearance.strips import WORDS, Gear
 from meshwind.core.cast import Ints
 from meshwind.export.packing import Packed, Stops, packed, stops
 from meshwind.filament.course import Kind
@@ -52,18 +52,22 @@ class FilamentData(TypedDict):
     gear: GearData | None
 
 
-def filament_data(results: Results) -> FilamentData | None:
-    """The filament of a run; None if it has none."""
+def gear_of(results: Results) -> Gear:
+    """What the turnarounds of a run stand on; nothing where it has no filament."""
+    return gear(results.surface, results.filaments, turned_by(results.patterns))
+
+
+def filament_data(results: Results, stands: Gear) -> FilamentData | None:
+    """The filament of a run and what its turnarounds stand on; None if it has none."""
     if not results.filaments:
         return None
-    turned = turned_by(results.patterns[0]["turnarounds"]) if results.patterns else ()
+    turned = turned_by(results.patterns)
     made = ribbons(results.filaments, results.surface, results.band_widths, turned, _FINE)
     quads = made.quads
     corner = (made.points.shape[1] - 1) * 2
     first = np.cumsum(made.sizes) - made.sizes
     opens = np.zeros(len(made.laid), dtype=np.int64)
     opens[first] = 1  # no triangles end at the first row of a strip
-    stands = gear(results.surface, results.filaments, turned)
     return {
         "points": packed(made.points.reshape(-1, 3).T),
         "triangles": packed(_triangles(quads)),

@@ -19,7 +19,7 @@ from meshwind.path.lengths import lengths
 from meshwind.path.paths import Paths, Status
 from meshwind.pictures.scenes import Frame, Part
 from meshwind.results.figures import PathFigures, path_figures
-from meshwind.results.laminate_reading import ReadLaminate, read_laminate
+from meshwind.results.laminate_reading import ReadLaminate, read_laminate, widths
 from meshwind.results.laminate_types import LayerFigures
 from meshwind.results.pattern_types import PatternFigures
 from meshwind.results.reading import Results, read_surface_grid
@@ -69,7 +69,7 @@ class Subject:
     @property
     def widths(self) -> tuple[float, ...]:
         """Width of the band of each layer."""
-        return tuple(each["band_width"] for each in self.layers) or (self.layup.coverage.width,)
+        return widths(self.layers, self.layup.coverage.width)
 
     @cached_property
     def figures(self) -> PathFigures:
@@ -120,8 +120,7 @@ class Subject:
     def wound(self, filaments: Sequence[Filament], patterns: Sequence[PatternFigures]) -> "Subject":
         """The same as a continuous winding; patterns: the report's figures of it."""
         words = patterns[0]["words"] if len(patterns) == 1 else ""
-        turned = turned_by(patterns[0]["turnarounds"]) if patterns else ()
-        return replace(self, filaments=tuple(filaments), pattern=words, turned=turned)
+        return replace(self, filaments=tuple(filaments), pattern=words, turned=turned_by(patterns))
 
     def layered(self, laminate: ReadLaminate | None, layers: Sequence[LayerFigures]) -> "Subject":
         """The same as a laminate, if there is one; layers: the report's figures of it."""

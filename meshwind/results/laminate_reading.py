@@ -1,5 +1,6 @@
 """Reading the files of a laminate: its thickness over the part, its layers along the part, and their fibres."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.filament.course import Course, Kind
 from meshwind.filament.filament import Filament
 from meshwind.results import schema
+from meshwind.results.laminate_types import LayerFigures
 from meshwind.results.vtk_reading import Lines, read_faces, read_lines
 from meshwind.surface.surface import Surface
 
@@ -55,6 +57,11 @@ def read_laminate(folder: Path, surface: Surface) -> ReadLaminate | None:
         raise _spoilt(folder / schema.LAMINATE, "no thickness in it")
     stations = _stations(folder / schema.STATIONS)
     return ReadLaminate(frozen(thickness), stations, _fibres(folder, surface))
+
+
+def widths(layers: Sequence[LayerFigures], width: float) -> tuple[float, ...]:
+    """Width of the band of each layer, from the report's figures; that of a run without layers is `width`."""
+    return tuple(each["band_width"] for each in layers) or (width,)
 
 
 def _stations(path: Path) -> Floats:

@@ -20,6 +20,7 @@ from meshwind.layup.layup import Layup, assess
 from meshwind.path.paths import Counters, Paths, Status
 from meshwind.results import schema
 from meshwind.results.filament_file import read_filaments
+from meshwind.results.laminate_reading import widths
 from meshwind.results.laminate_types import LayerFigures
 from meshwind.results.pattern_types import PatternFigures
 from meshwind.results.redesign_report_types import RedesignReport
@@ -86,7 +87,7 @@ class Results:
     @property
     def band_widths(self) -> tuple[float, ...]:
         """Width of the band of each layer: that for the coverage where the run has no layers."""
-        return tuple(each["band_width"] for each in self.layers) or (self.layup.coverage.width,)
+        return widths(self.layers, self.layup.coverage.width)
 
     @property
     def partings(self) -> Ints:
