@@ -59,11 +59,11 @@ def ribbons(
     """The bands of filaments, lifted off the part in the order of winding; widths: of the band of each layer.
 
     All comes from the filaments' own points and normals; the surface of the part only bends the bands across. turned:
-    what turns them at the start and at the end; pins gather a band to their own width.
+    what turns them at the start and at the end; pins gather a band to their radius.
     """
     fine = fineness or Fineness()
     body = _Body(surface)
-    pins = [(surface.points(_rim(v)).mean(axis=0), 2.0 * one.pin) for v, one in zip((0.0, 1.0), turned, strict=False)]
+    pins = [(surface.points(_rim(v)).mean(axis=0), one.pin) for v, one in zip((0.0, 1.0), turned, strict=False)]
     step = -(-sum(len(each.course) for each in filaments) // fine.rows)
     lines = [drawn(each, body, step) for each in filaments]
     total = sum(float(each.course.arc_length[-1]) for each in filaments)
@@ -82,10 +82,12 @@ def ribbons(
     def of_filaments(name: str) -> NDArray[Any]:
         return np.concatenate([getattr(line.filament, name)[line.kept] for line in lines])
 
+    points, kind = np.concatenate(strips), of_courses("kind")
     return Ribbons(
-        points=np.concatenate(strips),
+        points=points,
+        off_turns=_off(points, points[(kind == Kind.TURN) | (kind == Kind.DWELL), fine.across // 2]),
         laid=np.concatenate(laid),
-        kind=of_courses("kind"),
+        kind=kind,
         layer=of_filaments("layer"),
         circuit=of_courses("circuit"),
         passed=of_courses("passed"),
@@ -95,6 +97,13 @@ def ribbons(
         thickness=of_filaments("thickness"),
         sizes=np.array([len(each) for each in strips]),
     )
+
+
+def _off(points: Floats, turns: Floats) -> Floats:
+    """Distance (k, m) of points (k, m, 3) from the nearest of others (t, 3)."""
+    if not len(turns):
+        return np.full(points.shape[:2], np.inf)
+    return np.asarray(cKDTree(turns).query(points.reshape(-1, 3))[0]).reshape(points.shape[:2])
 
 
 def turned_by(patterns: Sequence[PatternFigures]) -> tuple[Turned, ...]:

@@ -20,6 +20,8 @@ WORDS = {
     Kind.JOIN: "on to the next layer",
 }
 """What a fibre does, by kind, for those who watch it being laid."""
+_FACING = 3.0
+"""One over the cosine between the directions to the eye and of the normal from which a band faces the eye fully."""
 
 
 @dataclass(frozen=True)
@@ -28,10 +30,11 @@ class Ribbons:
 
     points (k, m, 3); laid (k,): length of all fibre laid before each row; kind, layer, circuit, passed, path (k,) as in
     a filament; angle (k,): winding angle in degrees; slip, thickness (k,) as in a filament; sizes (l,): rows of each
-    strip.
+    strip; off_turns (k, m): distance of each point from the nearest turnaround, infinite where there is none.
     """
 
     points: Floats
+    off_turns: Floats
     laid: Floats
     kind: Ints
     layer: Ints
@@ -62,23 +65,18 @@ class Ribbons:
         ahead[1:] += steps
         return unit(np.cross(ahead, np.gradient(self.points, axis=1)))
 
-    def before(self, eye: Floats, depth: float) -> "Ribbons":
+    def before(self, eye: Floats, depth: float, within: float) -> "Ribbons":
         """The same as an eye in direction (3,) shall see it: what is laid later before what is laid earlier.
 
         Fibres are computed one by one. Where they cross in the air the later one would lie on the earlier one, but they
         would cut through each other; so bands that face the eye come nearer to it by up to `depth`, but for turnarounds
-        and what is within `depth` of them, which has pins in front of it.
+        and what is `within` a distance of them, which has pins in front of it.
         """
-        share = self.laid / max(float(self.laid[-1]), TINY)
-        turned = np.flatnonzero((self.kind == Kind.TURN) | (self.kind == Kind.DWELL))
-        clear = np.ones(len(share))
-        if len(turned):
-            at = np.searchsorted(turned, np.arange(len(share)))
-            sides = turned[np.maximum(at - 1, 0)], turned[np.minimum(at, len(turned) - 1)]
-            off = np.minimum(*(np.abs(self.laid - self.laid[side]) for side in sides))
-            clear = np.minimum(off / max(depth, TINY), 1.0)
-        facing = np.maximum(self.normals[:, self.points.shape[1] // 2] @ eye, 0.0)
-        return replace(self, points=self.points + (depth * share * clear * facing)[:, None, None] * eye)
+        share = (self.laid / max(float(self.laid[-1]), TINY))[:, None]
+        # both depend on the place alone, so that where bands cross their order alone decides
+        clear = np.clip(self.off_turns / max(within, TINY) - 1.0, 0.0, 1.0)
+        facing = np.clip(_FACING * (self.normals @ eye), 0.0, 1.0)
+        return replace(self, points=self.points + (depth * share * clear * facing)[..., None] * eye)
 
     def until(self, done: float) -> "Ribbons":
         """What is laid when a length of fibre is laid; the last row of it is between two of these."""

@@ -54,6 +54,9 @@ def reel_scene(of: Subject, seconds: float, movies: list[Path], encoder: str = "
     everything = np.concatenate([seen.ribbons.points.reshape(-1, 3), seen.gear.points])
     total = float(seen.ribbons.laid[-1])
     view, motion = moving(of.points, everything, seen.frame.view, Reel(total, seconds, movies, encoder))
+    middle = seen.ribbons.points[:, seen.ribbons.points.shape[1] // 2]
+    turned = np.cross(middle[:-1] - view.centre, np.diff(middle, axis=0)).sum(axis=0) @ motion.spin
+    motion = replace(motion, spin=motion.spin if turned < 0.0 else -motion.spin)  # the part turns against the fibre
     return ReelScene(replace(seen, frame=replace(seen.frame, view=view)), motion)
 
 

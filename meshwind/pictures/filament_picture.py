@@ -16,8 +16,11 @@ from meshwind.pictures.scenes import FilamentScene, Groups
 BASE, HELD, SIGNAL = "#bcc5ce", "#3d4852", "#e0218a"
 _RIM = "#1c1c1c"
 _RIM_OPACITY, _RIM_WIDTH = 0.45, 1.3
-_DEPTH = 0.12
-"""Depth, over the extent of the picture, by which the last band is seen before the first."""
+_DEPTH, _WITHIN = 0.3, 0.04
+"""Depth by which the last band is seen before the first, and distance from turnarounds within which none is.
+
+Both are over the extent of the picture.
+"""
 
 
 def draw(window: Any, scene: FilamentScene, page: Page) -> Any:
@@ -69,16 +72,18 @@ def _add_gear(window: Any, stands: Gear) -> None:
 
 def add_bands(window: Any, scene: FilamentScene, page: Page) -> list[Any]:
     """Add the bands and their edges; return what was added."""
-    band, *edges = bands(scene, scene.ribbons, scene.frame.view)
+    band, *edges = bands(scene, scene.ribbons, scene.frame.view, page)
     added = window.add_mesh(band, scalars="colour", rgb=True, ambient=0.45, diffuse=0.6, render=False)
     added.prop.interpolation = "Phong"
     look = {"color": _RIM, "opacity": _RIM_OPACITY, "line_width": max(_RIM_WIDTH * page.unit, 0.5), "lighting": False}
     return [added, *(window.add_mesh(edge, render=False, **look) for edge in edges)]
 
 
-def bands(scene: FilamentScene, ribbons: Ribbons, view: View) -> list[Any]:
+def bands(scene: FilamentScene, ribbons: Ribbons, view: View, page: Page) -> list[Any]:
     """The bands of a scene, or the first of them, with their colours, and their two edges, which tell them apart."""
-    seen = ribbons.before(view.eye, _DEPTH * max(view.width, view.height))
+    size = max(view.width, view.height)
+    # in perspective what is nearer is larger, too
+    seen = ribbons if page.perspective else ribbons.before(view.eye, _DEPTH * size, _WITHIN * size)
     mesh = pv.PolyData.from_regular_faces(seen.points.reshape(-1, 3), seen.quads)
     mesh.point_data["Normals"] = ribbons.normals.reshape(-1, 3)
     mesh.point_data.active_normals_name = "Normals"

@@ -30,7 +30,7 @@ def frames(window: Any, scene: ReelScene, page: Page) -> Iterator[Any]:
     free = window.add_mesh(pv.Line(), color=canvas.INK, line_width=2.0 * _THICK * page.unit, render=False)
     for k, (done, view) in enumerate(animation_picture.steps(scene.motion, frame.view)):
         laid = whole if k == last else whole.until(done)
-        for actor, mesh in zip(added, filament_picture.bands(filament, laid, view), strict=True):
+        for actor, mesh in zip(added, filament_picture.bands(filament, laid, view, page), strict=True):
             actor.mapper.dataset = mesh
         free.mapper.dataset = pv.Line(*_free(laid, _FREE * max(frame.view.width, frame.view.height)))
         free.visibility = 0 < k < last
