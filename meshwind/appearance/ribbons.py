@@ -107,8 +107,8 @@ def _off(points: Floats, turns: Floats) -> Floats:
 
 
 def turned_by(patterns: Sequence[PatternFigures]) -> tuple[Turned, ...]:
-    """What turns a filament at the start and at the end, from the report's figures of its first layer."""
-    turnarounds = patterns[0]["turnarounds"] if patterns else ()
+    """What turns a filament at the start and at the end, by the report's figures of its first layer that turns."""
+    turnarounds = next((each["turnarounds"] for each in patterns if each["turnarounds"]), [])
     return tuple(Turned(each["kind"], each["reach"], each["radius"] or 0.0) for each in turnarounds)
 
 
