@@ -1,0 +1,100 @@
+"""The viewer's page of a continuous winding: a slider along the filament, and what is said beside it."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from selenium import webdriver
+from selenium.webdriver.common.by import By
+from viewer_browser import opened, settled
+
+import meshwind as mw
+from meshwind.core.cast import Floats, Ints
+from meshwind.export.packing import packed
+from meshwind.export.targets import export
+from meshwind.export.viewer import page_data
+from meshwind.export.viewer_filament import FilamentData
+from meshwind.results.reading import read_results
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("viewer") / "out"
+    mw.wind("data/tank.ply", paths=5, particles=101, band_width=9.0, continuous=True, turn_end="shaft", out=out,
+            render=False)  # fmt: skip
+    export(out, ["viewer"])
+    return out
+
+
+@pytest.fixture(scope="module")
+def data(folder: Path) -> FilamentData:
+    found = page_data(read_results(folder))["filament"]
+    assert found is not None
+    assert json.loads(json.dumps(found)) == found
+    return found
+
+
+@pytest.fixture(scope="module")
+def browser(
+    folder: Path, tmp_path_factory: pytest.TempPathFactory, chromium: tuple[str, str]
+) -> Iterator[webdriver.Chrome]:
+    with opened(folder / "viewer.html", tmp_path_factory.mktemp("chromium"), chromium) as driver:
+        yield driver
+
+
+def unpacked(data: FilamentData, name: str) -> Floats | Ints:
+    import base64
+
+    array = data[name]  # type: ignore[literal-required]
+    return np.frombuffer(base64.b64decode(array["data"]), dtype=f"<{array['type']}")
+
+
+def test_arrays_are_packed_and_unpacked() -> None:
+    assert packed(np.array([1, 2])) == {"type": "i4", "data": "AQAAAAIAAAA="}
+
+
+def test_triangles_are_in_the_order_of_laying(folder: Path, data: FilamentData) -> None:
+    triangles, ends = unpacked(data, "triangles").reshape(3, -1), unpacked(data, "ends")
+    laid = unpacked(data, "laid")
+    rows = (triangles // data["across"]).max(axis=0)
+    assert (np.diff(rows) >= 0).all()
+    assert [int((rows <= row).sum()) for row in (0, 1, 57, len(laid) - 1)] == ends[[0, 1, 57, -1]].tolist()
+    (filament,) = read_results(folder).filaments
+    assert data["total"] == pytest.approx(float(filament.course.arc_length[-1]))
+    assert unpacked(data, "circuit").max() == 4
+    assert data["words"][int(unpacked(data, "kind")[1])] == "on the part"
+    passed = unpacked(data, "passed")
+    assert (np.diff(passed) >= 0).all() and passed.max() == 9
+
+
+def test_the_slider_winds_the_band_and_says_where_it_is(browser: webdriver.Chrome, data: FilamentData) -> None:
+    def colourful() -> float:
+        return float((np.ptp(settled(browser), axis=2) > 60.0).mean())
+
+    def wind(share: float) -> str:
+        browser.execute_script(
+            "const s = document.getElementById('wound'); s.value = arguments[0] * s.max;"
+            "s.dispatchEvent(new Event('input'))", share,
+        )  # fmt: skip
+        return browser.find_element(By.ID, "here").text
+
+    whole = colourful()
+    slider = browser.find_element(By.ID, "wound")
+    assert float(slider.get_property("value")) == pytest.approx(data["total"], rel=1e-6)  # type: ignore[arg-type]
+    text = wind(0.32)
+    half = colourful()
+    row = int(np.searchsorted(unpacked(data, "laid"), 0.32 * data["total"], side="right")) - 1
+    assert f"circuit {unpacked(data, 'circuit')[row] + 1}" in text
+    assert f"angle {unpacked(data, 'angle')[row]:.1f}°" in text
+    assert browser.find_element(By.TAG_NAME, "body").get_attribute("data-wound") == str(row)
+    wind(0.0)
+    assert colourful() < 0.1 * half < 0.1 * whole
+    browser.find_element(By.ID, "play").click()
+    browser.execute_async_script("setTimeout(arguments[0], 1500)")
+    browser.find_element(By.ID, "play").click()
+    assert 0.0 < float(slider.get_property("value")) < data["total"]  # type: ignore[arg-type]
+    wind(1.0)
+    assert colourful() == pytest.approx(whole, rel=1e-3)
+    assert [line for line in browser.get_log("browser") if line["level"] == "SEVERE"] == []
