@@ -17,6 +17,7 @@ from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.path.paths import Paths
 from meshwind.pictures import driver
 from meshwind.pictures.animation_scene import laid_before, turning
+from meshwind.pictures.drawings import Drawing
 from meshwind.pictures.gallery import layout
 from meshwind.pictures.layup_scenes import slip_scene
 from meshwind.pictures.map_scene import spread_out
@@ -24,7 +25,6 @@ from meshwind.pictures.movie import encoder
 from meshwind.pictures.page import Page, parse_size
 from meshwind.pictures.redesign_scene import draw_redesign
 from meshwind.pictures.render import render
-from meshwind.pictures.scenes import Drawing
 from meshwind.pictures.slip_picture import runs
 from meshwind.pictures.subject import subject_of
 from meshwind.pictures.winding_scene import winding_scene

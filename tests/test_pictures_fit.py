@@ -17,8 +17,8 @@ from meshwind.layup.layup import assess
 from meshwind.mesh import mesh_from
 from meshwind.mesh.opening.choose_ends import position_text
 from meshwind.pictures import driver
+from meshwind.pictures.drawings import Drawing
 from meshwind.pictures.fit_scene import fit_scene
-from meshwind.pictures.scenes import Drawing
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.results.schema import FIT_PICTURE

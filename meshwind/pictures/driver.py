@@ -17,8 +17,8 @@ from threading import Timer
 
 from meshwind.layup.layup import Layup
 from meshwind.mesh.geometry.mesh import Annulus
+from meshwind.pictures.drawings import Drawing, pack
 from meshwind.pictures.fit_scene import fit_scene
-from meshwind.pictures.scenes import Drawing, pack
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.surface.surface import Surface

@@ -7,12 +7,13 @@ from pathlib import Path
 from PIL import Image
 
 from meshwind.pictures.angles_scene import angles_scene
+from meshwind.pictures.drawings import Drawing
 from meshwind.pictures.filament_scene import bands_scene, filament_scene
 from meshwind.pictures.laminate_scene import laminate_scene
 from meshwind.pictures.layup_scenes import crossings_scene, quads_scene, slip_scene, unrolled_scene
 from meshwind.pictures.map_scene import coverage_scene, fit_map_scene, windability_scene
 from meshwind.pictures.page import LEAST, Page
-from meshwind.pictures.scenes import Drawing, Scene
+from meshwind.pictures.scenes import Scene
 from meshwind.pictures.subject import Subject
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.results.schema import FIT, FIT_ERROR, OF_FILAMENT, OF_LAMINATE, PICTURES, SHEET, picture

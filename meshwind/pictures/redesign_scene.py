@@ -11,8 +11,9 @@ from meshwind.appearance.view import around, merit_view, named_view
 from meshwind.appearance.words import quantity
 from meshwind.core.cast import Floats, Ints, floats, ints
 from meshwind.pictures import driver
+from meshwind.pictures.drawings import Drawing
 from meshwind.pictures.page import Page
-from meshwind.pictures.scenes import Drawing, Frame, RedesignScene
+from meshwind.pictures.scenes import Frame, RedesignScene
 from meshwind.results.reading import read_edited
 from meshwind.results.schema import LENGTHS
 

@@ -11,11 +11,12 @@ from meshwind.core.errors import BadInputError
 from meshwind.core.units import reported_unit
 from meshwind.pictures import driver
 from meshwind.pictures.animation_scene import animation_scene, reel_scene
+from meshwind.pictures.drawings import Drawing
 from meshwind.pictures.gallery import placed, scenes_of, write_sheet
 from meshwind.pictures.movie import encoder
 from meshwind.pictures.page import Page
 from meshwind.pictures.redesign_scene import redesign_in
-from meshwind.pictures.scenes import AnimationScene, Drawing, ReelScene, Scene
+from meshwind.pictures.scenes import AnimationScene, ReelScene, Scene
 from meshwind.pictures.subject import Subject, subject_of
 from meshwind.results.folder import beside
 from meshwind.results.reading import is_redesign, read_report, read_results
@@ -51,7 +52,8 @@ def render(
         Folder of a run or a redesign.
     only : sequence of str, optional
         Pictures to draw: "winding", "crossings", "coverage", "windability", "slip", "fit", "unrolled", "quads",
-        "angles", "filament", "bands", "laminate", "redesign" or "sheet".  By default all, or none where there is a movie to draw.
+        "angles", "filament", "bands", "laminate", "redesign" or "sheet".  By default all, or none where there is a
+        movie to draw.
     page : Page, optional
         Size and style.  By default 1600 x 1200 pixels, and 960 x 720 for movies.
     animate : sequence of str, optional

@@ -17,6 +17,7 @@ from meshwind.pictures import (
     animation_picture,
     canvas,
     crossings_picture,
+    drawings,
     filament_picture,
     fit_picture,
     laminate_picture,
@@ -54,7 +55,7 @@ def main() -> None:
     """Test that the machine can draw, read scenes, draw them."""
     window = canvas.plotter()
     say("ready")
-    for file, drawing in scenes.unpack(sys.stdin.buffer.read()):
+    for file, drawing in drawings.unpack(sys.stdin.buffer.read()):
         window.clear_actors()
         if isinstance(drawing.scene, scenes.AnimationScene | scenes.ReelScene):
             frames = MOVED_BY[type(drawing.scene)](window, drawing.scene, drawing.page)

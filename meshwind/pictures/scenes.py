@@ -1,24 +1,16 @@
-"""Scenes: contents of the pictures, as records that are sent to the process that draws.
+"""Scenes: contents of the pictures, as records that `drawings` sends to the process that draws.
 
 The `*_scene` modules make them, the `*_picture` modules draw them.  Importing this module loads nothing heavy, as both
 processes need it.
 """
 
-import io
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields, is_dataclass
-from pathlib import Path
-from types import NoneType, UnionType
-from typing import Any, TypeAlias, get_args, get_origin, get_type_hints
-
-import numpy as np
-from numpy.typing import NDArray
+from dataclasses import dataclass
+from typing import TypeAlias
 
 from meshwind.appearance.looks import Scale
 from meshwind.appearance.strips import Gear, Ribbons
 from meshwind.appearance.view import View
 from meshwind.core.cast import Bools, Floats, Ints
-from meshwind.pictures.page import Page
 
 
 @dataclass(frozen=True)
@@ -306,71 +298,3 @@ Scene: TypeAlias = (
     | FitScene
     | RedesignScene
 )
-_KINDS: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Scene)}
-
-
-@dataclass(frozen=True)
-class Drawing:
-    """A scene and the page to draw it on."""
-
-    scene: Scene
-    page: Page = field(default_factory=Page)
-
-
-def pack(drawings: Mapping[Path, Drawing]) -> bytes:
-    """Drawings, by their files, as an .npz whose arrays are named 0/file, 0/page/width, 0/scene/part/points, ..."""
-    arrays: dict[str, Any] = {}
-    for number, (file, drawing) in enumerate(drawings.items()):
-        named = {"file": str(file.absolute()), "kind": type(drawing.scene).__name__} | _arrays(drawing)
-        arrays |= {f"{number}/{name}": value for name, value in named.items()}
-    packed = io.BytesIO()
-    np.savez(packed, **arrays)
-    return packed.getvalue()
-
-
-def unpack(packed: bytes) -> Iterator[tuple[Path, Drawing]]:
-    """The drawings that were packed, in their order."""
-    if not packed:
-        return
-    with np.load(io.BytesIO(packed)) as held:
-        arrays = dict(held)
-    for number in dict.fromkeys(name.split("/")[0] for name in arrays):
-        mine = _below(arrays, number)
-        scene = _record(_KINDS[str(mine["kind"])], _below(mine, "scene"))
-        yield Path(str(mine["file"])), Drawing(scene, _record(Page, _below(mine, "page")))
-
-
-def _arrays(record: Any) -> dict[str, Any]:
-    """Fields of a record, and of records in it, that are not None, as arrays."""
-    arrays: dict[str, Any] = {}
-    for each in fields(record):
-        value = getattr(record, each.name)
-        if is_dataclass(value):
-            arrays |= {f"{each.name}/{name}": array for name, array in _arrays(value).items()}
-        elif value is not None:
-            arrays[each.name] = np.asarray(value)
-    return arrays
-
-
-def _record(kind: type[Any], arrays: Mapping[str, NDArray[Any]]) -> Any:
-    """A record of the given kind from the arrays of its fields."""
-    hints = get_type_hints(kind)
-    return kind(**{each.name: _value(hints[each.name], each.name, arrays) for each in fields(kind)})
-
-
-def _value(hint: Any, name: str, arrays: Mapping[str, NDArray[Any]]) -> Any:
-    """Value of a field by its type: a record, a plain value, a tuple or an array; None if it has no arrays."""
-    kind = next(part for part in get_args(hint) if part is not NoneType) if isinstance(hint, UnionType) else hint
-    if is_dataclass(kind):
-        below = _below(arrays, name)
-        return _record(kind, below) if below else None  # type: ignore[arg-type]
-    if name not in arrays:
-        return None
-    if get_origin(kind) is tuple:
-        return tuple(arrays[name].tolist())
-    return kind(arrays[name].item()) if kind in (str, int, float, bool) else arrays[name]
-
-
-def _below(arrays: Mapping[str, NDArray[Any]], name: str) -> dict[str, NDArray[Any]]:
-    """Arrays whose names start with the given one, by the rest of their names."""
-    return {key.removeprefix(f"{name}/"): array for key, array in arrays.items() if key.startswith(f"{name}/")}

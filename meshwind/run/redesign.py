@@ -11,8 +11,8 @@ from meshwind.editing.redesign import Redesign
 from meshwind.editing.report import redesign_report
 from meshwind.layup.layup import assess
 from meshwind.pictures import driver
+from meshwind.pictures.drawings import Drawing
 from meshwind.pictures.redesign_scene import redesign_scene
-from meshwind.pictures.scenes import Drawing
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.results import folder

@@ -8,11 +8,11 @@ from tempfile import TemporaryDirectory
 from meshwind.core.version import version
 from meshwind.path import Paths, Status
 from meshwind.pictures import driver
+from meshwind.pictures.drawings import Drawing
 from meshwind.pictures.fit_scene import fit_scene
 from meshwind.pictures.gallery import names_of, placed, scenes_of, write_sheet
 from meshwind.pictures.page import Page
 from meshwind.pictures.revolutions_picture import draw_revolutions
-from meshwind.pictures.scenes import Drawing
 from meshwind.pictures.subject import subject_in
 from meshwind.results import folder
 from meshwind.results.config_file import write_config
