@@ -65,6 +65,9 @@ def test_ribbons_are_as_wide_as_the_band(of: Subject) -> None:
     assert across[start] == pytest.approx(of.turned[0].pin, rel=0.01)
     seen = (ribbons.normals[:, 3] * course.normal[_nearest(ribbons.points[:, 3], course.points)]).sum(axis=1)
     assert seen[ribbons.kind == Kind.LAID].min() > 0.0  # outwards
+    corner = ribbons.points.reshape(-1, 3)[ribbons.quads]
+    facet = np.cross(corner[:, 2] - corner[:, 0], corner[:, 3] - corner[:, 1])
+    assert ((facet * ribbons.normals.reshape(-1, 3)[ribbons.quads[:, 0]]).sum(axis=1) > 0.0).mean() > 0.99
     middle = scene.ribbons.points[:, scene.ribbons.points.shape[1] // 2]
     off = np.sqrt(((middle[:, None] - of.filaments[0].course.points[None]) ** 2).sum(axis=2)).min(axis=1)
     assert off.max() < 0.01 * of.paths.surface.size  # lifted, no more
