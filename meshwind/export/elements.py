@@ -10,12 +10,15 @@ from meshwind.layup.quads import edge_counts
 from meshwind.results.reading import Results
 from meshwind.results.schema import QUADS, UV
 from meshwind.results.vtk_reading import read_faces
+from meshwind.surface.forms import area_elements
 from meshwind.surface.grid import grid_quads
 from meshwind.surface.surface import Surface
 
 _FEWEST = 12, 4
 """Least number of elements around and along."""
 _ON_RIM = 1e-9
+_SAMPLES = 4
+"""Samples each way in an element: about as fine as the thickness of a laminate varies."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +49,20 @@ class Elements:
         """All edges (e, 2), each once with the lower number first."""
         return edge_counts(self.quads, self.triangles)[0]
 
+    def samples(self) -> tuple[Floats, Floats]:
+        """Points in uv (k, m, 2) all over each element, and the area (k, m) around each; its sum is the element's."""
+        corners = [self.uv[self.quads], self.uv[self.triangles[:, [0, 1, 2, 2]]]]
+        unrolled = np.concatenate([_unrolled(self.surface, each) for each in corners])
+        t = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
+        x, y = (each.ravel() for each in np.meshgrid(t, t, indexing="ij"))
+        shape = np.stack([(1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y], axis=1)
+        along_x = np.stack([y - 1, 1 - y, y, -y], axis=1)
+        along_y = np.stack([x - 1, -x, x, 1 - x], axis=1)
+        at, by_x, by_y = (np.einsum("mc,kcd->kmd", each, unrolled) for each in (shape, along_x, along_y))
+        density = area_elements(self.surface.frames(at.reshape(-1, 2))).reshape(at.shape[:2])
+        cell = np.abs(by_x[..., 0] * by_y[..., 1] - by_x[..., 1] * by_y[..., 0]) / len(t) ** 2
+        return at, cell * density
+
     def between(self, edges: Ints) -> Floats:
         """Midpoints in uv (e, 2) of edges (e, 2), by the shorter way around."""
         return middle(self.surface, self.uv[edges])
@@ -53,10 +70,15 @@ class Elements:
 
 def middle(surface: Surface, corners: Floats) -> Floats:
     """Means (k, 2) of corners (k, c, 2) in uv; around a closed part by the shorter way."""
+    return np.asarray(_unrolled(surface, corners).mean(axis=1))
+
+
+def _unrolled(surface: Surface, corners: Floats) -> Floats:
+    """The corners (k, c, 2) in uv, each at most half a turn from the first."""
     away = corners - corners[:, :1]
     if surface.periodic:
         away[..., 0] -= np.round(away[..., 0])
-    return np.asarray(corners[:, 0] + away.mean(axis=1))
+    return np.asarray(corners[:, :1] + away)
 
 
 def regular(surface: Surface, count: int) -> Elements:
@@ -73,8 +95,11 @@ def regular(surface: Surface, count: int) -> Elements:
     return _elements(surface, uv, quads, np.zeros((0, 3), dtype=np.int64))
 
 
-def on_crossings(results: Results) -> Elements:
-    """The run's quad mesh with its points on the surface; raises BadInputError if it has no faces."""
+def on_crossings(results: Results, surface: Surface | None = None) -> Elements:
+    """The run's quad mesh with its points on a surface, by default the part's.
+
+    Raises BadInputError if it has no faces.
+    """
     mesh = read_faces(results.folder / QUADS)
     if not len(mesh.quads) + len(mesh.triangles) or UV not in mesh.point_data:
         raise BadInputError(f"{QUADS} of {results.folder} has no faces; take the grid: --shell grid")
@@ -83,7 +108,7 @@ def on_crossings(results: Results) -> Elements:
     uv = mesh.point_data[UV][used].astype(np.float64)
     if uv.ndim != 2 or not (np.isfinite(uv).all() and np.abs(uv).max() < 1e6):
         raise BadInputError(f"{QUADS} of {results.folder} is damaged; run `meshwind wind` again")
-    return _elements(results.surface, uv, corner[:split].reshape(-1, 4), corner[split:].reshape(-1, 3))
+    return _elements(surface or results.surface, uv, corner[:split].reshape(-1, 4), corner[split:].reshape(-1, 3))
 
 
 def _elements(surface: Surface, uv: Floats, quads: Ints, triangles: Ints) -> Elements:

@@ -1,5 +1,9 @@
-"""Direction and thickness of each family's fibres on each element."""
+"""Direction and thickness of the fibres on each element: layer by layer, and in each layer family by family.
 
+A run without layers is a laminate of one helical layer, with thickness from its coverage.
+"""
+
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,8 +13,11 @@ from meshwind.core.errors import BadInputError
 from meshwind.export.elements import Elements
 from meshwind.layup.coverage import coverage
 from meshwind.layup.direction import directions, fibres_of
+from meshwind.path.paths import Paths
 from meshwind.path.winding_angle import axes
 from meshwind.results.reading import Results
+from meshwind.results.wound_layers import WoundLayer, WoundLayers
+from meshwind.surface.surface import Surface
 
 LAYER = 1e-3
 """Default thickness of one layer of band, over the part's diagonal."""
@@ -18,10 +25,11 @@ LAYER = 1e-3
 
 @dataclass(frozen=True)
 class Ply:
-    """One family on k elements: unit tangent of the fibres (k, 3), their angle (k,), layers (k,), thickness (k,).
+    """One family of a layer on k elements.
 
-    The angle is in radians from the direction along the part, square to the level line of v, and positive towards s_u;
-    thickness is layers times that of one layer.
+    Unit tangent of the fibres (k, 3), their angle (k,), layers of band (k,) and thickness (k,).  The angle is in radians
+    from the direction along the part, positive towards s_u; thickness is layers times that of one layer of band.
+    layer: number of the layer, from 1.
     """
 
     family: int
@@ -29,45 +37,105 @@ class Ply:
     angle: Floats
     layers: Floats
     thickness: Floats
+    layer: int = 1
 
 
 @dataclass(frozen=True)
 class Plies:
-    """The families on k elements, +1 first; normal (k, 3) outward; thickness of one layer and width of the band."""
+    """The families on k elements, layer by layer from the inside out, +1 first; normal (k, 3) outward.
+
+    layer, band_width: thickness of one layer of band and width of the band, in mesh units, of the first layer;
+    wound: whether the run has layers.
+    """
 
     families: tuple[Ply, ...]
     normal: Floats
     layer: float
     band_width: float
+    wound: bool = False
 
     @property
     def thickness(self) -> Floats:
         """Total thickness (k,) of all families."""
         return np.asarray(sum(ply.thickness for ply in self.families))
 
+    @property
+    def stacks(self) -> tuple[tuple[int, ...], ...]:
+        """Numbers of the families of each layer, from the inside out."""
+        last = self.families[-1].layer
+        return tuple(
+            tuple(k for k, ply in enumerate(self.families) if ply.layer == number) for number in range(1, last + 1)
+        )
+
+
+def laid_on(results: Results) -> Surface:
+    """The surface that elements lie on: the middle of a laminate, otherwise the fitted surface itself."""
+    wound = results.wound_layers
+    return results.surface if wound is None else wound.middle
+
 
 def plies(results: Results, elements: Elements, layer: float | None = None, width: float | None = None) -> Plies:
-    """Plies of the converged paths as bands of `width` and of the thickness `layer`, in mesh units.
+    """Plies of the layers of a run, or of its converged paths as bands of `width` and of the thickness `layer`.
 
-    By default a layer is 1e-3 of the part's diagonal thick, and the band is that of the run's coverage.  Raises
-    BadInputError if either is not a length above 0.
+    Both are in mesh units.  By default a layer is 1e-3 of the part's diagonal thick, and the band is that of the run's
+    coverage; layers of a laminate have their own.  Raises BadInputError if either is not a length above 0, or is given
+    for a laminate.
     """
+    normal = frozen(axes(elements.surface, elements.centre)[2])
+    wound = results.wound_layers
+    if wound is not None:
+        return _of_laminate(wound, elements, normal, layer, width)
     thick = _length("thickness", LAYER * results.diagonal if layer is None else layer)
     wide = _length("band width", results.band_width if width is None else width)
-    present = [family for family in (1, -1) if (results.paths.family == family).any()]
-    families = tuple(_ply(results, elements, family, thick, wide) for family in present)
-    normal = axes(elements.surface, elements.centre)[2]
-    return Plies(families, frozen(normal), thick, wide)
+
+    def layers(paths: Paths) -> Floats:
+        return coverage(paths, wide).at(elements.centre)  # its cells are a pitch wide, no finer than elements
+
+    families = _families(results.paths, elements, layers, thick, 1)
+    return Plies(families, normal, thick, wide)
+
+
+def _of_laminate(
+    wound: WoundLayers, elements: Elements, normal: Floats, layer: float | None, width: float | None
+) -> Plies:
+    for name, value in (("thickness", layer), ("band width", width)):
+        if value is not None:
+            raise BadInputError(f"{name} is {value}, but the layers of this run have their own; leave it out")
+    at, area = elements.samples()
+    families: list[Ply] = []
+    for number, each in enumerate(wound.layers, 1):
+        over = each.thickness(at.reshape(-1, 2)).reshape(area.shape)
+        mean = (over * area).sum(axis=1) / area.sum(axis=1)
+        families += _of_layer(each, elements, mean, number)
+    first = wound.layers[0].figures
+    return Plies(tuple(families), normal, first["band_thickness"], first["band_width"], True)
+
+
+def _of_layer(each: WoundLayer, elements: Elements, thickness: Floats, number: int) -> tuple[Ply, ...]:
+    """The families of a layer, which share its thickness (k,) evenly."""
+    band = _length("thickness of a band", each.figures["band_thickness"])
+    share = thickness / band / len(np.unique(each.paths.family))
+    return _families(each.paths, elements, lambda _: share, band, number)
+
+
+def _families(
+    paths: Paths, elements: Elements, layers: Callable[[Paths], Floats], band: float, number: int
+) -> tuple[Ply, ...]:
+    """The families of a layer; layers (k,): how many of band the fibres of one make."""
+    along, across, _ = axes(elements.surface, elements.centre)
+    found = []
+    for family in (1, -1):
+        if not (paths.family == family).any():
+            continue
+        mine = fibres_of(paths, family)
+        angle = directions(mine, elements.centre)[1]
+        direction = np.cos(angle)[:, None] * along + np.sin(angle)[:, None] * across
+        many = layers(mine)
+        found.append(Ply(family, *map(frozen, (direction, angle, many, band * many)), number))
+    return tuple(found)
 
 
 def _length(name: str, value: float | None) -> float:
     if value is None or not (np.isfinite(value) and value > 0.0):
         raise BadInputError(f"{name} is {value}; give a length above 0 in the mesh's units")
     return float(value)
-
-
-def _ply(results: Results, elements: Elements, family: int, layer: float, width: float) -> Ply:
-    paths = fibres_of(results.paths, family)
-    direction, angle = directions(paths, elements.centre)
-    layers = coverage(paths, width).at(elements.centre)
-    return Ply(family, *map(frozen, (direction, angle, layers, layer * layers)))

@@ -4,23 +4,24 @@
 `shell_s4r.inp` is for Abaqus: four-node elements (S4R, S3).
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
 import numpy as np
 
-from meshwind.core.cast import Floats, Ints
+from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
 from meshwind.core.units import millimetres
 from meshwind.export.elements import Elements
-from meshwind.export.plies import Plies
+from meshwind.export.plies import Plies, Ply
+from meshwind.export.shell_loads import listed, step
+from meshwind.export.shell_nodes import Nodes, nodes_of
 from meshwind.results.schema import SHELL, SHELL_S4R
 
 LEAST = 0.05
 """Least thickness of a family, in layers, also where it has no fibres."""
-FORCE = 1000.0
-"""Load of the step, in N."""
 _STEPS = 1.15
 """Thicknesses are rounded to powers of this, as CalculiX joins elements of different thickness by rigid knots."""
 _SHAPES = {3: "S3", 4: "S4R", 6: "S6", 8: "S8R"}
@@ -60,90 +61,77 @@ class Material:
 
 @dataclass(frozen=True)
 class Deck:
-    """Contents of a deck: mesh, plies, material, unit of length and name of the part."""
+    """Contents of a deck: mesh, plies, material, unit of length, name of the part, and pressure inside in MPa.
+
+    Without a pressure the load is a pull.  Raises BadInputError if the pressure is no number, or 0.
+    """
 
     elements: Elements
     plies: Plies
     material: Material
     units: str = ""
     name: str = "part"
+    pressure: float | None = None
 
-
-@dataclass(frozen=True)
-class _Nodes:
-    """Points (n, 3) and the elements' nodes, quads (q, 4 or 8) and triangles (t, 3 or 6), from 0; rims with shares.
-
-    A rim is its nodes and the share of its load on each.
-    """
-
-    points: Floats
-    quads: Ints
-    triangles: Ints
-    rims: tuple[tuple[Ints, Floats], tuple[Ints, Floats]]
+    def __post_init__(self) -> None:
+        if self.pressure is not None and not (np.isfinite(self.pressure) and self.pressure != 0.0):
+            raise BadInputError(f"pressure is {self.pressure:g}; give MPa, above 0 for pressure inside")
 
 
 def write_decks(folder: Path, deck: Deck) -> list[str]:
     """Write both decks into an existing folder; return what the user should know."""
     for name, quadratic in ((SHELL, True), (SHELL_S4R, False)):
         with (folder / name).open("w", encoding="ascii", errors="replace") as file:
-            _write(file, deck, _nodes(deck.elements, quadratic))
-    thin = int(sum((_layers(deck, k) < LEAST).sum() for k in range(len(deck.plies.families))))
-    notes = [f"{SHELL}: {len(deck.elements)} elements, one layer of band {deck.plies.layer:.4g} thick"]
-    if thin:
-        notes.append(f"{SHELL}: {thin} plies of elements have less than {LEAST:g} of a layer and count as that")
+            _write(file, deck, nodes_of(deck.elements, quadratic))
+    notes = [f"{SHELL}: {note}" for note in (_of_layers(deck) if deck.plies.wound else _of_families(deck))]
     if not deck.units:
         notes.append(f"{SHELL}: the run names no unit, so the material is in N and mm")
     return notes
 
 
+def _of_families(deck: Deck) -> list[str]:
+    """Notes on a run without layers."""
+    notes = [f"{len(deck.elements)} elements, one layer of band {deck.plies.layer:.4g} thick"]
+    thin = int(sum((ply.layers < LEAST).sum() for ply in deck.plies.families))
+    if thin:
+        notes.append(f"{thin} plies of elements have less than {LEAST:g} of a layer and count as that")
+    return notes
+
+
+def _of_layers(deck: Deck) -> list[str]:
+    """Notes on a laminate."""
+    total = deck.plies.thickness
+    notes = [f"{len(deck.elements)} elements, {len(deck.plies.stacks)} layers, {total.min():.4g} to {total.max():.4g} thick"]
+    thin = int((total < LEAST * deck.plies.layer).sum())
+    if thin:
+        notes.append(f"{thin} elements are bare and count as {LEAST:g} of a band of the first layer")
+    return notes
+
+
 def thicknesses(deck: Deck) -> Floats:
-    """Thickness (f, k) of each family on each element in the deck: rounded, and at least `LEAST` of a layer."""
-    layers = np.stack([np.maximum(_layers(deck, k), LEAST) for k in range(len(deck.plies.families))])
-    return np.asarray(deck.plies.layer * _STEPS ** np.round(np.log(layers) / np.log(_STEPS)))
+    """Thickness (f, k) of each family on each element in the deck.
+
+    Without layers each is rounded, and at least `LEAST` of a layer.  In a laminate the whole is, and a layer is 0 where
+    it is not.
+    """
+    laid = deck.plies
+    if not laid.wound:
+        layers = np.maximum([ply.layers for ply in laid.families], LEAST)
+        return np.asarray(laid.layer * _rounded(layers))
+    each = np.stack([ply.thickness for ply in laid.families])
+    lacking = np.maximum(LEAST * laid.layer - each.sum(axis=0), 0.0)
+    inner = list(laid.stacks[0])
+    each[inner] += lacking / len(inner)
+    total = each.sum(axis=0)
+    return np.asarray(each * (laid.layer * _rounded(total / laid.layer) / total))
 
 
-def _layers(deck: Deck, family: int) -> Floats:
-    return deck.plies.families[family].layers
+def _rounded(values: Floats) -> Floats:
+    """Values to the next power of `_STEPS`."""
+    return np.asarray(_STEPS ** np.round(np.log(values) / np.log(_STEPS)))
 
 
-def _nodes(elements: Elements, quadratic: bool) -> _Nodes:
-    """Number the nodes; mid-side nodes lie on the surface."""
-    edges = elements.edges
-    number = len(elements.points) + np.arange(len(edges))
-    rims = elements.rims
-    if not quadratic:
-        ends = tuple(_shares(elements, edges, rim, None) for rim in rims)
-        return _Nodes(elements.points, elements.quads, elements.triangles, (ends[0], ends[1]))
-    points = np.concatenate([elements.points, elements.surface.points(elements.between(edges))])
-    faces = [_with_middles(faces, edges, number) for faces in (elements.quads, elements.triangles)]
-    ends = tuple(_shares(elements, edges, rim, number) for rim in rims)
-    return _Nodes(points, faces[0], faces[1], (ends[0], ends[1]))
-
-
-def _with_middles(faces: Ints, edges: Ints, number: Ints) -> Ints:
-    """Faces (m, 2 c): corners, then mid-side nodes, of faces (m, c)."""
-    most = edges.max(initial=0) + 1
-    sides = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2), axis=2)
-    at = np.searchsorted(edges[:, 0] * most + edges[:, 1], sides[..., 0] * most + sides[..., 1])
-    return np.concatenate([faces, number[at]], axis=1)
-
-
-def _shares(elements: Elements, edges: Ints, rim: Ints, number: Ints | None) -> tuple[Ints, Floats]:
-    """Nodes of a rim and the share of a uniform load on each: Simpson's weights if there are mid-side nodes."""
-    along = np.isin(edges, rim).all(axis=1)
-    mine = edges[along]
-    length = np.linalg.norm(np.diff(elements.points[mine], axis=1)[:, 0], axis=1)
-    length = length / length.sum()
-    corner = 0.5 if number is None else 1.0 / 6.0
-    nodes = mine.ravel() if number is None else np.concatenate([mine.ravel(), number[along]])
-    weight = np.repeat(corner * length, 2)
-    if number is not None:
-        weight = np.concatenate([weight, 2.0 / 3.0 * length])
-    unique, where = np.unique(nodes, return_inverse=True)
-    return unique.astype(np.int64), np.bincount(where, weight).astype(np.float64)
-
-
-def _write(file: TextIO, deck: Deck, nodes: _Nodes) -> None:
+def _write(file: TextIO, deck: Deck, nodes: Nodes) -> None:
     file.writelines(f"{line}\n" for line in _head(deck))
     file.write("*NODE, NSET=NALL\n")
     np.savetxt(
@@ -156,25 +144,46 @@ def _write(file: TextIO, deck: Deck, nodes: _Nodes) -> None:
             rows = np.column_stack([np.arange(first, first + len(faces)), faces + 1])
             np.savetxt(file, rows, fmt="%d", delimiter=", ")
             first += len(faces)
-    for name, (members, _) in zip(("START", "END"), nodes.rims, strict=True):
+    for name, rim in zip(("START", "END"), nodes.rims, strict=True):
         file.write(f"*NSET, NSET={name}\n")
-        file.writelines(f"{line}\n" for line in _listed(members + 1))
+        file.writelines(f"{line}\n" for line in listed(rim.nodes + 1))
     file.writelines(f"{line}\n" for line in _material(deck))
     file.writelines(_sections(deck))
-    file.writelines(f"{line}\n" for line in _step(nodes))
+    file.writelines(f"{line}\n" for line in step(nodes, deck.pressure, deck.units))
 
 
 def _head(deck: Deck) -> Iterator[str]:
-    names = ", ".join(f"{ply.family:+d}" for ply in deck.plies.families)
-    unit = deck.units or "mm (assumed)"
+    laid = deck.plies
     yield "*HEADING"
     yield f"meshwind: {deck.name}, wound shell"
-    yield f"** lengths in {unit}, forces in N; {len(deck.elements)} elements, families {names}"
-    yield f"** a layer of band is {deck.plies.layer:.9g} thick and {deck.plies.band_width:.9g} wide; an element's"
-    yield "** families are as thick as their bands fill there. The inner and the outer half of the first family hold"
-    yield "** the second between them: wound layers interlace, so the stack is kept free of coupling."
+    yield f"** lengths in {deck.units or 'mm (assumed)'}, forces in N; {len(deck.elements)} elements, {_contents(laid)}"
+    yield from _about_layers(laid) if laid.wound else _about_families(laid)
     yield "** Each element has its own orientation: 1 along the fibre, 3 along the outward normal."
     yield "** Node sets: START (v=0), END (v=1), NALL; element set: SHELL."
+
+
+def _contents(laid: Plies) -> str:
+    if laid.wound:
+        return f"{len(laid.stacks)} layers"
+    return f"families {', '.join(f'{ply.family:+d}' for ply in laid.families)}"
+
+
+def _about_families(laid: Plies) -> Iterator[str]:
+    yield f"** a layer of band is {laid.layer:.9g} thick and {laid.band_width:.9g} wide; an element's"
+    yield "** families are as thick as their bands fill there. The inner and the outer half of the first family hold"
+    yield "** the second between them: wound layers interlace, so the stack is kept free of coupling."
+
+
+def _about_layers(laid: Plies) -> Iterator[str]:
+    yield "** Elements lie on the middle of the laminate. Each has its layers from the inside out as thick as they are"
+    yield "** there, and lacks those that are not there. The families of a helical layer share its thickness, and the"
+    yield "** inner and the outer half of the first hold the second between them: wound families interlace, so each"
+    yield "** layer is kept free of coupling. A hoop has one direction. CalculiX joins elements of different thickness"
+    yield f"** by rigid knots: the whole of each is rounded to steps of {100.0 * (_STEPS - 1.0):.3g} %, and its layers with it."
+    yield f"** A bare element has {LEAST:g} of a band of the first layer, as elements need a thickness."
+    for number, layer in enumerate(laid.stacks, 1):
+        turned = ", ".join(f"{np.degrees(np.median(laid.families[k].angle)):+.4g}" for k in layer)
+        yield f"** layer {number}: median angle {turned} degrees from the direction along the part"
 
 
 def _material(deck: Deck) -> Iterator[str]:
@@ -189,59 +198,33 @@ def _material(deck: Deck) -> Iterator[str]:
 
 
 def _sections(deck: Deck) -> Iterator[str]:
-    """Set, orientations and layers of each element."""
-    thick = thicknesses(deck)
-    families = deck.plies.families
+    """Set, orientations and layers of each element; a family has neither where it is not."""
+    thick, families = thicknesses(deck), deck.plies.families
     across = [np.cross(deck.plies.normal, ply.direction) for ply in families]
+    stack = [(which, share) for layer in deck.plies.stacks for which, share in _stack(layer)]
     for k in range(len(deck.elements)):
         e = k + 1
-        for ply, side in zip(families, across, strict=True):
-            a, b = ply.direction[k], side[k]
-            yield (
-                f"*ORIENTATION, NAME={_axes(ply.family, e)}, SYSTEM=RECTANGULAR\n"
-                f"{a[0]:.9g}, {a[1]:.9g}, {a[2]:.9g}, {b[0]:.9g}, {b[1]:.9g}, {b[2]:.9g}\n3, 0.\n"
-            )
+        for ply, side, present in zip(families, across, thick[:, k] > 0.0, strict=True):
+            if present:
+                a, b = ply.direction[k], side[k]
+                yield (
+                    f"*ORIENTATION, NAME={_axes(ply, e)}, SYSTEM=RECTANGULAR\n"
+                    f"{a[0]:.9g}, {a[1]:.9g}, {a[2]:.9g}, {b[0]:.9g}, {b[1]:.9g}, {b[2]:.9g}\n3, 0.\n"
+                )
         yield f"*ELSET, ELSET=E{e}\n{e},\n*SHELL SECTION, ELSET=E{e}, COMPOSITE\n"
-        for which, share in _stack(len(families)):
-            name = _axes(families[which].family, e)
-            yield f"{share * thick[which, k]:.9g}, 3, {deck.material.name}, {name}\n"
+        for which, share in stack:
+            if thick[which, k] > 0.0:
+                yield f"{share * thick[which, k]:.9g}, 3, {deck.material.name}, {_axes(families[which], e)}\n"
 
 
-def _stack(families: int) -> tuple[tuple[int, float], ...]:
-    """Layers from the inside out: number of the family and share of its thickness."""
-    return ((0, 0.5), (1, 1.0), (0, 0.5)) if families > 1 else ((0, 1.0),)
+def _stack(layer: tuple[int, ...]) -> tuple[tuple[int, float], ...]:
+    """Families of a layer from the inside out, by number, each with its share of the family's thickness."""
+    if len(layer) < 2:
+        return ((layer[0], 1.0),)
+    return (layer[0], 0.5), (layer[1], 1.0), (layer[0], 0.5)
 
 
-def _axes(family: int, element: int) -> str:
-    return f"{'P' if family > 0 else 'M'}{element}"
-
-
-def _step(nodes: _Nodes) -> Iterator[str]:
-    """Load step: start rim fixed, end rim pulled along the line between the centres of the rims."""
-    (start, _), (end, shares) = nodes.rims
-    axis = nodes.points[end].mean(axis=0) - nodes.points[start].mean(axis=0)
-    axis = axis / np.linalg.norm(axis)
-    yield f"** load to begin with, replace it by your own: START held, END pulled by {FORCE:g} N in all"
-    yield "*STEP"
-    yield "*STATIC"
-    yield "*BOUNDARY"
-    yield "START, 1, 6"
-    yield "*CLOAD"
-    for node, share in zip(end + 1, shares, strict=True):
-        for direction, part in enumerate(axis, start=1):
-            if abs(part) > 1e-12:
-                yield f"{node}, {direction}, {FORCE * share * part:.9g}"
-    yield "*NODE PRINT, NSET=END"
-    yield "U"
-    yield "*NODE FILE"
-    yield "U"
-    yield "*EL FILE"
-    yield "S"
-    yield "*END STEP"
-
-
-def _listed(numbers: Iterable[int]) -> Iterator[str]:
-    """Numbers in lines of at most twelve."""
-    each = [str(number) for number in numbers]
-    for first in range(0, len(each), 12):
-        yield ", ".join(each[first : first + 12]) + ","
+def _axes(ply: Ply, element: int) -> str:
+    """Name of the axes of a family on an element; of the first layer it has no number."""
+    layer = f"L{ply.layer}" if ply.layer > 1 else ""
+    return f"{layer}{'P' if ply.family > 0 else 'M'}{element}"

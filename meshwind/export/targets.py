@@ -11,7 +11,7 @@ from meshwind.export.elements import Elements, on_crossings, regular
 from meshwind.export.fibers import write_fibers
 from meshwind.export.formats import FORMATS, write_formats
 from meshwind.export.frames import write_frames
-from meshwind.export.plies import plies
+from meshwind.export.plies import laid_on, plies
 from meshwind.export.shell_deck import Deck, Material, write_decks
 from meshwind.export.step import write_step
 from meshwind.export.viewer import write_viewer
@@ -92,9 +92,10 @@ def _known(what: str, names: Sequence[str], known: Mapping[str, object]) -> None
 
 
 def _elements(results: Results, options: ExportOptions, count: int) -> Elements:
+    surface = laid_on(results)
     if options.shell == QUADS:
-        return on_crossings(results)
-    return regular(results.surface, options.count or count)
+        return on_crossings(results, surface)
+    return regular(surface, options.count or count)
 
 
 def _deck(folder: Path, results: Results, options: ExportOptions) -> list[str]:

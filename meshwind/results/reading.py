@@ -28,6 +28,7 @@ from meshwind.results.report_types import Report
 from meshwind.results.schema import EDITED, FILAMENT, PATHS, REPORT, SPLINE, SURFACE
 from meshwind.results.staging import settle
 from meshwind.results.vtk_reading import Faces, Lines, read_faces, read_lines
+from meshwind.results.wound_layers import WoundLayers, read_wound_layers
 from meshwind.surface.grid import grid
 from meshwind.surface.surface import FitError, Surface
 
@@ -116,6 +117,11 @@ class Results:
         """The report's figures of the laminate, an entry a layer; none where the run has no layers."""
         found = _under(self.report, "laminate")
         return found if isinstance(found, list) else []
+
+    @cached_property
+    def wound_layers(self) -> WoundLayers | None:
+        """The layers of a laminate, None where the run has none."""
+        return read_wound_layers(self.folder, self.surface, self.layers)
 
     @property
     def at_rest(self) -> Bools:

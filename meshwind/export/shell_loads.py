@@ -1,0 +1,60 @@
+"""The load step of a shell deck: a pull, or pressure inside with what it pulls at the ends."""
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from meshwind.core.cast import Floats
+from meshwind.core.units import millimetres
+from meshwind.export.shell_nodes import Nodes, Rim
+
+FORCE = 1000.0
+"""Pull of the step, in N."""
+_NOTHING = 1e-12
+"""Share of a load along an axis below which it is left out."""
+
+
+def step(nodes: Nodes, pressure: float | None, units: str) -> Iterator[str]:
+    """Lines of the load step: the start rim held; the end rim pulled, or under pressure in MPa if that is given."""
+    start, end = nodes.rims
+    if pressure is None:
+        axis = nodes.points[end.nodes].mean(axis=0) - nodes.points[start.nodes].mean(axis=0)
+        force = FORCE * axis / np.linalg.norm(axis)
+        yield f"** load to begin with, replace it by your own: START held, END pulled by {FORCE:g} N in all"
+    else:
+        inside = pressure * millimetres(units) ** 2
+        force = inside * end.area
+        yield f"** load: {pressure:g} MPa inside, along the outward normals; START held, END pulled by the"
+        yield f"** {np.linalg.norm(force):.6g} N that the pressure has on its opening, as if that were closed"
+    yield "*STEP"
+    yield "*STATIC"
+    yield "*BOUNDARY"
+    yield "START, 1, 6"
+    yield "*CLOAD"
+    yield from _spread(end, force)
+    if pressure is not None:
+        yield "*DLOAD"
+        yield f"SHELL, P, {inside:.9g}"
+    yield "*NODE PRINT, NSET=END"
+    yield "U"
+    yield "*NODE FILE"
+    yield "U"
+    yield "*EL FILE"
+    yield "S"
+    yield "*END STEP"
+
+
+def _spread(rim: Rim, force: Floats) -> Iterator[str]:
+    """A force (3,) shared by the nodes of a rim."""
+    whole = float(np.linalg.norm(force))
+    for node, share in zip(rim.nodes + 1, rim.shares, strict=True):
+        for direction, part in enumerate(force, start=1):
+            if abs(part) > _NOTHING * whole:
+                yield f"{node}, {direction}, {share * part:.9g}"
+
+
+def listed(numbers: Iterable[int]) -> Iterator[str]:
+    """Numbers in lines of at most twelve."""
+    each = [str(number) for number in numbers]
+    for first in range(0, len(each), 12):
+        yield ", ".join(each[first : first + 12]) + ","
