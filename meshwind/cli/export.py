@@ -15,6 +15,9 @@ EXAMPLES = """
     # a shell deck for CalculiX and Abaqus, fibre directions for ParaView
     meshwind export part-wound --to inp,fibers
 
+    # the same under a pressure of 10 MPa inside, with what it pulls at the end
+    meshwind export part-wound --to inp --pressure 10
+
     # robot frames at most 2 long and 3 degrees apart
     meshwind export part-wound --to frames --step 2 --angle 3
 
@@ -56,7 +59,8 @@ class What:
     band_width: Annotated[
         float | None,
         typer.Option(
-            help="Width of the fibre band, in the mesh's units.  [default: that of the run's coverage]",
+            help="Width of the fibre band, in the mesh's units; of inp and fibers layers of --layers have their own.  "
+            "[default: that of the run's coverage, or of the layer]",
             rich_help_panel=_WHAT,
         ),
     ] = None
@@ -69,7 +73,8 @@ class Shell:
     thickness: Annotated[
         float | None,
         typer.Option(
-            help="Thickness of one layer of band, in the mesh's units.  [default: 1e-3 of the part's diagonal]",
+            help="Thickness of one layer of band, in the mesh's units; layers of --layers have their own.  "
+            "[default: 1e-3 of the part's diagonal]",
             rich_help_panel=_SHELL,
         ),
     ] = None
@@ -86,6 +91,14 @@ class Shell:
         int | None,
         typer.Option(
             help="Approximate number of elements of the grid.  [default: inp 1000, fibers 10000]",
+            rich_help_panel=_SHELL,
+        ),
+    ] = None
+    pressure: Annotated[
+        float | None,
+        typer.Option(
+            metavar="MPA",
+            help="Pressure inside, in MPa, as the load of inp, with its pull on the end.  [default: none, a pull]",
             rich_help_panel=_SHELL,
         ),
     ] = None
@@ -115,7 +128,8 @@ def export(
     """Write the results of a run for other programs; nothing is wound again.
 
     inp: shell.inp for CalculiX, shell_s4r.inp for Abaqus.  fibers: fibers.vtu and .vtk, the fibre directions per cell.
-    frames: frames/*.csv for robots, in mm.  step: surface.step for CAD (needs meshwind[cad]).
+    Both have the layers of a run with --layers.  frames: frames/*.csv for robots, in mm; filament.csv in the order of
+    winding for a run with --continuous, layer_01.csv and so on for layers that are none.  step: surface.step for CAD (needs meshwind[cad]).
     viewer: viewer.html, a page for any browser, without a network (needs meshwind[viewer]).
     """
     from meshwind.export.targets import ExportOptions
@@ -123,7 +137,8 @@ def export(
 
     formats = split_names(what.formats)
     options = ExportOptions(
-        shell.thickness, what.band_width, frames.step, frames.angle, shell.shell, shell.elements, formats
+        shell.thickness, what.band_width, frames.step, frames.angle, shell.shell, shell.elements, formats,
+        shell.pressure,
     )  # fmt: skip
     done = write(folder, split_names(what.to), out, options)
     print_files(done.files, done.notes, printed)

@@ -11,7 +11,7 @@ from meshwind.results.reading import Results
 from meshwind.results.schema import QUADS, UV
 from meshwind.results.vtk_reading import read_faces
 from meshwind.surface.forms import area_elements
-from meshwind.surface.grid import grid_quads
+from meshwind.surface.grid import grid_quads, midpoints, parameter_grid
 from meshwind.surface.surface import Surface
 
 _FEWEST = 12, 4
@@ -25,10 +25,12 @@ _SAMPLES = 4
 class Elements:
     """Quads (q, 4) and triangles (t, 3) between points (n, 3) on a surface at uv (n, 2); q + t = k elements.
 
-    Corners run counterclockwise seen from outside; centre (k, 2) is each element's middle in uv, quads first.
+    Corners run counterclockwise seen from outside; centre (k, 2) is each element's middle in uv, quads first.  skin is
+    the inside of the part with the same parameters: the surface itself, or what a laminate lies on.
     """
 
     surface: Surface
+    skin: Surface
     uv: Floats
     points: Floats
     quads: Ints
@@ -49,19 +51,26 @@ class Elements:
         """All edges (e, 2), each once with the lower number first."""
         return edge_counts(self.quads, self.triangles)[0]
 
-    def samples(self) -> tuple[Floats, Floats]:
-        """Points in uv (k, m, 2) all over each element, and the area (k, m) around each; its sum is the element's."""
+    def samples(self, surface: Surface | None = None) -> tuple[Floats, Floats]:
+        """Points in uv (k, m, 2) all over each element, and the area (k, m) around each, whose sum is the element's.
+
+        With another surface of the same parameters, the area there.
+        """
         corners = [self.uv[self.quads], self.uv[self.triangles[:, [0, 1, 2, 2]]]]
         unrolled = np.concatenate([_unrolled(self.surface, each) for each in corners])
-        t = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
-        x, y = (each.ravel() for each in np.meshgrid(t, t, indexing="ij"))
+        x, y = parameter_grid(midpoints(_SAMPLES), midpoints(_SAMPLES)).T
         shape = np.stack([(1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y], axis=1)
         along_x = np.stack([y - 1, 1 - y, y, -y], axis=1)
         along_y = np.stack([x - 1, -x, x, 1 - x], axis=1)
         at, by_x, by_y = (np.einsum("mc,kcd->kmd", each, unrolled) for each in (shape, along_x, along_y))
-        density = area_elements(self.surface.frames(at.reshape(-1, 2))).reshape(at.shape[:2])
-        cell = np.abs(by_x[..., 0] * by_y[..., 1] - by_x[..., 1] * by_y[..., 0]) / len(t) ** 2
+        density = area_elements((surface or self.surface).frames(at.reshape(-1, 2))).reshape(at.shape[:2])
+        cell = np.abs(by_x[..., 0] * by_y[..., 1] - by_x[..., 1] * by_y[..., 0]) / len(x)
         return at, cell * density
+
+    @property
+    def pressed(self) -> Floats:
+        """Area (k,) of each element on the skin that pressure acts on, over its own."""
+        return np.asarray(self.samples(self.skin)[1].sum(axis=1) / self.samples()[1].sum(axis=1))
 
     def between(self, edges: Ints) -> Floats:
         """Midpoints in uv (e, 2) of edges (e, 2), by the shorter way around."""
@@ -81,8 +90,8 @@ def _unrolled(surface: Surface, corners: Floats) -> Floats:
     return np.asarray(corners[:, :1] + away)
 
 
-def regular(surface: Surface, count: int) -> Elements:
-    """About `count` quads, square on average."""
+def regular(surface: Surface, count: int, skin: Surface | None = None) -> Elements:
+    """About `count` quads, square on average; skin: the inside of the part, by default the surface."""
     t = (np.arange(16) + 0.5) / 16
     frames = surface.frames(np.stack(np.meshgrid(t, t, indexing="ij"), axis=2).reshape(-1, 2))
     around, along = np.linalg.norm(frames[:, 1:3], axis=2).mean(axis=0)
@@ -92,11 +101,11 @@ def regular(surface: Surface, count: int) -> Elements:
     u, v = np.arange(columns) / nu, np.linspace(0.0, 1.0, nv + 1)
     uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=2).reshape(-1, 2)
     quads = grid_quads(columns, nv + 1, surface.periodic)
-    return _elements(surface, uv, quads, np.zeros((0, 3), dtype=np.int64))
+    return _elements((surface, skin or surface), uv, quads, np.zeros((0, 3), dtype=np.int64))
 
 
 def on_crossings(results: Results, surface: Surface | None = None) -> Elements:
-    """The run's quad mesh with its points on a surface, by default the part's.
+    """The run's quad mesh with its points on a surface, by default that of the part, which is the skin.
 
     Raises BadInputError if it has no faces.
     """
@@ -108,10 +117,13 @@ def on_crossings(results: Results, surface: Surface | None = None) -> Elements:
     uv = mesh.point_data[UV][used].astype(np.float64)
     if uv.ndim != 2 or not (np.isfinite(uv).all() and np.abs(uv).max() < 1e6):
         raise BadInputError(f"{QUADS} of {results.folder} is damaged; run `meshwind wind` again")
-    return _elements(surface or results.surface, uv, corner[:split].reshape(-1, 4), corner[split:].reshape(-1, 3))
+    both = surface or results.surface, results.surface
+    return _elements(both, uv, corner[:split].reshape(-1, 4), corner[split:].reshape(-1, 3))
 
 
-def _elements(surface: Surface, uv: Floats, quads: Ints, triangles: Ints) -> Elements:
+def _elements(both: tuple[Surface, Surface], uv: Floats, quads: Ints, triangles: Ints) -> Elements:
+    """Elements on a surface, with its skin."""
+    surface, skin = both
     centre = np.concatenate([middle(surface, uv[quads]), middle(surface, uv[triangles])])
     points = surface.points(uv)
-    return Elements(surface, frozen(uv), frozen(points), frozen(quads), frozen(triangles), frozen(centre))
+    return Elements(surface, skin, *map(frozen, (uv, points, quads, triangles, centre)))

@@ -8,7 +8,17 @@ from meshwind.core.cast import Floats
 from meshwind.export.elements import Elements
 from meshwind.export.plies import Plies
 from meshwind.results.meshio_files import write_meshio
-from meshwind.results.schema import FIBERS, FIBERS_LEGACY, NORMAL, THICKNESS, U, V, family_fields
+from meshwind.results.schema import (
+    FIBERS,
+    FIBERS_LEGACY,
+    NORMAL,
+    THICKNESS,
+    U,
+    V,
+    family_fields,
+    layer_family_fields,
+    layer_fields,
+)
 
 FILES = FIBERS, FIBERS_LEGACY
 
@@ -31,10 +41,28 @@ def cell_data(laid: Plies) -> dict[str, Floats]:
     fibre_1 and its alias FIB_DIR1 (k, 3) unit tangents of the fibres; angle_1 (k,) in degrees from the direction
     along the part, square to the level line of v, positive towards growing u; layers_1, thickness_1 (k,) in mesh units;
     thickness (k,) of both together; normal (k, 3) outward.
+
+    Of a laminate, layer by layer from 1: fibre_1_2 and angle_1_2 of family -1 of the first layer, thickness_1 of the
+    layer; a hoop has family +1 alone.
     """
+    fields = _of_layers(laid) if laid.wound else _of_families(laid)
+    return fields | {str(THICKNESS): laid.thickness, str(NORMAL): laid.normal}
+
+
+def _of_families(laid: Plies) -> dict[str, Floats]:
     data: dict[str, Floats] = {}
     for ply in laid.families:
         names = family_fields(ply.family)
         arrays = ply.direction, ply.direction, np.degrees(ply.angle), ply.layers, ply.thickness
         data |= {str(name): values for name, values in zip(names, arrays, strict=True)}
-    return data | {str(THICKNESS): laid.thickness, str(NORMAL): laid.normal}
+    return data
+
+
+def _of_layers(laid: Plies) -> dict[str, Floats]:
+    data: dict[str, Floats] = {}
+    for number, stack in enumerate(laid.stacks, 1):
+        for ply in (laid.families[k] for k in stack):
+            names = layer_family_fields(number, ply.family)
+            data |= {str(names.direction): ply.direction, str(names.angle): np.degrees(ply.angle)}
+        data[str(layer_fields(number).thickness)] = np.sum([laid.families[k].thickness for k in stack], axis=0)
+    return data

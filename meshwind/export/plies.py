@@ -27,9 +27,9 @@ LAYER = 1e-3
 class Ply:
     """One family of a layer on k elements.
 
-    Unit tangent of the fibres (k, 3), their angle (k,), layers of band (k,) and thickness (k,).  The angle is in radians
-    from the direction along the part, positive towards s_u; thickness is layers times that of one layer of band.
-    layer: number of the layer, from 1.
+    Unit tangent of the fibres (k, 3), their angle (k,), layers of band (k,) and thickness (k,).  The angle is in
+    radians from the direction along the part, square to the level line of v, and positive towards s_u; thickness is
+    layers times that of one layer of band.  layer: number of the layer, from 1.
     """
 
     family: int
@@ -80,6 +80,9 @@ def plies(results: Results, elements: Elements, layer: float | None = None, widt
     Both are in mesh units.  By default a layer is 1e-3 of the part's diagonal thick, and the band is that of the run's
     coverage; layers of a laminate have their own.  Raises BadInputError if either is not a length above 0, or is given
     for a laminate.
+
+    In a laminate an element is as thick as the volume of each layer over it makes it, so that no volume is lost
+    between the surfaces that the layers lie on and that of the elements.
     """
     normal = frozen(axes(elements.surface, elements.centre)[2])
     wound = results.wound_layers
@@ -101,12 +104,12 @@ def _of_laminate(
     for name, value in (("thickness", layer), ("band width", width)):
         if value is not None:
             raise BadInputError(f"{name} is {value}, but the layers of this run have their own; leave it out")
-    at, area = elements.samples()
+    area = elements.samples()[1].sum(axis=1)
     families: list[Ply] = []
     for number, each in enumerate(wound.layers, 1):
-        over = each.thickness(at.reshape(-1, 2)).reshape(area.shape)
-        mean = (over * area).sum(axis=1) / area.sum(axis=1)
-        families += _of_layer(each, elements, mean, number)
+        at, below = elements.samples(each.paths.surface)
+        volume = (each.thickness(at.reshape(-1, 2)).reshape(below.shape) * below).sum(axis=1)
+        families += _of_layer(each, elements, volume / area, number)
     first = wound.layers[0].figures
     return Plies(tuple(families), normal, first["band_thickness"], first["band_width"], True)
 
@@ -131,7 +134,7 @@ def _families(
         angle = directions(mine, elements.centre)[1]
         direction = np.cos(angle)[:, None] * along + np.sin(angle)[:, None] * across
         many = layers(mine)
-        found.append(Ply(family, *map(frozen, (direction, angle, many, band * many)), number))
+        found.append(Ply(family, frozen(direction), frozen(angle), frozen(many), frozen(band * many), number))
     return tuple(found)
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import millimetres
+from meshwind.core.vectors import TINY
 from meshwind.export.elements import Elements
 from meshwind.export.plies import Plies, Ply
 from meshwind.export.shell_loads import listed, step
@@ -22,8 +23,11 @@ from meshwind.results.schema import SHELL, SHELL_S4R
 
 LEAST = 0.05
 """Least thickness of a family, in layers, also where it has no fibres."""
-_STEPS = 1.15
-"""Thicknesses are rounded to powers of this, as CalculiX joins elements of different thickness by rigid knots."""
+_STEPS = 1.07
+"""Ratio of the steps of thickness, as CalculiX joins elements of different thickness by rigid knots.
+
+It is the largest change of an element's thickness.
+"""
 _SHAPES = {3: "S3", 4: "S4R", 6: "S6", 8: "S8R"}
 
 
@@ -77,6 +81,11 @@ class Deck:
         if self.pressure is not None and not (np.isfinite(self.pressure) and self.pressure != 0.0):
             raise BadInputError(f"pressure is {self.pressure:g}; give MPa, above 0 for pressure inside")
 
+    @property
+    def load(self) -> float | None:
+        """The pressure in N over the unit of length squared, None without one."""
+        return None if self.pressure is None else self.pressure * millimetres(self.units) ** 2
+
 
 def write_decks(folder: Path, deck: Deck) -> list[str]:
     """Write both decks into an existing folder; return what the user should know."""
@@ -101,7 +110,8 @@ def _of_families(deck: Deck) -> list[str]:
 def _of_layers(deck: Deck) -> list[str]:
     """Notes on a laminate."""
     total = deck.plies.thickness
-    notes = [f"{len(deck.elements)} elements, {len(deck.plies.stacks)} layers, {total.min():.4g} to {total.max():.4g} thick"]
+    thick = f"{total.min():.4g} to {total.max():.4g} thick"
+    notes = [f"{len(deck.elements)} elements, {len(deck.plies.stacks)} layers, {thick} in all"]
     thin = int((total < LEAST * deck.plies.layer).sum())
     if thin:
         notes.append(f"{thin} elements are bare and count as {LEAST:g} of a band of the first layer")
@@ -109,26 +119,31 @@ def _of_layers(deck: Deck) -> list[str]:
 
 
 def thicknesses(deck: Deck) -> Floats:
-    """Thickness (f, k) of each family on each element in the deck.
+    """Thickness (f, k) of each family on each element in the deck, 0 where a layer of a laminate is not.
 
-    Without layers each is rounded, and at least `LEAST` of a layer.  In a laminate the whole is, and a layer is 0 where
-    it is not.
+    Without layers each family has at least `LEAST` of a layer.  The whole of an element is rounded: elements between
+    two steps of `_STEPS` get their mean, weighted by their areas, so that the deck keeps the volume.
     """
     laid = deck.plies
-    if not laid.wound:
-        layers = np.maximum([ply.layers for ply in laid.families], LEAST)
-        return np.asarray(laid.layer * _rounded(layers))
     each = np.stack([ply.thickness for ply in laid.families])
-    lacking = np.maximum(LEAST * laid.layer - each.sum(axis=0), 0.0)
-    inner = list(laid.stacks[0])
-    each[inner] += lacking / len(inner)
-    total = each.sum(axis=0)
-    return np.asarray(each * (laid.layer * _rounded(total / laid.layer) / total))
+    least = LEAST * laid.layer
+    if laid.wound:
+        inner = list(laid.stacks[0])
+        each[inner] += np.maximum(least - each.sum(axis=0), 0.0) / len(inner)
+    else:
+        each = np.maximum(each, least)
+    total, area = each.sum(axis=0), deck.elements.samples()[1].sum(axis=1)
+    level = np.round(np.log(total / _median(total, area)) / np.log(_STEPS)).astype(np.int64)
+    level -= level.min()
+    mean = np.bincount(level, total * area) / np.maximum(np.bincount(level, area), TINY)
+    return np.asarray(each * (mean[level] / total))
 
 
-def _rounded(values: Floats) -> Floats:
-    """Values to the next power of `_STEPS`."""
-    return np.asarray(_STEPS ** np.round(np.log(values) / np.log(_STEPS)))
+def _median(values: Floats, weight: Floats) -> float:
+    """Value that half of the weight is below: most of a part is near it, and should not lie on both sides of a step."""
+    order = np.argsort(values, kind="stable")
+    passed = np.cumsum(weight[order])
+    return float(values[order][np.searchsorted(passed, 0.5 * passed[-1])])
 
 
 def _write(file: TextIO, deck: Deck, nodes: Nodes) -> None:
@@ -149,7 +164,7 @@ def _write(file: TextIO, deck: Deck, nodes: Nodes) -> None:
         file.writelines(f"{line}\n" for line in listed(rim.nodes + 1))
     file.writelines(f"{line}\n" for line in _material(deck))
     file.writelines(_sections(deck))
-    file.writelines(f"{line}\n" for line in step(nodes, deck.pressure, deck.units))
+    file.writelines(f"{line}\n" for line in step(nodes, deck.elements, deck.load))
 
 
 def _head(deck: Deck) -> Iterator[str]:
@@ -178,8 +193,8 @@ def _about_layers(laid: Plies) -> Iterator[str]:
     yield "** Elements lie on the middle of the laminate. Each has its layers from the inside out as thick as they are"
     yield "** there, and lacks those that are not there. The families of a helical layer share its thickness, and the"
     yield "** inner and the outer half of the first hold the second between them: wound families interlace, so each"
-    yield "** layer is kept free of coupling. A hoop has one direction. CalculiX joins elements of different thickness"
-    yield f"** by rigid knots: the whole of each is rounded to steps of {100.0 * (_STEPS - 1.0):.3g} %, and its layers with it."
+    yield "** layer is kept free of coupling. A hoop has one direction. The whole of an element is rounded to"
+    yield f"** steps of {100.0 * (_STEPS - 1.0):.3g} %, and its layers with it: CalculiX joins unequal ones by rigid knots."
     yield f"** A bare element has {LEAST:g} of a band of the first layer, as elements need a thickness."
     for number, layer in enumerate(laid.stacks, 1):
         turned = ", ".join(f"{np.degrees(np.median(laid.families[k].angle)):+.4g}" for k in layer)

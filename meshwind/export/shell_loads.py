@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from meshwind.core.cast import Floats
-from meshwind.core.units import millimetres
+from meshwind.export.elements import Elements
 from meshwind.export.shell_nodes import Nodes, Rim
 
 FORCE = 1000.0
@@ -14,18 +14,20 @@ _NOTHING = 1e-12
 """Share of a load along an axis below which it is left out."""
 
 
-def step(nodes: Nodes, pressure: float | None, units: str) -> Iterator[str]:
-    """Lines of the load step: the start rim held; the end rim pulled, or under pressure in MPa if that is given."""
+def step(nodes: Nodes, elements: Elements, pressure: float | None) -> Iterator[str]:
+    """Lines of the load step, with the start rim held.
+
+    The end rim is pulled, or, if a pressure in N over the unit of length squared is given, the part is under it.
+    """
     start, end = nodes.rims
     if pressure is None:
         axis = nodes.points[end.nodes].mean(axis=0) - nodes.points[start.nodes].mean(axis=0)
         force = FORCE * axis / np.linalg.norm(axis)
         yield f"** load to begin with, replace it by your own: START held, END pulled by {FORCE:g} N in all"
     else:
-        inside = pressure * millimetres(units) ** 2
-        force = inside * end.area
-        yield f"** load: {pressure:g} MPa inside, along the outward normals; START held, END pulled by the"
-        yield f"** {np.linalg.norm(force):.6g} N that the pressure has on its opening, as if that were closed"
+        force = pressure * end.area
+        yield f"** load: a pressure of {pressure:.9g} on the inside; START held, END pulled by the"
+        yield f"** {np.linalg.norm(force):.6g} N that it has on that opening, as on the end of a closed vessel"
     yield "*STEP"
     yield "*STATIC"
     yield "*BOUNDARY"
@@ -33,8 +35,7 @@ def step(nodes: Nodes, pressure: float | None, units: str) -> Iterator[str]:
     yield "*CLOAD"
     yield from _spread(end, force)
     if pressure is not None:
-        yield "*DLOAD"
-        yield f"SHELL, P, {inside:.9g}"
+        yield from _inside(elements, pressure)
     yield "*NODE PRINT, NSET=END"
     yield "U"
     yield "*NODE FILE"
@@ -42,6 +43,16 @@ def step(nodes: Nodes, pressure: float | None, units: str) -> Iterator[str]:
     yield "*EL FILE"
     yield "S"
     yield "*END STEP"
+
+
+def _inside(elements: Elements, pressure: float) -> Iterator[str]:
+    """Pressure along the outward normals, as large on each element as its inside has it."""
+    yield "*DLOAD"
+    if elements.skin is elements.surface:
+        yield f"SHELL, P, {pressure:.9g}"
+        return
+    for e, share in enumerate(elements.pressed, 1):
+        yield f"{e}, P, {pressure * share:.9g}"
 
 
 def _spread(rim: Rim, force: Floats) -> Iterator[str]:

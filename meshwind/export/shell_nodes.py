@@ -10,7 +10,7 @@ from meshwind.export.elements import Elements
 
 @dataclass(frozen=True)
 class Rim:
-    """Nodes (r,) of a rim, the share (r,) of a uniform load on each, and the area (3,) of its opening.
+    """Nodes (r,) of a rim, the share (r,) of a uniform load on each, and the area (3,) of its opening inside.
 
     The area is a vector square to the opening that points out of the part.
     """
@@ -33,15 +33,16 @@ class Nodes:
 def nodes_of(elements: Elements, quadratic: bool) -> Nodes:
     """Number the nodes; mid-side nodes lie on the surface."""
     edges = elements.edges
-    points, faces, number = elements.points, (elements.quads, elements.triangles), None
+    uv, faces, number = elements.uv, (elements.quads, elements.triangles), None
     if quadratic:
-        number = len(points) + np.arange(len(edges))
-        points = np.concatenate([points, elements.surface.points(elements.between(edges))])
+        number = len(uv) + np.arange(len(edges))
+        uv = np.concatenate([uv, elements.between(edges)])
         faces = _with_middles(elements.quads, edges, number), _with_middles(elements.triangles, edges, number)
+    inside = elements.skin.points(uv)
     start, end = (
-        Rim(*_shares(elements, edges, rim, number), _opening(points, faces, rim)) for rim in elements.rims
+        Rim(*_shares(elements, edges, rim, number), _opening(inside, faces, rim)) for rim in elements.rims
     )  # fmt: skip
-    return Nodes(points, *faces, (start, end))
+    return Nodes(elements.surface.points(uv), *faces, (start, end))
 
 
 def _with_middles(faces: Ints, edges: Ints, number: Ints) -> Ints:
@@ -79,7 +80,7 @@ def _opening(points: Floats, faces: tuple[Ints, Ints], rim: Ints) -> Floats:
         corners = each[:, :count]
         ring = corners
         if each.shape[1] > count:
-            ring = np.stack([corners, each[:, count:]], axis=2).reshape(len(each), -1)
+            ring = np.stack([corners, each[:, count:]], axis=2).reshape(len(each), 2 * count)
         here = np.isin(corners, rim) & np.isin(np.roll(corners, -1, axis=1), rim)
         here = np.repeat(here, ring.shape[1] // count, axis=1)
         first, last = points[ring][here] - middle, points[np.roll(ring, -1, axis=1)][here] - middle

@@ -27,7 +27,8 @@ class ExportOptions:
 
     thickness: of one layer of band; width: of the band; step, angle: longest step of robot frames and their largest
     turn in degrees; shell: elements of shell deck and fibre field, "grid" or "quads" for the run's quad mesh; count:
-    approximate number of elements of the grid; formats: mesh formats of `FORMATS`.
+    approximate number of elements of the grid; formats: mesh formats of `FORMATS`; pressure: inside, the load of the
+    shell deck in MPa, instead of a pull.
     """
 
     thickness: float | None = None
@@ -37,6 +38,7 @@ class ExportOptions:
     shell: str = GRID
     count: int | None = None
     formats: Sequence[str] = ()
+    pressure: float | None = None
 
     def __post_init__(self) -> None:
         if self.shell not in (GRID, QUADS):
@@ -95,13 +97,13 @@ def _elements(results: Results, options: ExportOptions, count: int) -> Elements:
     surface = laid_on(results)
     if options.shell == QUADS:
         return on_crossings(results, surface)
-    return regular(surface, options.count or count)
+    return regular(surface, options.count or count, results.surface)
 
 
 def _deck(folder: Path, results: Results, options: ExportOptions) -> list[str]:
     elements = _elements(results, options, 1000)
     laid = plies(results, elements, options.thickness, options.width)
-    return write_decks(folder, Deck(elements, laid, Material(), results.units, results.name))
+    return write_decks(folder, Deck(elements, laid, Material(), results.units, results.name, options.pressure))
 
 
 def _fibers(folder: Path, results: Results, options: ExportOptions) -> list[str]:

@@ -219,6 +219,21 @@ def family_fields(family: int) -> FamilyFields:
     )
 
 
+class LayerFamilyFields(NamedTuple):
+    """The fields of one family of a layer in the files of the fibre field."""
+
+    direction: Field
+    angle: Field
+
+
+def layer_family_fields(layer: int, family: int) -> LayerFamilyFields:
+    """The fields of a layer, the first being number 1, and of its family, +1 numbered 1 and -1 numbered 2."""
+    number = 1 if family > 0 else 2
+    return LayerFamilyFields(
+        Field(f"fibre_{layer}_{number}", columns=3), Field(f"angle_{layer}_{number}", DEGREES)
+    )  # fmt: skip
+
+
 U, V = Field("u"), Field("v")
 LAMINATE = File("laminate.vtu", point_data=(UV, THICKNESS))
 """Beside the fields of each layer."""
@@ -238,15 +253,20 @@ def layer_fields(number: int) -> LayerFields:
 
 _FIBRE_FIELD = (*family_fields(1), *family_fields(-1), THICKNESS, NORMAL)
 FIBERS, FIBERS_LEGACY = (File(name, point_data=(U, V), cell_data=_FIBRE_FIELD) for name in ("fibers.vtu", "fibers.vtk"))
-"""Fields of families that the run does not have are missing."""
+"""Fields of families that the run does not have are missing; a laminate has those of its layers instead."""
 
-FRAMES_FOLDER, ALL_FRAMES = "frames", "all.csv"
-"""A folder, and the file in it that holds the frames of all paths."""
+FRAMES_FOLDER, ALL_FRAMES, FILAMENT_FRAMES = "frames", "all.csv", "filament.csv"
+"""A folder, and the files in it that hold the frames of all paths, and of the filament in the order of winding."""
 
 
 def frames_of(path: int) -> str:
     """Name of the file of a path's frames, in the folder FRAMES_FOLDER."""
     return f"path_{path:03d}.csv"
+
+
+def layer_frames(layer: int) -> str:
+    """Name of the file of a layer's frames, the first being number 1, in the folder FRAMES_FOLDER."""
+    return f"layer_{layer:02d}.csv"
 
 
 FORMATS_FOLDER = "formats"
@@ -260,7 +280,7 @@ SUFFIXES = {
 EXPORT_FOLDERS = FRAMES_FOLDER, FORMATS_FOLDER
 EXPORTS = re.compile(
     "|".join(re.escape(name) for name in (SHELL, SHELL_S4R, FIBERS, FIBERS_LEGACY, STEP))
-    + rf"|{FRAMES_FOLDER}/(path_\d{{3,}}\.csv|{re.escape(ALL_FRAMES)})"
+    + rf"|{FRAMES_FOLDER}/(path_\d{{3,}}\.csv|layer_\d{{2,}}\.csv|{re.escape(ALL_FRAMES)}|{re.escape(FILAMENT_FRAMES)})"
     + rf"|{FORMATS_FOLDER}/({'|'.join(file.stem for file in CONVERTED)})\.({'|'.join(sum(SUFFIXES.values(), ()))})"
 )
 """Names of exported files except VIEWER; they are removed when the run is replaced."""
