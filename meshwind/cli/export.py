@@ -128,8 +128,9 @@ def export(
     """Write the results of a run for other programs; nothing is wound again.
 
     inp: shell.inp for CalculiX, shell_s4r.inp for Abaqus.  fibers: fibers.vtu and .vtk, the fibre directions per cell.
-    Both have the layers of a run with --layers.  frames: frames/*.csv for robots, in mm; filament.csv in the order of
-    winding for a run with --continuous, layer_01.csv and so on for layers that are none.  step: surface.step for CAD (needs meshwind[cad]).
+    Both have the layers of a run with --layers.  frames: frames/*.csv for robots, in mm: filament.csv in the order of
+    winding for a run with --continuous, and layer_01.csv and so on for layers that are not one filament.
+    step: surface.step for CAD (needs meshwind[cad]).
     viewer: viewer.html, a page for any browser, without a network (needs meshwind[viewer]).
     """
     from meshwind.export.targets import ExportOptions

@@ -194,7 +194,7 @@ def _about_layers(laid: Plies) -> Iterator[str]:
     yield "** there, and lacks those that are not there. The families of a helical layer share its thickness, and the"
     yield "** inner and the outer half of the first hold the second between them: wound families interlace, so each"
     yield "** layer is kept free of coupling. A hoop has one direction. The whole of an element is rounded to"
-    yield f"** steps of {100.0 * (_STEPS - 1.0):.3g} %, and its layers with it: CalculiX joins unequal ones by rigid knots."
+    yield f"** steps of {100.0 * (_STEPS - 1.0):.3g} %, and its layers with it: CalculiX joins others by rigid knots."
     yield f"** A bare element has {LEAST:g} of a band of the first layer, as elements need a thickness."
     for number, layer in enumerate(laid.stacks, 1):
         turned = ", ".join(f"{np.degrees(np.median(laid.families[k].angle)):+.4g}" for k in layer)
