@@ -129,7 +129,7 @@ def export(
 
     inp: shell.inp for CalculiX, shell_s4r.inp for Abaqus.  fibers: fibers.vtu and .vtk, the fibre directions per cell.
     Both have the layers of a run with --layers.  frames: frames/*.csv for robots, in mm: filament.csv in the order of
-    winding for a run with --continuous, and layer_01.csv and so on for layers that are not one filament.
+    winding for a run with --continuous, and layer_000.csv and so on for layers that are not one filament.
     step: surface.step for CAD (needs meshwind[cad]).
     viewer: viewer.html, a page for any browser, without a network (needs meshwind[viewer]).
     """

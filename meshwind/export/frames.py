@@ -1,4 +1,4 @@
-"""Frames for a robot to follow: one CSV file per path, and one of all paths."""
+"""Frames for a robot to follow: one CSV file per path, and one of all paths; `ordered_frames` has layers and filaments."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,7 +25,7 @@ _SAFE = 0.99
 
 @dataclass(frozen=True)
 class Frames:
-    """Frames of a path at m points: all (m, 3) but arc_length (m,), in the mesh's units, and length.
+    """Frames of a path at m points: all (m, 3) but arc_length and width (m,), in the mesh's units, and length.
 
     tangent, normal and side are orthonormal, side = normal x tangent: to the left when looking along the fibre
     with the part below.  left and right are the edges of the band.
@@ -37,17 +37,17 @@ class Frames:
     tangent: Floats
     normal: Floats
     side: Floats
-    width: float
+    width: Floats
 
     @property
     def left(self) -> Floats:
         """Left edge of the band (m, 3)."""
-        return np.asarray(self.point + 0.5 * self.width * self.side)
+        return np.asarray(self.point + 0.5 * self.width[:, None] * self.side)
 
     @property
     def right(self) -> Floats:
         """Right edge of the band (m, 3)."""
-        return np.asarray(self.point - 0.5 * self.width * self.side)
+        return np.asarray(self.point - 0.5 * self.width[:, None] * self.side)
 
 
 def frames(points: Floats, normals: Floats, width: float, step: float, angle: float) -> Frames:
@@ -70,7 +70,7 @@ def frames(points: Floats, normals: Floats, width: float, step: float, angle: fl
     point = spline(at)
     point[0], point[-1] = points[0], points[-1]
     at, point, tangent, normal, side = map(frozen, (at, point, tangent, normal, side))
-    return Frames(at, float(arc[-1]), point, tangent, normal, side, float(width))
+    return Frames(at, float(arc[-1]), point, tangent, normal, side, frozen(np.full(len(at), float(width))))
 
 
 def _square(tangent: Floats, normal: Floats) -> tuple[Floats, Floats, Floats]:
@@ -83,7 +83,7 @@ def _square(tangent: Floats, normal: Floats) -> tuple[Floats, Floats, Floats]:
 
 def _stations(arc: Floats, tangent: Floats, normal: Floats, step: float, angle: float) -> Floats:
     """Arc lengths (m,) of frames that divide length and turning evenly, each measured in units of its limit."""
-    turns = np.maximum(_turn(tangent), _turn(normal)) / (_SAFE * angle)
+    turns = np.maximum(turns_of(tangent), turns_of(normal)) / (_SAFE * angle)
     chords = np.diff(arc)
     effort = np.maximum(chords / step, np.minimum(turns, chords / (_SHORTEST * step)))
     spent = np.concatenate([[0.0], np.cumsum(effort)])
@@ -93,10 +93,38 @@ def _stations(arc: Floats, tangent: Floats, normal: Floats, step: float, angle: 
     return at
 
 
-def _turn(directions: Floats) -> Floats:
+def turns_of(directions: Floats) -> Floats:
     """Angles (n - 1,) between consecutive unit vectors (n, 3)."""
     apart = np.linalg.norm(np.diff(directions, axis=0), axis=1)
     return np.asarray(2.0 * np.arcsin(np.minimum(0.5 * apart, 1.0)))
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Longest step in the mesh's units, largest turn in radians, the width of the band, and the mesh's unit in mm.
+
+    width: None where it is each layer's own.
+    """
+
+    step: float
+    turn: float
+    width: float | None
+    scale: float
+
+    @classmethod
+    def of(
+        cls, results: Results, step: float | None = None, angle: float | None = None, width: float | None = None
+    ) -> "Limits":
+        """The limits that are given, others by default; raises BadInputError if one is none."""
+        longest = _above("step", STEP * results.diagonal if step is None else step)
+        turn = np.radians(_above("angle", ANGLE if angle is None else angle))
+        wide = None if width is None else _above("band width", width)
+        return cls(longest, float(turn), wide, millimetres(results.units))
+
+    def sharp(self, found: Frames) -> int:
+        """Steps that turn by more."""
+        turns = np.maximum(turns_of(found.tangent), turns_of(found.normal))
+        return int((turns > self.turn * (1.0 + 1e-6)).sum())
 
 
 def write_frames(
@@ -104,33 +132,33 @@ def write_frames(
 ) -> list[str]:
     """Write frames/path_000.csv and so on, one per converged path, and frames/all.csv; lengths in mm.
 
-    step: longest step in the mesh's units, 2 % of the part's diagonal by default; angle: largest turn from frame to
-    frame in degrees, 5 by default; width of the band in the mesh's units, the run's own by default.  Returns what the
-    user should know.  Raises BadInputError if no path converged, or a limit is none.
+    A continuous winding has frames/filament.csv as well, and layers that are not one filament frames/layer_000.csv and
+    so on.  step: longest step in the mesh's units, 2 % of the part's diagonal by default; angle: largest turn from
+    frame to frame in degrees, 5 by default; width of the band in the mesh's units, by default the run's own, or that
+    of each layer.  Returns what the user should know.  Raises BadInputError if no path converged, or a limit is none.
     """
-    longest = _above("step", STEP * results.diagonal if step is None else step)
-    turn = np.radians(_above("angle", ANGLE if angle is None else angle))
+    limits = Limits.of(results, step, angle, width)
     wide = _above("band width", results.band_width if width is None else width)
     rest = np.flatnonzero(results.at_rest)
     if not len(rest):
         raise BadInputError(f"no path of {results.folder} came to rest, so there is none to follow; wind it otherwise")
-    scale = millimetres(results.units)
     (folder / FRAMES_FOLDER).mkdir()
     paths, sharp = results.paths, 0
     with (folder / FRAMES_FOLDER / ALL_FRAMES).open("w", encoding="ascii") as every:
         every.write(f"path,family,{HEADER}\n")
         for k in rest:
-            found = frames(paths.points[k], paths.normal[k], wide, longest, turn)
-            rows = table(found, scale)
+            found = frames(paths.points[k], paths.normal[k], wide, limits.step, limits.turn)
+            rows = table(found, limits.scale)
             with (folder / FRAMES_FOLDER / frames_of(int(k))).open("w", encoding="ascii") as file:
-                np.savetxt(file, rows, fmt=_FORMAT, delimiter=",", header=HEADER, comments="")
+                np.savetxt(file, rows, fmt=FORMAT, delimiter=",", header=HEADER, comments="")
             both = np.column_stack([np.broadcast_to([k, paths.family[k]], (len(rows), 2)), rows])
-            np.savetxt(every, both, fmt=["%d", "%d", *_FORMAT], delimiter=",")
-            sharp += int((np.maximum(_turn(found.tangent), _turn(found.normal)) > turn * (1.0 + 1e-6)).sum())
+            np.savetxt(every, both, fmt=["%d", "%d", *FORMAT], delimiter=",")
+            sharp += limits.sharp(found)
     return [f"{FRAMES_FOLDER}: {note}" for note in _notes(results, len(rest), sharp)]
 
 
-_FORMAT = ["%d"] + 21 * ["%.15g"]
+FORMAT = ["%d"] + 21 * ["%.15g"]
+"""How the columns of a file are written."""
 
 
 def table(found: Frames, scale: float) -> Floats:
@@ -140,7 +168,7 @@ def table(found: Frames, scale: float) -> Floats:
     edges = [scale * edge for edge in (found.left, found.right)]
     return np.column_stack(
         [np.arange(m), scale * found.arc_length, share, scale * found.point, found.tangent, found.normal, found.side]
-        + [np.full(m, scale * found.width), *edges]
+        + [scale * found.width, *edges]
     )
 
 
@@ -149,10 +177,15 @@ def _notes(results: Results, written: int, sharp: int) -> list[str]:
     if written < len(results.paths):
         notes.append(f"left out as not at rest: {len(results.paths) - written} of {len(results.paths)} paths")
     if sharp:
-        notes.append(f"{sharp} steps turn by more than the limit, as no step is made tiny for a sharp edge")
+        notes.append(too_sharp(sharp))
     if not results.units:
         notes.append("the run names no unit, so its lengths are taken as mm")
     return notes
+
+
+def too_sharp(steps: int) -> str:
+    """Note on steps that turn by more than the limit."""
+    return f"{steps} steps turn by more than the limit, as no step is made tiny for a sharp edge"
 
 
 def _above(name: str, value: float | None) -> float:

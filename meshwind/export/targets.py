@@ -10,7 +10,8 @@ from meshwind.core.errors import BadInputError
 from meshwind.export.elements import Elements, on_crossings, regular
 from meshwind.export.fibers import write_fibers
 from meshwind.export.formats import FORMATS, write_formats
-from meshwind.export.frames import write_frames
+from meshwind.export.frames import Limits, write_frames
+from meshwind.export.ordered_frames import write_ordered_frames
 from meshwind.export.plies import laid_on, plies
 from meshwind.export.shell_deck import Deck, Material, write_decks
 from meshwind.export.step import write_step
@@ -113,7 +114,8 @@ def _fibers(folder: Path, results: Results, options: ExportOptions) -> list[str]
 
 
 def _frames(folder: Path, results: Results, options: ExportOptions) -> list[str]:
-    return write_frames(folder, results, options.step, options.angle, options.width)
+    given = options.step, options.angle, options.width
+    return write_frames(folder, results, *given) + write_ordered_frames(folder, results, Limits.of(results, *given))
 
 
 def _step(folder: Path, results: Results, options: ExportOptions) -> list[str]:

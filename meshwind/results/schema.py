@@ -265,8 +265,8 @@ def frames_of(path: int) -> str:
 
 
 def layer_frames(layer: int) -> str:
-    """Name of the file of a layer's frames, the first being number 1, in the folder FRAMES_FOLDER."""
-    return f"layer_{layer:02d}.csv"
+    """Name of the file of a layer's frames, the first being number 0, in the folder FRAMES_FOLDER."""
+    return f"layer_{layer:03d}.csv"
 
 
 FORMATS_FOLDER = "formats"
@@ -280,7 +280,7 @@ SUFFIXES = {
 EXPORT_FOLDERS = FRAMES_FOLDER, FORMATS_FOLDER
 EXPORTS = re.compile(
     "|".join(re.escape(name) for name in (SHELL, SHELL_S4R, FIBERS, FIBERS_LEGACY, STEP))
-    + rf"|{FRAMES_FOLDER}/(path_\d{{3,}}\.csv|layer_\d{{2,}}\.csv|{re.escape(ALL_FRAMES)}|{re.escape(FILAMENT_FRAMES)})"
+    + rf"|{FRAMES_FOLDER}/(path_\d{{3,}}\.csv|layer_\d{{3,}}\.csv|{re.escape(ALL_FRAMES)}|{re.escape(FILAMENT_FRAMES)})"
     + rf"|{FORMATS_FOLDER}/({'|'.join(file.stem for file in CONVERTED)})\.({'|'.join(sum(SUFFIXES.values(), ()))})"
 )
 """Names of exported files except VIEWER; they are removed when the run is replaced."""

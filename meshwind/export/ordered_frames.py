@@ -1,0 +1,95 @@
+"""Frames for a robot in the order of winding: of filaments, and layer by layer where the layers are none."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.export.frames import FORMAT, HEADER, Frames, Limits, frames, table, too_sharp
+from meshwind.filament.course import Kind
+from meshwind.results.reading import Results
+from meshwind.results.schema import FILAMENT_FRAMES, FRAMES_FOLDER, layer_frames
+from meshwind.results.wound_layers import WoundLayer
+
+OF_FILAMENT = "filament", "layer", "circuit", "pass", "path", "kind", "bridge"
+"""Columns before those of a frame in the file of filaments: numbers from 0 as in filament.vtp, bridge 1 in the air."""
+OF_LAYER = "layer", "path", "family", "bridge"
+"""The same in the file of a layer; path is the number of the line in layers.vtp."""
+_AT_POINT = 1e-12
+"""Share of its arc length that a frame at a point may be past it by round-off."""
+
+
+def write_ordered_frames(folder: Path, results: Results, limits: Limits) -> list[str]:
+    """Write frames/filament.csv, or frames/layer_000.csv and so on, into a folder that has the frames of paths.
+
+    Lengths are in mm.  Does nothing where the run is neither continuous nor of layers.  Returns what the user should
+    know.
+    """
+    if results.filaments:
+        notes = [_write_filaments(folder, results, limits)]
+    elif results.wound_layers is not None:
+        layers = results.wound_layers.layers
+        first = np.cumsum([0, *(len(each.paths) for each in layers)])
+        notes = [_write_layer(folder, each, (k, int(first[k])), limits) for k, each in enumerate(layers)]
+    else:
+        return []
+    return [f"{FRAMES_FOLDER}/{note}" for note in notes if note]
+
+
+def _write_filaments(folder: Path, results: Results, limits: Limits) -> str:
+    widths = [layer["band_width"] for layer in results.layers] or [results.band_width or 0.0]
+    if limits.width is not None:
+        widths = [limits.width for _ in widths]
+    found, labels = [], []
+    for number, filament in enumerate(results.filaments):
+        course, layer = filament.course, filament.layer
+        laid = frames(course.points, course.normal, widths[0], limits.step, limits.turn)
+        at = _ends(course.points, laid)
+        bridge = _in_air(course.kind == Kind.BRIDGE, at)
+        own = np.stack([layer, course.circuit, course.passed, course.path], axis=1)[at]
+        kind = np.where(bridge, int(Kind.BRIDGE), course.kind[at])
+        found.append(replace(laid, width=frozen(np.array(widths)[layer[at]])))
+        labels.append(np.column_stack([np.full(len(at), number), own, kind, bridge]))
+    return _write(folder, FILAMENT_FRAMES, OF_FILAMENT, (labels, found), limits)
+
+
+def _write_layer(folder: Path, layer: WoundLayer, numbers: tuple[int, int], limits: Limits) -> str:
+    """Write the frames of a layer; numbers: its own and that of its first path."""
+    number, first = numbers
+    width = layer.figures["band_width"] if limits.width is None else limits.width
+    found, labels = [], []
+    paths = layer.paths
+    for k in range(len(paths)):
+        laid = frames(paths.points[k], paths.normal[k], width, limits.step, limits.turn)
+        bridge = _in_air(~paths.on_surface[k], _ends(paths.points[k], laid))
+        found.append(laid)
+        own = np.broadcast_to([number, first + k, paths.family[k]], (len(bridge), 3))
+        labels.append(np.column_stack([own, bridge]))
+    return _write(folder, layer_frames(number), OF_LAYER, (labels, found), limits)
+
+
+def _ends(points: Floats, laid: Frames) -> Ints:
+    """The point (m,) at the end of the segment that each frame is on, as a segment is of the kind of its end."""
+    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    at = np.searchsorted(arc, laid.arc_length * (1.0 - _AT_POINT), side="left")
+    return np.minimum(at, len(points) - 1).astype(np.int64)
+
+
+def _in_air(air: Bools, at: Ints) -> Bools:
+    """Whether frames (m,) on segments that end at points `at` are in the air; air (n,): whether points are."""
+    return np.asarray(air[at] | air[np.maximum(at - 1, 0)])
+
+
+def _write(
+    folder: Path, name: str, before: tuple[str, ...], rows: tuple[list[Ints], list[Frames]], limits: Limits
+) -> str:
+    """Write frames with the columns before them; return a note, "" if there is nothing to say."""
+    labels, found = rows
+    written = np.concatenate([table(each, limits.scale) for each in found])
+    with (folder / FRAMES_FOLDER / name).open("w", encoding="ascii") as file:
+        file.write(f"{','.join(before)},{HEADER}\n")
+        both = np.column_stack([np.concatenate(labels), written])
+        np.savetxt(file, both, fmt=[*("%d" for _ in before), *FORMAT], delimiter=",")
+    sharp = sum(limits.sharp(each) for each in found)
+    return f"{name}: {too_sharp(sharp)}" if sharp else ""
