@@ -1,4 +1,4 @@
-"""Frames for a robot to follow: one CSV file per path, and one of all paths; `ordered_frames` has layers and filaments."""
+"""Frames for a robot to follow: one CSV file per path, and one of all; `ordered_frames` has filaments and layers."""
 
 from dataclasses import dataclass
 from pathlib import Path
