@@ -149,7 +149,7 @@ def test_pressure_is_in_balance(written: Results) -> None:
         force = np.bincount(loads[:, 1].astype(int), loads[:, 2], 4)[1:]
         members = "".join(cards(written.folder / name, "*NSET, NSET=END")[0]).split(",")
         corners = len([each for each in members if each.strip()])
-        opening = 0.5 * corners * np.sin(2.0 * np.pi / corners)  # of the polygon of nodes, not the one that is 1 % wider
+        opening = 0.5 * corners * np.sin(2.0 * np.pi / corners)  # of the polygon of nodes
         assert force[2] == pytest.approx(PRESSURE * opening, rel=1e-3)
         assert np.abs(force[:2]).max() < 1e-3 * force[2]
         each = np.array([float(line.split(",")[2]) for line in cards(written.folder / name, "*DLOAD")[0]])
