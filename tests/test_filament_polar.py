@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from irregular import annulus
+from scipy.integrate import quad
 from vessels import Vessel, arc, line
 
 import meshwind as mw
@@ -103,6 +104,35 @@ def test_a_capsule_from_a_mesh() -> None:
     layer = passes_between_caps(surface, 100, friction=0.1, particles=101)
     assert layer.pattern is not None and layer.pattern.turns in (129, 131) and layer.holds
     assert 1e-3 < layer.worst < 0.02
+
+
+def test_a_vessel_with_elliptic_caps_from_a_mesh() -> None:
+    """Radius 152.74, cylinder 500 long, caps 98.4436 deep and opened to 37.21: geodesics by Clairaut's integral."""
+    radius, length, depth, hole = 152.74, 500.0, 98.4436, 37.21
+    last = np.arccos(hole / radius)
+
+    def turned(x: float) -> float:  # t = last - x^2 is where r = R cos t, so that the integrand stays finite
+        t = last - x * x
+        r = radius * np.cos(t)
+        way = np.hypot(radius * np.sin(t), depth * np.cos(t)) * 2.0 * x
+        return float(hole * way / (r * np.sqrt((r - hole) * (r + hole))))
+
+    cap = quad(turned, 1e-9, np.sqrt(last), limit=200)[0]
+    tilt = np.arcsin(hole / radius)
+    circuit = (4.0 * cap + 2.0 * length * np.tan(tilt) / radius) / (2.0 * np.pi)
+    assert 360.0 * circuit == pytest.approx(425.96773, abs=1e-5)
+    vessel = Vessel((
+        arc((0.0, 0.0), (radius, depth), -last, 0.0), line((radius, 0.0), (radius, length)),
+        arc((0.0, length), (radius, depth), 0.0, last),
+    ))  # fmt: skip
+    shape = sum(each for each, _ in vessel.pieces) / (2.0 * np.pi * radius)
+    surface = mw.fit(flatten(annulus(vessel.formula, 16_000, shape)))
+    assert natural_turns(surface) == pytest.approx(circuit, rel=1e-5)
+    layer = passes_between_caps(surface, 233, turns=277, friction=0.1, particles=51)
+    assert layer.pattern is not None and 1e-3 < layer.worst < 0.0072
+    found = layer.pattern.shift, layer.pattern.number, layer.pattern.leading, layer.pattern.filaments
+    assert found == (44, 90, False, 1)
+    assert layer.paths.length.sum() / 233 == pytest.approx(1820.796, rel=1e-3)
 
 
 def test_slip_beyond_the_friction_is_said() -> None:
