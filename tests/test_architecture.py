@@ -25,6 +25,7 @@ ORDER = [
     "workflow",
     "editing",
     "export",
+    "program",
     "pictures",
     "run",
     "sweep",

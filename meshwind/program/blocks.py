@@ -1,0 +1,63 @@
+"""The blocks of a program: where the fibre leaves the part, where the eye is, the axes and the time."""
+
+from dataclasses import dataclass, fields
+
+from meshwind.core.cast import Floats, Ints
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """The n blocks of a program in order of winding; lengths in the mesh's units.
+
+    Attributes
+    ----------
+    layer, circuit, passed, path, kind : ndarray of int, shape (n,)
+        As in a filament: what the fibre is doing at the point, with `Kind`.
+    arc_length : ndarray of float, shape (n,)
+        Length laid since the program's start.
+    point, tangent, normal : ndarray of float, shape (n, 3)
+        Where the fibre leaves the part, its unit tangent in the direction of laying, and the outward unit normal.
+    free_length : ndarray of float, shape (n,)
+        Length of the free span: the eye is at point + free_length * tangent.
+    eye_x, eye_r : ndarray of float, shape (n,)
+        The eye along the mandrel's axis, and its distance from it.
+    mandrel, roll, yaw : ndarray of float, shape (n,)
+        Angles of mandrel, roll and yaw in degrees, unwrapped; the mandrel's never falls.
+    time : ndarray of float, shape (n,)
+        Seconds since the start.
+    tension : ndarray of float, shape (n,)
+        Tension of the fibre in N, 0 where none is set.
+    slip : ndarray of float, shape (n,)
+        Friction that the fibre needs at the point; NaN in the air.
+    """
+
+    layer: Ints
+    circuit: Ints
+    passed: Ints
+    path: Ints
+    kind: Ints
+    arc_length: Floats
+    point: Floats
+    tangent: Floats
+    normal: Floats
+    free_length: Floats
+    eye_x: Floats
+    eye_r: Floats
+    mandrel: Floats
+    roll: Floats
+    yaw: Floats
+    time: Floats
+    tension: Floats
+    slip: Floats
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    @property
+    def eye(self) -> Floats:
+        """The eye (n, 3) in the mesh's coordinates, as it stands to the part."""
+        return self.point + self.free_length[:, None] * self.tangent
+
+    def chosen(self, which: slice | Ints) -> "Blocks":
+        """Some of the blocks."""
+        return Blocks(*(getattr(self, each.name)[which] for each in fields(Blocks)))

@@ -1,0 +1,192 @@
+"""Machines as data: their axes, feed and dialect, from a TOML file that is shipped or the user's own."""
+
+from dataclasses import dataclass, fields
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import nearest, read_toml
+
+DEFAULT = "lathe-4"
+"""The machine of a program for which none is named: a lathe of four axes, as large as the part needs."""
+MOVES = {"mandrel": "deg", "carriage": "mm", "cross": "mm", "roll": "deg", "yaw": "deg"}
+"""What an axis may move, and in which unit."""
+FEEDS = "G93", "G93-seconds", "G94"
+"""What F says: 1 over the block's minutes, the block's seconds, or units a minute."""
+_FOLDER = "machines"
+_NEEDED = "mandrel", "carriage"
+"""Axes without which nothing can be wound."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One axis: the machine's value is sign * q + zero for a value q of the program, in mm or degrees.
+
+    Parameters
+    ----------
+    moves : str
+        What it moves: "mandrel", "carriage", "cross", "roll" or "yaw".
+    letter : str
+        Its letter or name in the machine's text.
+    speed, acceleration : float
+        Largest speed and acceleration, in mm or degrees a second (squared).
+    sign : int, default 1
+        1 or -1.
+    zero : float, default 0
+        The machine's value where the program's is 0.
+    low, high : float or None, default None
+        Travel, in the machine's values; None if there is no limit.
+    modulo : float or None, default None
+        Degrees after which a rotary axis counts from 0 again; None if it counts on without end.
+    """
+
+    moves: str
+    letter: str
+    speed: float
+    acceleration: float
+    sign: int = 1
+    zero: float = 0.0
+    low: float | None = None
+    high: float | None = None
+    modulo: float | None = None
+
+    @property
+    def unit(self) -> str:
+        """The unit of its values: mm or deg."""
+        return MOVES[self.moves]
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A winding machine.
+
+    Parameters
+    ----------
+    name, words : str
+        Its name, and what it is in words.
+    axes : tuple of Axis
+        Its axes, 2 to 5; mandrel and carriage at least.
+    dialect : str, default "linuxcnc"
+        The words in which its program is written.
+    feed : str, default "G93"
+        What F says: "G93" 1 over the block's minutes, "G93-seconds" the block's seconds, "G94" units a minute.
+    tension : str, default ""
+        The command that sets the tension, with {tension} in place of the newtons; "" if there is none.
+    fibre_speed : float, default 500
+        Largest speed at which fibre is laid, in mm a second.
+    clearance : float or None, default None
+        Least distance of the eye from part and shaft in mm; None for a share of the part.
+    eye_radius : float or None, default None
+        Distance of an eye without a cross axis from the mandrel's axis, in mm; None for what the part needs.
+    eye_size : float, default 0
+        Radius of a ball round the eye that must stay clear of the part, in mm.
+    """
+
+    name: str
+    words: str
+    axes: tuple[Axis, ...]
+    dialect: str = "linuxcnc"
+    feed: str = "G93"
+    tension: str = ""
+    fibre_speed: float = 500.0
+    clearance: float | None = None
+    eye_radius: float | None = None
+    eye_size: float = 0.0
+
+    def axis(self, moves: str) -> Axis | None:
+        """The axis that moves something, None if the machine has none."""
+        return next((each for each in self.axes if each.moves == moves), None)
+
+
+def machine_names() -> list[str]:
+    """Names of the machines that are shipped."""
+    shipped = files(__package__).joinpath(_FOLDER)
+    return sorted(each.name.removesuffix(".toml") for each in shipped.iterdir() if each.name.endswith(".toml"))
+
+
+def read_machine(name: str = DEFAULT) -> Machine:
+    """Read a machine by its name or from a TOML file; raises BadInputError where it is not one."""
+    if name.lower() in machine_names():
+        file = Path(str(files(__package__).joinpath(_FOLDER, f"{name.lower()}.toml")))
+    elif name.lower().endswith(".toml"):
+        file = Path(name)
+    else:
+        raise BadInputError(f"no machine {name!r}; {nearest(name, machine_names())}, or give a file.toml")
+    return machine_of(read_toml(file, "machine"), str(file))
+
+
+def machine_of(table: dict[str, Any], source: str) -> Machine:
+    """A machine from the table of its file; raises BadInputError for what is wrong there."""
+    found = _record(Machine, table, f"machine {source}", {"name": Path(source).stem, "words": ""})
+    rows = table.get("axes")
+    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+        raise BadInputError(f"machine {source} has no axes; give [[axes]] with moves, letter, speed and acceleration")
+    axes = tuple(Axis(**_record(Axis, row, f"axis {k + 1} of machine {source}", {})) for k, row in enumerate(rows))
+    machine = Machine(**{**found, "axes": axes})
+    _check(machine, source)
+    return machine
+
+
+def _record(kind: type, table: dict[str, Any], source: str, defaults: dict[str, Any]) -> dict[str, Any]:
+    """The values of a table, checked to be those of a record."""
+    known = {each.name: str(each.type) for each in fields(kind)}
+    found = dict(defaults)
+    for key, value in table.items():
+        if key not in known:
+            raise BadInputError(f"{source} has no {key!r}; {nearest(key, known)}")
+        wanted = known[key]
+        if "float" in wanted and isinstance(value, int | float) and not isinstance(value, bool):
+            found[key] = float(value)
+        elif wanted == "int" and isinstance(value, int) and not isinstance(value, bool):
+            found[key] = value
+        elif (wanted == "str" and isinstance(value, str)) or wanted.startswith("tuple"):
+            found[key] = value
+        else:
+            kind_ = "text in quotes" if wanted == "str" else "a number"
+            raise BadInputError(f"{key} of {source} is {value!r}; give {kind_}")
+    lacking = [
+        each.name for each in fields(kind)
+        if each.name in ("moves", "letter", "speed", "acceleration") and each.name not in found
+    ]  # fmt: skip
+    if lacking:
+        raise BadInputError(f"{source} lacks {' and '.join(lacking)}; give {' and '.join(lacking)}")
+    return found
+
+
+def _check(machine: Machine, source: str) -> None:
+    """Raise BadInputError where values of a machine cannot be."""
+
+    def refuse(what: str) -> None:
+        raise BadInputError(f"machine {source}: {what}")
+
+    if machine.feed not in FEEDS:
+        refuse(f"feed is {machine.feed!r}; {nearest(machine.feed, FEEDS)}")
+    for name in ("fibre_speed", "clearance", "eye_radius"):
+        value = getattr(machine, name)
+        if value is not None and not 0.0 < value < float("inf"):
+            refuse(f"{name} is {value}; give a number above 0")
+    if not 0.0 <= machine.eye_size < float("inf"):
+        refuse(f"eye_size is {machine.eye_size}; give a number of at least 0")
+    for axis in machine.axes:
+        if axis.moves not in MOVES:
+            refuse(f"an axis moves {axis.moves!r}; {nearest(axis.moves, MOVES)}")
+        where = f"axis {axis.letter!r}"
+        for name in ("speed", "acceleration"):
+            if not 0.0 < getattr(axis, name) < float("inf"):
+                refuse(f"{name} of {where} is {getattr(axis, name)}; give a number above 0")
+        if axis.sign not in (-1, 1):
+            refuse(f"sign of {where} is {axis.sign}; give 1 or -1")
+        if axis.low is not None and axis.high is not None and not axis.low < axis.high:
+            refuse(f"{where} travels from {axis.low:g} to {axis.high:g}; give low below high")
+        if axis.modulo is not None and (not axis.modulo > 0.0 or axis.unit != "deg"):
+            refuse(f"modulo of {where} is {axis.modulo:g}; give one above 0, and of rotary axes only")
+        if not axis.letter:
+            refuse("an axis has no letter; give one")
+    for what, values in (("move", [each.moves for each in machine.axes]), ("letter", [a.letter for a in machine.axes])):
+        twice = next((each for each in values if values.count(each) > 1), None)
+        if twice:
+            refuse(f"two axes have the {what} {twice!r}; give each its own")
+    lacking = next((each for each in _NEEDED if machine.axis(each) is None), None)
+    if lacking:
+        refuse(f"no axis moves the {lacking}; add [[axes]] with moves = {lacking!r}")
