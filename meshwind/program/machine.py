@@ -130,7 +130,7 @@ def machine_of(table: dict[str, Any], source: str) -> Machine:
 
 def _record(kind: type, table: dict[str, Any], source: str, defaults: dict[str, Any]) -> dict[str, Any]:
     """The values of a table, checked to be those of a record."""
-    known = {each.name: str(each.type) for each in fields(kind)}
+    known = {each.name: getattr(each.type, "__name__", str(each.type)) for each in fields(kind)}
     found = dict(defaults)
     for key, value in table.items():
         if key not in known:
