@@ -1,0 +1,268 @@
+"""A program from the filaments of a run: eye, blocks, time and what is wrong with it."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from meshwind.core.cast import Floats, frozen
+from meshwind.core.errors import BadInputError
+from meshwind.core.units import millimetres
+from meshwind.filament.filament import Filament
+from meshwind.program.axes import limits_of, timing_of
+from meshwind.program.blocks import Blocks
+from meshwind.program.body import Body, body_round
+from meshwind.program.clear import Obstacle, obstacle
+from meshwind.program.eye import LONGEST, Poses, Spans, at_radius, on_body, poses
+from meshwind.program.faults import Fault, collisions, turned_back, unreachable
+from meshwind.program.machine import Machine
+from meshwind.program.mandrel import Mandrel, mandrel_of
+from meshwind.program.stepping import Steps, divided, whole
+from meshwind.program.track import Track, track
+from meshwind.results.reading import Results
+from meshwind.surface.grid import grid
+from meshwind.surface.surface import Surface
+
+CLEARANCE = 0.05
+"""Distance of the eye from part and shaft, over the part's diagonal, where the machine's file gives none."""
+TURN, ROLL, MOVE = 5.0, 10.0, 10.0
+"""Longest steps between blocks: degrees of the mandrel, degrees of roll and yaw, mm of the eye."""
+_SMALL = 0.05
+"""Longest step of the eye over the part's diagonal, for parts that are smaller than the step in mm is made for."""
+_LONGER = 3.0
+"""Clearance that is tried where the eye comes too near, over that which is wanted."""
+
+
+@dataclass(frozen=True)
+class Work:
+    """What is to be wound.
+
+    Attributes
+    ----------
+    filaments : tuple of Filament
+        The filaments, in order of winding.
+    surface : Surface
+        The bare part.
+    diagonal : float
+        Diagonal of the part.
+    units, name : str
+        Unit of length, "" where it is not known, and the part's name.
+    """
+
+    filaments: tuple[Filament, ...]
+    surface: Surface
+    diagonal: float
+    units: str = ""
+    name: str = ""
+
+    @staticmethod
+    def of(results: Results) -> "Work":
+        """What a run's folder has to be wound; raises BadInputError if it holds no filament."""
+        if not results.filaments:
+            raise BadInputError(f"{results.folder} holds no filament; wind it with `meshwind wind MESH --continuous`")
+        return Work(results.filaments, results.surface, results.diagonal, results.units, results.name)
+
+    @property
+    def layers(self) -> int:
+        """Number of layers."""
+        return 1 + max(int(each.layer.max()) for each in self.filaments)
+
+
+@dataclass(frozen=True)
+class Program:
+    """A program.
+
+    Attributes
+    ----------
+    work : Work
+        What it winds.
+    machine : Machine
+        The machine that it is for.
+    mandrel : Mandrel
+        The axis on which the part turns.
+    body : Body
+        What the eye keeps out of, in coordinates along the axis and from it.
+    clearance : float
+        Distance that the body keeps from part and turnarounds, in the mesh's units.
+    blocks : Blocks
+        Its blocks.
+    faults : tuple of Fault
+        What is wrong with it, by block.
+    losses : dict of str to float
+        By what an axis moves that the machine lacks: the largest distance, in mm, or angle, in degrees, that is lost.
+    limits : dict of str to float
+        Seconds in which each axis, or the fibre's speed, is what limits.
+    remedies : tuple of str
+        What was tried against faults, and what came of it.
+    """
+
+    work: Work
+    machine: Machine
+    mandrel: Mandrel
+    body: Body
+    clearance: float
+    blocks: Blocks
+    faults: tuple[Fault, ...]
+    losses: dict[str, float]
+    limits: dict[str, float]
+    remedies: tuple[str, ...] = ()
+
+    @property
+    def seconds(self) -> float:
+        """Its duration."""
+        return float(self.blocks.time[-1])
+
+    @property
+    def seconds_of_layers(self) -> list[float]:
+        """Duration of each layer; that of a join counts for the layer that it leads to."""
+        step = np.diff(self.blocks.time, prepend=0.0)
+        return [float(each) for each in np.bincount(self.blocks.layer, step, self.work.layers)]
+
+
+@dataclass(frozen=True)
+class Way:
+    """How a program is wound: its clearance in the mesh's units, and whether from the filament's end."""
+
+    clearance: float
+    backwards: bool = False
+
+
+def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
+    """The program of a machine for what is to be wound.
+
+    Where span or eye meet the part, the other direction of travel and a longer span are tried; what is left is in
+    `faults`.
+
+    Parameters
+    ----------
+    work : Work
+        What is to be wound.
+    machine : Machine
+        The machine.
+    tension : float, default 0
+        Tension of the fibre in N; 0 if none is set.
+
+    Returns
+    -------
+    Program
+        The program.
+    """
+    if not (np.isfinite(tension) and tension >= 0.0):
+        raise BadInputError(f"tension is {tension}; give a number of newtons of at least 0")
+    share = CLEARANCE * work.diagonal
+    way = Way(share if machine.clearance is None else machine.clearance / millimetres(work.units))
+    blocked = obstacle(work.surface, work.diagonal)
+    best = _wound(work, machine, way, blocked)
+    tried: list[str] = []
+    for wanted, words, other in (
+        ("span", "the other direction of travel", replace(way, backwards=True)),
+        ("eye", "a longer span", replace(way, clearance=_LONGER * way.clearance)),
+    ):
+        hits = sum(fault.kind == wanted for fault in best.faults)
+        if not hits or (other.backwards and work.layers > 1):
+            continue
+        another = _wound(work, machine, other, blocked)
+        left = sum(fault.kind == wanted for fault in another.faults)
+        better = len(another.faults) < len(best.faults)
+        tried.append(f"{words}: {left} of {hits} blocks still meet the part; {'taken' if better else 'not taken'}")
+        best = another if better else best
+    blocks = replace(best.blocks, tension=frozen(np.full(len(best.blocks), tension)))
+    return replace(best, blocks=blocks, remedies=tuple(tried))
+
+
+def _wound(work: Work, machine: Machine, way: Way, blocked: Obstacle) -> Program:
+    """The program that winds in one way."""
+    filaments = work.filaments[::-1] if way.backwards else work.filaments
+    points = np.concatenate([each.course.points[:: -1 if way.backwards else 1] for each in filaments])
+    mandrel = mandrel_of(work.surface, points)
+    body = _body(work, mandrel, points, way.clearance)
+    spans, radius = _spans(machine, body, work)
+    scale = millimetres(work.units)
+    steps = Steps(
+        np.radians(TURN), np.radians(ROLL), np.radians(ROLL),
+        *(2 * (min(MOVE / scale, _SMALL * work.diagonal),)),
+    )  # fmt: skip
+    parts, laid, turned = [], 0.0, -np.inf
+    for filament in filaments:
+        on = track(filament, way.backwards)
+        found = _divided(on, mandrel, spans, steps)
+        part = _blocks(on, mandrel, found, laid, turned)
+        laid, turned = float(part.arc_length[-1]), float(part.mandrel[-1])
+        parts.append(part)
+    blocks = _joined(parts)
+    timing = timing_of(blocks, machine, scale)
+    blocks = replace(blocks, time=frozen(np.concatenate([[0.0], np.cumsum(timing.seconds)])))
+    names = limits_of(machine).names
+    faults = (
+        *collisions(blocks, blocked, machine.eye_size / scale),
+        *unreachable(blocks, machine, scale),
+        *turned_back(blocks),
+    )
+    return Program(
+        work, machine, mandrel, body, way.clearance, blocks, tuple(sorted(faults)),
+        _losses(blocks, machine, radius, scale),
+        {name: float(timing.seconds[timing.limit == k].sum()) for k, name in enumerate(names)},
+    )  # fmt: skip
+
+
+def _body(work: Work, mandrel: Mandrel, points: Floats, clearance: float) -> Body:
+    """The body round the part and its turnarounds."""
+    inside = mandrel.inside(np.concatenate([grid(work.surface).points, points]))
+    return body_round(inside[:, 0], np.hypot(inside[:, 1], inside[:, 2]), clearance)
+
+
+def _spans(machine: Machine, body: Body, work: Work) -> tuple[Spans, float | None]:
+    """The free spans of a machine, and the radius at which its eye stays if it has no cross-feed."""
+    if machine.axis("cross") is not None:
+        return on_body(body), None
+    radius = body.radius if machine.eye_radius is None else machine.eye_radius / millimetres(work.units)
+    if radius < body.radius - 1e-9 * body.size:
+        raise BadInputError(
+            f"the eye of {machine.name} stays {radius * millimetres(work.units):.6g} mm from the axis, but the part "
+            f"with its clearance needs {body.radius * millimetres(work.units):.6g} mm; give a larger eye_radius, or a "
+            "smaller clearance"
+        )
+    return at_radius(radius, LONGEST * body.size), radius
+
+
+def _divided(on: Track, mandrel: Mandrel, spans: Spans, steps: Steps) -> Poses:
+    return divided(on, lambda at: poses(on, mandrel, spans, at), steps, whole(on))
+
+
+def _blocks(on: Track, mandrel: Mandrel, found: Poses, laid: float, turned: float) -> Blocks:
+    """Blocks at poses on a track, not timed yet; they go on from a length laid and an angle of the mandrel."""
+    index, share = on.piece(found.at)
+    told = np.where(share == 0.0, np.maximum(index - 1, 0), index)  # what a block has done, not what the next will
+    normal = on.normals[index, 0] + share[:, None] * (on.normals[index, 1] - on.normals[index, 0])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    slip = on.slip[index, 0] + share * (on.slip[index, 1] - on.slip[index, 0])
+    angle = np.degrees(found.mandrel)
+    # filaments follow one another without turning back: whole turns are added
+    first = float(np.mod(angle[0], 360.0)) if turned == -np.inf else float(angle[0])
+    whole_turns = 0.0 if turned == -np.inf else 360.0 * np.ceil((turned - first) / 360.0)
+    angle = angle - angle[0] + first + whole_turns
+    contact, tangent = on.contact(found.at)
+    n = len(found)
+    return Blocks(
+        layer=frozen(on.layer[told]), circuit=frozen(on.circuit[told]), passed=frozen(on.passed[told]),
+        path=frozen(on.path[told]), kind=frozen(on.kind[told]), arc_length=frozen(laid + found.laid),
+        point=frozen(contact), tangent=frozen(tangent), normal=frozen(normal), free_length=frozen(found.span),
+        eye_x=frozen(found.x), eye_r=frozen(found.r), mandrel=frozen(angle), roll=frozen(np.degrees(found.roll)),
+        yaw=frozen(np.degrees(found.yaw)), time=frozen(np.zeros(n)), tension=frozen(np.zeros(n)), slip=frozen(slip),
+    )  # fmt: skip
+
+
+def _joined(parts: list[Blocks]) -> Blocks:
+    """Blocks in a row."""
+    return Blocks(*(frozen(np.concatenate(values)) for values in zip(*(vars(each).values() for each in parts), strict=True)))
+
+
+def _losses(blocks: Blocks, machine: Machine, radius: float | None, scale: float) -> dict[str, float]:
+    """What a machine cannot follow for want of axes."""
+    losses = {}
+    if radius is not None:
+        losses["cross"] = float(scale * np.abs(blocks.eye_r - radius).max())
+    for moves in ("roll", "yaw"):
+        if machine.axis(moves) is None:
+            angle = getattr(blocks, moves)
+            losses[moves] = float(np.abs(angle - 180.0 * np.round(angle / 180.0)).max())
+    return losses

@@ -1,0 +1,127 @@
+"""Where a program has its blocks: as few as its longest steps allow, on the path itself."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshwind.core.cast import Bools, Floats
+from meshwind.program.eye import Poses
+from meshwind.program.track import AIR, PIVOT, Track
+
+_AIM = 0.95
+"""Planned step over the longest: between two places of the fibre the axes do not move quite evenly."""
+_ROUNDS = 12
+"""Rounds in which steps are halved; a step that is still too long is at a place where the axes have no limit."""
+_FINE = np.radians(2.0)
+"""Turn of a span about a point between two looks at it."""
+_TOLD = np.radians(3.0)
+"""Turn about a point from which its start and end have blocks of their own."""
+
+
+@dataclass(frozen=True)
+class Steps:
+    """Longest steps between blocks: of mandrel, roll, yaw, in radians, and of the eye along the axis and from it."""
+
+    mandrel: float
+    roll: float
+    yaw: float
+    x: float
+    r: float
+
+    def effort(self, poses: Poses) -> Floats:
+        """The steps (n - 1,) between poses, in units of the longest."""
+        return np.asarray(
+            np.max([np.abs(np.diff(getattr(poses, name))) / value for name, value in vars(self).items()], axis=0)
+        )
+
+
+def stepped(track: Track, solve: Callable[[Floats], Poses], steps: Steps) -> Poses:
+    """The poses of the blocks of a track, the axes being solved anew at every place that is looked at."""
+    return divided(track, solve, steps, whole(track))
+
+
+def whole(track: Track) -> Floats:
+    """Places at all ends of a track's pieces, and between those of its turns about a point."""
+    parts = np.where(track.motion == PIVOT, np.maximum(np.ceil(track.corner / _FINE), 1.0), 1.0).astype(np.int64)
+    first = np.repeat(np.cumsum(parts) - parts, parts)
+    index = np.repeat(np.arange(len(track)), parts)
+    return np.append(index + (np.arange(len(index)) - first) / parts[index], float(len(track)))
+
+
+def divided(track: Track, solve: Callable[[Floats], Poses], steps: Steps, at: Floats) -> Poses:
+    """See `stepped`; at: places (n,) at which it is looked first."""
+    at, effort = _resolved(track, solve, steps, at)
+    wanted = _spread(at, effort, kept(track, at))
+    wanted = wanted[_held(track, wanted)]
+    for _ in range(_ROUNDS):
+        # solved among all places that were looked at, so that no fibre is slack between two blocks
+        every = np.union1d(at, wanted)
+        found = _chosen(solve(every), np.searchsorted(every, wanted))
+        halves = _halves(track, wanted, steps.effort(found))
+        if not len(halves):
+            break
+        wanted = np.union1d(wanted, halves)
+    return found
+
+
+def kept(track: Track, at: Floats) -> Bools:
+    """Which places (n,) have a block: the ends, where bridges land, and where the fibre begins to do something else."""
+    index, share = track.piece(at)
+    before = np.maximum(index - 1, 0)
+    new = np.zeros(len(at), dtype=bool)
+    for values in (track.layer, track.passed, track.kind, (track.motion == PIVOT) & (track.corner > _TOLD)):
+        new |= values[index] != values[before]
+    new &= (share == 0.0) & (index > 0)
+    return np.asarray((new | track.landing(at)) & _held(track, at) | _ends(at))
+
+
+def _held(track: Track, at: Floats) -> Bools:
+    """Which places (n,) may have a block: not where a bridge lifts off, as the eye stands there as where it lands."""
+    index, share = track.piece(at)
+    return np.asarray((track.motion[index] != AIR) | (share >= 1.0) | _ends(at))
+
+
+def _ends(at: Floats) -> Bools:
+    """The first and the last of places (n,)."""
+    return np.asarray((at == at[0]) | (at == at[-1]))
+
+
+def _halves(track: Track, at: Floats, effort: Floats) -> Floats:
+    """Places halfway through steps (n - 1,) that are too long; a bridge lands at once, so that none is within."""
+    long = np.flatnonzero(effort > 1.0)
+    half = 0.5 * (at[long] + at[long + 1])
+    return half[track.motion[track.piece(half)[0]] != AIR]
+
+
+def _resolved(track: Track, solve: Callable[[Floats], Poses], steps: Steps, at: Floats) -> tuple[Floats, Floats]:
+    """Places between which no step is too long, where more places help, and the steps between them."""
+    effort = steps.effort(solve(at))
+    for _ in range(_ROUNDS):
+        halves = _halves(track, at, effort)
+        if not len(halves):
+            break
+        at = np.union1d(at, halves)
+        effort = steps.effort(solve(at))
+    return at, effort
+
+
+def _spread(at: Floats, effort: Floats, keep: Bools) -> Floats:
+    """Places that divide the steps evenly between those that are kept."""
+    run = np.cumsum(keep)[:-1] - 1
+    total = np.bincount(run, effort)
+    count = np.maximum(np.ceil(total / _AIM), 1.0)
+    scale = np.divide(count, total, out=np.zeros_like(total), where=total > 0.0)
+    passed = np.concatenate([[0.0], np.cumsum(effort * scale[run])])
+    # each run ends at a whole number; round-off must not move it from there
+    ends = np.concatenate([[0.0], np.cumsum(np.where(total > 0.0, count, 0.0))])
+    marks = np.flatnonzero(keep)
+    passed[marks] = ends[: len(marks)]
+    inner = np.setdiff1d(np.arange(1.0, ends[-1]), ends)
+    passed = np.maximum.accumulate(passed)
+    return np.union1d(np.interp(inner, passed, at), at[keep])
+
+
+def _chosen(poses: Poses, index: Floats) -> Poses:
+    """Some of the poses."""
+    return Poses(*(values[index] for values in vars(poses).values()))
