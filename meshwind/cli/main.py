@@ -11,7 +11,7 @@ from typing import NoReturn
 
 import typer
 
-from meshwind.cli import check, export, info, redesign, render, sweep, wind
+from meshwind.cli import check, export, info, program, redesign, render, sweep, wind
 from meshwind.cli.help import Command, Group
 from meshwind.core.errors import BadInputError
 
@@ -34,6 +34,9 @@ EXAMPLES = """
     # for a robot, a solver and a browser
     meshwind export part-wound --to frames,inp,viewer
 
+    # for a filament winding machine
+    meshwind program part-wound
+
     # all options of a command
     meshwind wind --help
 """
@@ -55,6 +58,7 @@ app.command(cls=Command, short_help="Change a mesh until no fibre bridges.", epi
 app.command(cls=Command, short_help="Wind many cases from one study.", epilog=sweep.EXAMPLES)(sweep.sweep)
 app.command(cls=Command, short_help="Draw the pictures of a run.", epilog=render.EXAMPLES)(render.render)
 app.command(cls=Command, short_help="Write results for solvers, robots and CAD.", epilog=export.EXAMPLES)(export.export)
+app.command(cls=Command, short_help="Write the program of a winding machine.", epilog=program.EXAMPLES)(program.program)
 app.command(cls=Command, short_help="Describe a mesh, a run or this installation.", epilog=info.EXAMPLES)(info.info)
 
 

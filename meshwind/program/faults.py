@@ -4,18 +4,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshwind.core.cast import Bools
+from meshwind.filament.course import Kind
 from meshwind.program.axes import moved
 from meshwind.program.blocks import Blocks
 from meshwind.program.clear import Obstacle
 from meshwind.program.machine import Machine
 
-SPAN, EYE, TRAVEL, BACK = "span", "eye", "travel", "turned back"
+SPAN, EYE, TRAVEL = "span", "eye", "travel"
 """Kinds of faults."""
+_WHERE = {
+    Kind.TURN: ", in its turnaround; another turnaround may clear it",
+    Kind.DWELL: ", in its turnaround; another turnaround may clear it",
+}
+"""What is added on where a fault is."""
 _ROUND_OFF = 1e-9
 """Degrees or mm, over the travel, that are round-off."""
-_BACK = 1e-6
-"""Degrees that the mandrel may turn back by round-off."""
 
 
 @dataclass(frozen=True, order=True)
@@ -29,15 +32,15 @@ class Fault:
 
 def collisions(blocks: Blocks, blocked: Obstacle, size: float) -> list[Fault]:
     """Blocks at which the free span meets the part, or a ball of a size about the eye does."""
-    place = "layer {0}, circuit {1}, pass {2}"
+    place = "in layer {0}, circuit {1}, pass {2}{3}"
     span = blocked.hits(blocks.point, blocks.tangent, blocks.free_length)
     eye = blocked.near(blocks.eye, size) & ~span if size > 0.0 else np.zeros(len(blocks), dtype=bool)
     words = (
-        (span, SPAN, f"the free span meets the part in {place}"),
-        (eye, EYE, f"the eye comes nearer to the part than its size in {place}"),
+        (span, SPAN, f"the free span meets the part {place}"),
+        (eye, EYE, f"the eye comes nearer to the part than its size {place}"),
     )
     return [
-        Fault(int(k), kind, text.format(blocks.layer[k], blocks.circuit[k], blocks.passed[k]))
+        Fault(int(k), kind, text.format(blocks.layer[k], blocks.circuit[k], blocks.passed[k], _WHERE.get(int(blocks.kind[k]), "")))
         for which, kind, text in words
         for k in np.flatnonzero(which)
     ]
@@ -61,14 +64,3 @@ def unreachable(blocks: Blocks, machine: Machine, scale: float) -> list[Fault]:
                     f"move its zero by {-sign * past[k]:.6g}, or take a machine with more travel"
                 )))  # fmt: skip
     return found
-
-
-def turned_back(blocks: Blocks) -> list[Fault]:
-    """The first block of each stretch in which the mandrel turns back: no machine with an endless spindle does."""
-    back: Bools = np.diff(blocks.mandrel) < -_BACK
-    start = np.flatnonzero(back & ~np.append(False, back[:-1]))
-    stop = np.flatnonzero(back & ~np.append(back[1:], False)) + 1
-    return [
-        Fault(int(a), BACK, f"the mandrel turns back by {blocks.mandrel[a] - blocks.mandrel[b]:.3g} degrees")
-        for a, b in zip(start, stop, strict=True)
-    ]

@@ -13,7 +13,7 @@ from meshwind.program.blocks import Blocks
 from meshwind.program.body import Body, body_round
 from meshwind.program.clear import Obstacle, obstacle
 from meshwind.program.eye import LONGEST, Poses, Spans, at_radius, on_body, poses
-from meshwind.program.faults import Fault, collisions, turned_back, unreachable
+from meshwind.program.faults import EYE, SPAN, Fault, collisions, unreachable
 from meshwind.program.machine import Machine
 from meshwind.program.mandrel import Mandrel, mandrel_of
 from meshwind.program.stepping import Steps, divided, whole
@@ -154,8 +154,8 @@ def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
     best = _wound(work, machine, way, blocked)
     tried: list[str] = []
     for wanted, words, other in (
-        ("span", "the other direction of travel", replace(way, backwards=True)),
-        ("eye", "a longer span", replace(way, clearance=_LONGER * way.clearance)),
+        (SPAN, "the other direction of travel", replace(way, backwards=True)),
+        (EYE, "a longer span", replace(way, clearance=_LONGER * way.clearance)),
     ):
         hits = sum(fault.kind == wanted for fault in best.faults)
         if not hits or (other.backwards and work.layers > 1):
@@ -195,7 +195,6 @@ def _wound(work: Work, machine: Machine, way: Way, blocked: Obstacle) -> Program
     faults = (
         *collisions(blocks, blocked, machine.eye_size / scale),
         *unreachable(blocks, machine, scale),
-        *turned_back(blocks),
     )
     return Program(
         work, machine, mandrel, body, way.clearance, blocks, tuple(sorted(faults)),

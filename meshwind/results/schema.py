@@ -195,6 +195,8 @@ BEFORE, AFTER = picture("before"), picture("after")
 VIEWER = File("viewer.html")
 SHELL, SHELL_S4R = File("shell.inp"), File("shell_s4r.inp")
 STEP = File("surface.step")
+PROGRAM_CSV, PROGRAM_JSON, POSES = File("program.csv"), File("program.json"), File("poses.csv")
+"""The program of a machine; that in the words of a machine has the same stem and another ending."""
 
 
 class FamilyFields(NamedTuple):
@@ -279,7 +281,8 @@ SUFFIXES = {
 
 EXPORT_FOLDERS = FRAMES_FOLDER, FORMATS_FOLDER
 EXPORTS = re.compile(
-    "|".join(re.escape(name) for name in (SHELL, SHELL_S4R, FIBERS, FIBERS_LEGACY, STEP))
+    "|".join(re.escape(name) for name in (SHELL, SHELL_S4R, FIBERS, FIBERS_LEGACY, STEP, POSES))
+    + rf"|{PROGRAM_CSV.stem}(_\w+)?\.\w+"
     + rf"|{FRAMES_FOLDER}/(path_\d{{3,}}\.csv|layer_\d{{3,}}\.csv|{re.escape(ALL_FRAMES)}|{re.escape(FILAMENT_FRAMES)})"
     + rf"|{FORMATS_FOLDER}/({'|'.join(file.stem for file in CONVERTED)})\.({'|'.join(sum(SUFFIXES.values(), ()))})"
 )

@@ -1,0 +1,114 @@
+"""`meshwind program`: from a filament to what a machine runs."""
+
+from typing import Annotated, Any
+
+import typer
+
+from meshwind.cli.arguments import OtherFolder, Printed, ResultsFolder
+from meshwind.cli.help import some_of, split_names
+from meshwind.cli.output import print_report
+from meshwind.cli.signature import with_records
+
+EXAMPLES = """
+    # for a lathe of four axes, into the run's folder
+    meshwind program part-wound
+
+    # for a machine of your own, and as poses for a robot
+    meshwind program part-wound --machine mine.toml --to csv,poses
+
+    # which machines are known
+    meshwind program --machines
+"""
+TARGETS = "csv", "poses"
+"""Names for help and completion: the module that defines them takes long to import."""
+WITH_FAULTS = 3
+_MOST = 3
+"""Faults of a kind that are printed; program.json has them all."""
+
+
+def _list_machines(wanted: bool) -> None:
+    if wanted:
+        from meshwind.program.machine import machine_names, read_machine
+
+        for name in machine_names():
+            typer.echo(f"{name:10}{read_machine(name).words}")
+        raise typer.Exit
+
+
+@with_records
+def program(
+    *,
+    folder: ResultsFolder,
+    machine: Annotated[
+        str, typer.Option(metavar="NAME", help="Machine: a name of --machines, or a TOML file of your own.")
+    ] = "lathe-4",
+    to: Annotated[
+        str,
+        typer.Option(
+            metavar="LIST",
+            help=f"What is written, separated by commas: {', '.join(TARGETS)}.",
+            autocompletion=some_of(*TARGETS),
+        ),
+    ] = "csv",
+    tension: Annotated[float, typer.Option(help="Tension of the fibre, in N; 0 sets none.")] = 0.0,
+    machines: Annotated[
+        bool, typer.Option("--machines", callback=_list_machines, is_eager=True, help="List the machines.")
+    ] = False,
+    out: OtherFolder = None,
+    printed: Printed,
+) -> int:
+    """Write the program of a machine that winds the filament of a run, which was wound with --continuous.
+
+    program.csv: every block with the fibre, the eye, the axes and the time.  program.json: the mandrel's axis, the
+    time and what is wrong.  poses.csv (poses): the eye for a robot, the mandrel on an external axis, in mm.
+
+    Exit status: 0 done; 1 the summary could not be printed; 2 bad input or usage; 3 written, but with faults: the free
+    span or the eye meets the part, or an axis cannot go where it must (program.json lists them).
+    """
+    del machines
+    from meshwind.program.targets import write_program
+
+    done = write_program(folder, machine, split_names(to), out, tension)
+    lines = [*program_lines(done.figures), *(f"note      {note}" for note in done.notes)]
+    lines += [f"file      {file}" for file in done.files]
+    print_report(lines, {**done.figures, "notes": list(done.notes), "folder": str(out or folder)}, printed)
+    return WITH_FAULTS if done.program.faults else 0
+
+
+def program_lines(figures: dict[str, Any]) -> list[str]:
+    """What is printed of a program."""
+    unit, span, back = figures["units"], figures["fibre"]["free_length"], figures["turned_back"]
+    slowest = max(figures["limits"], key=figures["limits"].__getitem__)
+    layers = figures["seconds_of_layers"]
+    each = f" (layers {', '.join(_clock(seconds) for seconds in layers)})" if len(layers) > 1 else ""
+    lines = [
+        f"machine   {figures['machine']['name']}: {figures['machine']['words']}",
+        f"program   {figures['blocks']} blocks, {figures['turns']:.6g} turns, {_clock(figures['seconds'])}{each}; "
+        f"fibre {figures['fibre']['laid']:.6g} {unit}, {figures['fibre']['speed']:.3g} {unit}/s; "
+        f"mostly limited by {slowest}",
+        f"eye       {figures['clearance']:.4g} {unit} clear of the part; free span {span['min']:.4g} to "
+        f"{span['max']:.4g} {unit}",
+    ]
+    if figures["lost"]:
+        units = {"cross": "mm", "roll": "degrees", "yaw": "degrees"}
+        lost = ", ".join(f"{value:.3g} {units[name]} of {name}" for name, value in figures["lost"].items())
+        lines.append(f"lost      up to {lost}, for want of these axes")
+    if back["most"] > 0.1:
+        lines.append(
+            f"note      the mandrel turns back by up to {back['most']:.3g} degrees, while the eye swings over an edge; "
+            f"{back['laying']:.3g} degrees in all while fibre is laid"
+        )
+    lines += [f"tried     {words}" for words in figures["remedies"]]
+    kinds = dict.fromkeys(fault["kind"] for fault in figures["faults"])
+    for kind in kinds:
+        found = [fault for fault in figures["faults"] if fault["kind"] == kind]
+        lines += [f"warning   block {fault['index']}: {fault['words']}" for fault in found[:_MOST]]
+        if len(found) > _MOST:
+            lines.append(f"warning   and {len(found) - _MOST} more blocks of this kind; program.json has them")
+    return lines
+
+
+def _clock(seconds: float) -> str:
+    """A duration in words."""
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} min {rest} s" if minutes else f"{rest} s"

@@ -1,0 +1,135 @@
+"""The files of a program: program.csv, program.json, and what a machine or a robot reads."""
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import nearest
+from meshwind.core.units import UNKNOWN, millimetres
+from meshwind.core.version import version
+from meshwind.program.machine import DEFAULT, read_machine
+from meshwind.program.program import Program, Work, program
+from meshwind.program.robot import HEADER, LEGEND, rows
+from meshwind.results.folder import beside
+from meshwind.results.reading import read_results
+from meshwind.results.report import plain
+from meshwind.results.schema import POSES, PROGRAM_CSV, PROGRAM_JSON
+
+COLUMNS = (
+    "index,layer,circuit,pass,path,kind,arc_length,x,y,z,tx,ty,tz,nx,ny,nz,free_length,eye_x,eye_r,mandrel_deg,roll_deg,"
+    "time,tension,slip"
+)
+Writer: TypeAlias = Callable[[Path, Program], list[str]]
+"""Writes into an existing folder; returns what the user should know."""
+
+
+@dataclass(frozen=True)
+class Written:
+    """A program that was written, its files, its figures as in program.json, and notes for the user."""
+
+    program: Program
+    files: tuple[Path, ...]
+    figures: dict[str, Any]
+    notes: tuple[str, ...]
+
+
+def write_program(
+    folder: str | PathLike[str],
+    machine: str = DEFAULT,
+    to: Sequence[str] = (),
+    out: str | PathLike[str] | None = None,
+    tension: float = 0.0,
+) -> Written:
+    """Write the program for the filament of a run's folder into `out`, by default the folder itself.
+
+    program.csv and program.json are always written, and what `to` names of `TARGETS` beside them.  All files appear,
+    or none.  Raises BadInputError if the folder has no filament, or a machine or a target is not known.
+    """
+    for name in to:
+        if name not in TARGETS:
+            raise BadInputError(f"target {name!r} is not known; {nearest(name, TARGETS)}")
+    used = read_machine(machine)
+    made = program(Work.of(read_results(folder)), used, tension)
+    target = Path(folder if out is None else out)
+    notes: list[str] = []
+    with beside(target) as staging:
+        for name in dict.fromkeys(("csv", *to)):
+            notes += TARGETS[name](staging, made)
+        names = sorted(path.relative_to(staging) for path in staging.rglob("*") if path.is_file())
+        names = sorted([*names, Path(PROGRAM_JSON)])
+        figures = figures_of(made) | {"files": [name.as_posix() for name in names]}
+        (staging / PROGRAM_JSON).write_text(json.dumps(figures, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    return Written(made, tuple(target / name for name in names), figures, tuple(notes))
+
+
+def figures_of(made: Program) -> dict[str, Any]:
+    """The figures of a program, for program.json."""
+    blocks, mandrel = made.blocks, made.mandrel
+    back = np.maximum(-np.diff(blocks.mandrel), 0.0)
+    laying = np.diff(blocks.arc_length) > 0.0
+    return plain({
+        "meshwind": version(),
+        "part": made.work.name,
+        "machine": {"name": made.machine.name, "words": made.machine.words, "dialect": made.machine.dialect},
+        "axis": {"origin": mandrel.origin, "direction": mandrel.direction, "zero": mandrel.zero},
+        "units": made.work.units or UNKNOWN,
+        "blocks": len(blocks),
+        "seconds": made.seconds,
+        "seconds_of_layers": made.seconds_of_layers,
+        "limits": made.limits,
+        "fibre": {
+            "laid": float(blocks.arc_length[-1]),
+            "speed": float((blocks.arc_length[-1] - blocks.arc_length[0]) / max(made.seconds, 1e-300)),
+            "free_length": {"min": float(blocks.free_length.min()), "max": float(blocks.free_length.max())},
+        },
+        "clearance": made.clearance,
+        "turns": float(blocks.mandrel[-1] - blocks.mandrel[0]) / 360.0,
+        "turned_back": {
+            "laying": float(back[laying].sum()), "standing": float(back[~laying].sum()),
+            "most": float(_stretches(back).max(initial=0.0)),
+        },
+        "lost": made.losses,
+        "remedies": made.remedies,
+        "faults": [{"index": each.index, "kind": each.kind, "words": each.words} for each in made.faults],
+    })  # fmt: skip
+
+
+def _stretches(back: Any) -> Any:
+    """Sums of positive values in a row."""
+    run = np.cumsum(back == 0.0)
+    return np.bincount(run, back) if len(back) else back
+
+
+def _csv(folder: Path, made: Program) -> list[str]:
+    """Write program.csv."""
+    blocks = made.blocks
+    table = np.column_stack([
+        np.arange(len(blocks)), blocks.layer, blocks.circuit, blocks.passed, blocks.path, blocks.kind,
+        blocks.arc_length, blocks.point, blocks.tangent, blocks.normal, blocks.free_length, blocks.eye_x, blocks.eye_r,
+        blocks.mandrel, blocks.roll, blocks.time, blocks.tension, blocks.slip,
+    ])  # fmt: skip
+    formats = 6 * ["%d"] + (table.shape[1] - 6) * ["%.12g"]
+    with (folder / PROGRAM_CSV).open("w", encoding="ascii") as file:
+        np.savetxt(file, table, fmt=formats, delimiter=",", header=COLUMNS, comments="")
+    return []
+
+
+def _poses(folder: Path, made: Program) -> list[str]:
+    """Write poses.csv."""
+    table = rows(made.blocks, made.mandrel, millimetres(made.work.units))
+    formats = 7 * ["%d"] + (table.shape[1] - 7) * ["%.12g"]
+    legend = "".join(f"# {name}: {words}\n" for name, words in LEGEND.items())
+    with (folder / POSES).open("w", encoding="ascii") as file:
+        file.write(legend)
+        np.savetxt(file, table, fmt=formats, delimiter=",", header=HEADER, comments="")
+    return []
+
+
+TARGETS: dict[str, Writer] = {"csv": _csv, "poses": _poses}
+"""What can be written, by name."""
