@@ -4,15 +4,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshwind.core.cast import Bools, Floats, frozen
+from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.mesh.geometry.facet_tree import FacetTree
 from meshwind.mesh.geometry.rays import cast
-from meshwind.surface.evaluate import S
+from meshwind.program.mandrel import Mandrel
 from meshwind.surface.grid import grid
 from meshwind.surface.surface import Surface
 
 _SKIN = 1e-3
 """Depth, over the part's diagonal, to which a span may dip below the surface: it starts along it."""
+_SIDES = 36
+"""Sides of the shaft, whose radius it then has to 0.4 %."""
 
 
 @dataclass(frozen=True)
@@ -34,23 +36,47 @@ class Obstacle:
         return np.asarray(self.surface.distances(eyes) < distance)
 
 
-def obstacle(surface: Surface, diagonal: float) -> Obstacle:
-    """The obstacle that a part of a diagonal is."""
+@dataclass(frozen=True)
+class Shaft:
+    """A shaft on the mandrel's axis: its radius, 0 if there is none, and where it ends along the axis."""
+
+    radius: float
+    ends: tuple[float, float]
+
+
+def obstacle(surface: Surface, diagonal: float, mandrel: Mandrel, shaft: Shaft) -> Obstacle:
+    """The obstacle that a part of a diagonal and the shaft in it are."""
     on = grid(surface)
-    frames = on.frames.reshape(*on.shape, *on.frames.shape[1:])
-    normal = surface.normals(on.uv).reshape(*on.shape, 3)
-    skin = frames[:, :, S]
+    skin, normal = on.points.reshape(*on.shape, 3), surface.normals(on.uv).reshape(*on.shape, 3)
     trees = []
     for depth in (_SKIN * diagonal, 0.0):
-        points = skin - depth * normal
-        middles = points[:, [0, -1]].mean(axis=0)
-        faces = np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]])
-        count, (nu, nv) = points[..., 0].size, on.shape
-        ring = np.arange(nu) * nv
-        lids = [
-            np.stack([ring + row, np.roll(ring, -1) + row, np.full(nu, count + k)], axis=1)
-            for k, row in enumerate((0, nv - 1))
-        ]
-        vertices = np.concatenate([points.reshape(-1, 3), middles])
-        trees.append(FacetTree.of(frozen(vertices), frozen(np.concatenate([faces, *lids]))))
+        points, faces = _closed(skin - depth * normal, on.quads)
+        if shaft.radius > depth:
+            rod, sides = _rod(shaft.radius - depth, shaft.ends)
+            faces = np.concatenate([faces, sides + len(points)])
+            points = np.concatenate([points, mandrel.origin + rod @ mandrel.frame])
+        trees.append(FacetTree.of(frozen(points), frozen(faces)))
     return Obstacle(trees[0], trees[1])
+
+
+def _closed(points: Floats, quads: Ints) -> tuple[Floats, Ints]:
+    """Vertices and triangles of a grid (nu, nv, 3) with its quads, closed over its rims."""
+    nu, nv = points.shape[:2]
+    ring, count = np.arange(nu) * nv, nu * nv
+    lids = [
+        np.stack([ring + row, np.roll(ring, -1) + row, np.full(nu, count + k)], axis=1)
+        for k, row in enumerate((0, nv - 1))
+    ]
+    vertices = np.concatenate([points.reshape(-1, 3), points[:, [0, -1]].mean(axis=0)])
+    return vertices, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]], *lids])
+
+
+def _rod(radius: float, ends: tuple[float, float]) -> tuple[Floats, Ints]:
+    """Vertices and triangles of a rod on the axis, in the mandrel's frame, that lies outside of its radius nowhere."""
+    turn = 2.0 * np.pi * np.arange(_SIDES) / _SIDES
+    ring = radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    points = np.concatenate([np.column_stack([np.full(_SIDES, end), ring]) for end in ends])
+    k = np.arange(_SIDES)
+    after = (k + 1) % _SIDES
+    sides = [np.stack([k, after, after + _SIDES], axis=1), np.stack([k, after + _SIDES, k + _SIDES], axis=1)]
+    return points, np.concatenate(sides)

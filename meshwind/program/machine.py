@@ -81,6 +81,8 @@ class Machine:
         Distance of an eye without a cross axis from the mandrel's axis, in mm; None for what the part needs.
     eye_size : float, default 0
         Radius of a ball round the eye that must stay clear of the part, in mm.
+    shaft : float, default 0
+        Radius of the shaft that holds the part at both ends, in mm; 0 if there is none.
     """
 
     name: str
@@ -93,6 +95,7 @@ class Machine:
     clearance: float | None = None
     eye_radius: float | None = None
     eye_size: float = 0.0
+    shaft: float = 0.0
 
     def axis(self, moves: str) -> Axis | None:
         """The axis that moves something, None if the machine has none."""
@@ -166,8 +169,9 @@ def _check(machine: Machine, source: str) -> None:
         value = getattr(machine, name)
         if value is not None and not 0.0 < value < float("inf"):
             refuse(f"{name} is {value}; give a number above 0")
-    if not 0.0 <= machine.eye_size < float("inf"):
-        refuse(f"eye_size is {machine.eye_size}; give a number of at least 0")
+    for name in ("eye_size", "shaft"):
+        if not 0.0 <= getattr(machine, name) < float("inf"):
+            refuse(f"{name} is {getattr(machine, name)}; give a number of at least 0")
     for axis in machine.axes:
         if axis.moves not in MOVES:
             refuse(f"an axis moves {axis.moves!r}; {nearest(axis.moves, MOVES)}")

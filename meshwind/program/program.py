@@ -11,7 +11,7 @@ from meshwind.filament.filament import Filament
 from meshwind.program.axes import limits_of, timing_of
 from meshwind.program.blocks import Blocks
 from meshwind.program.body import Body, body_round
-from meshwind.program.clear import Obstacle, obstacle
+from meshwind.program.clear import Shaft, obstacle
 from meshwind.program.eye import LONGEST, Poses, Spans, at_radius, on_body, poses
 from meshwind.program.faults import EYE, SPAN, Fault, collisions, unreachable
 from meshwind.program.machine import Machine
@@ -150,8 +150,7 @@ def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
         raise BadInputError(f"tension is {tension}; give a number of newtons of at least 0")
     share = CLEARANCE * work.diagonal
     way = Way(share if machine.clearance is None else machine.clearance / millimetres(work.units))
-    blocked = obstacle(work.surface, work.diagonal)
-    best = _wound(work, machine, way, blocked)
+    best = _wound(work, machine, way)
     tried: list[str] = []
     for wanted, words, other in (
         (SPAN, "the other direction of travel", replace(way, backwards=True)),
@@ -160,7 +159,7 @@ def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
         hits = sum(fault.kind == wanted for fault in best.faults)
         if not hits or (other.backwards and work.layers > 1):
             continue
-        another = _wound(work, machine, other, blocked)
+        another = _wound(work, machine, other)
         left = sum(fault.kind == wanted for fault in another.faults)
         better = len(another.faults) < len(best.faults)
         tried.append(f"{words}: {left} of {hits} blocks still meet the part; {'taken' if better else 'not taken'}")
@@ -169,14 +168,16 @@ def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
     return replace(best, blocks=blocks, remedies=tuple(tried))
 
 
-def _wound(work: Work, machine: Machine, way: Way, blocked: Obstacle) -> Program:
+def _wound(work: Work, machine: Machine, way: Way) -> Program:
     """The program that winds in one way."""
     filaments = work.filaments[::-1] if way.backwards else work.filaments
     points = np.concatenate([each.course.points[:: -1 if way.backwards else 1] for each in filaments])
     mandrel = mandrel_of(work.surface, points)
-    body = _body(work, mandrel, points, way.clearance)
-    spans, radius = _spans(machine, body, work)
     scale = millimetres(work.units)
+    shaft = machine.shaft / scale
+    body = _body(work, mandrel, points, (shaft, way.clearance))
+    blocked = obstacle(work.surface, work.diagonal, mandrel, Shaft(shaft, (float(body.x[0]), float(body.x[-1]))))
+    spans, radius = _spans(machine, body, work)
     steps = Steps(
         np.radians(TURN), np.radians(ROLL), np.radians(ROLL),
         *(2 * (min(MOVE / scale, _SMALL * work.diagonal),)),
@@ -203,10 +204,10 @@ def _wound(work: Work, machine: Machine, way: Way, blocked: Obstacle) -> Program
     )  # fmt: skip
 
 
-def _body(work: Work, mandrel: Mandrel, points: Floats, clearance: float) -> Body:
-    """The body round the part and its turnarounds."""
+def _body(work: Work, mandrel: Mandrel, points: Floats, keeps: tuple[float, float]) -> Body:
+    """The body round the part, its turnarounds and a shaft; keeps: the shaft's radius, and the clearance."""
     inside = mandrel.inside(np.concatenate([grid(work.surface).points, points]))
-    return body_round(inside[:, 0], np.hypot(inside[:, 1], inside[:, 2]), clearance)
+    return body_round(inside[:, 0], np.maximum(np.hypot(inside[:, 1], inside[:, 2]), keeps[0]), keeps[1])
 
 
 def _spans(machine: Machine, body: Body, work: Work) -> tuple[Spans, float | None]:

@@ -1,18 +1,20 @@
 """The time of each block: as short as the fibre's speed and the speeds and accelerations of the axes allow."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from meshwind.core.cast import Floats
-from meshwind.core.vectors import TINY
+from meshwind.core.cast import Bools, Floats, Ints
 
 FIBRE = "fibre"
 """Name of the fibre's speed among what limits a program."""
-_ROUNDS = 2000
-"""Rounds in which blocks are stretched; a ramp as long as a circuit takes some hundred."""
+_ROUNDS = 5000
+"""Rounds in which steps are stretched; programs of machines take about a hundred."""
 _OVER = 1e-3
 """Share by which an acceleration may be over its limit."""
+_POWER = 0.1
+"""Power of the ratio by which a step is stretched a round: larger ones are quicker, and leave the program slower."""
 
 
 @dataclass(frozen=True)
@@ -26,59 +28,71 @@ class Limits:
 
 @dataclass(frozen=True)
 class Timing:
-    """Durations (n - 1,) of the steps between n blocks, and the number (n - 1,) of the limit that each is under.
+    """Durations (m,) of steps, and the number (m,) of the limit that each is under.
 
-    over: the largest acceleration over its limit that is left, 0 if none is.
+    over: share by which an acceleration is over its limit still, 0 if none is.
     """
 
     seconds: Floats
-    limit: Floats
+    limit: Ints
     over: float
 
 
-def timed(moves: Floats, limits: Limits) -> Timing:
-    """Time steps whose moves (n - 1, k) are under k limits; those without any move take no time.
+class _Changes(NamedTuple):
+    """At nodes between steps: acceleration over the limit, its number, and whether the steps on its sides are fast."""
 
-    Each is as short as the speeds allow.  Where the velocity then changes faster than an axis can, both steps are
-    stretched by the root of the ratio, until none does; the program starts and ends at rest.
+    ratio: Floats
+    limit: Ints
+    before: Bools
+    after: Bools
+
+
+def timed(moves: Floats, limits: Limits) -> Timing:
+    """Time m steps whose moves (m, k) are under k limits; those without any move take no time.
+
+    Each is as short as the speeds allow.  Where an axis then changes its speed faster than it can, the step in which it
+    is the faster one, or both where it turns round, is stretched by a power of the ratio, until no axis does.  The
+    program starts and ends at rest.
     """
-    size = np.abs(moves)
-    shares = size / limits.speed
-    seconds = shares.max(axis=1)
-    limit = shares.argmax(axis=1)
+    shares = np.abs(moves) / limits.speed
+    seconds, limit = shares.max(axis=1), shares.argmax(axis=1)
     going = np.flatnonzero(seconds > 0.0)
     if not len(going):
         return Timing(seconds, limit, 0.0)
-    move, time = moves[going], seconds[going].copy()
-    ratio = np.zeros(len(move) + 1)
-    nodes = np.arange(len(move) + 1)
-    slowed = limit[going].copy()
+    move, time, under = moves[going], seconds[going], limit[going]
+    nodes, ratio = np.arange(len(move) + 1), np.zeros(len(move) + 1)
     for _ in range(_ROUNDS):
-        ratio[nodes], axis = _ratios(move, time, limits.acceleration, nodes)
-        fast = nodes[ratio[nodes] > 1.0 + _OVER]
-        if not len(fast):
+        found = _changes(move, time, limits.acceleration, nodes)
+        ratio[nodes] = found.ratio
+        over = found.ratio > 1.0 + _OVER
+        if not over.any():
             break
-        worst = np.maximum(ratio[:-1], ratio[1:])
-        steps = np.flatnonzero(worst > 1.0 + _OVER)
-        of_nodes = np.zeros(len(ratio), dtype=np.int64)
-        of_nodes[nodes] = axis
-        slowed[steps] = of_nodes[steps + (ratio[1:] > ratio[:-1])[steps]]
-        time[steps] *= np.sqrt(worst[steps])
-        # only nodes next to a changed step, or the one beside it, have changed
-        nodes = np.unique(np.concatenate([steps, steps + 1]))
-    seconds = seconds.copy()
-    seconds[going], limit = time, limit.copy()
-    limit[going] = slowed
-    return Timing(seconds, limit, float(max(ratio.max() - 1.0, 0.0) if ratio.max() > 1.0 + _OVER else 0.0))
+        stretch = np.ones(len(move))
+        # a step that is stretched for both of its nodes takes the larger factor
+        for side, shift in ((found.before, -1), (found.after, 0)):
+            steps = nodes[over & side] + shift
+            np.maximum.at(stretch, steps, found.ratio[over & side] ** _POWER)
+            under[steps] = found.limit[over & side]
+        changed = np.flatnonzero(stretch > 1.0)
+        time[changed] *= stretch[changed]
+        nodes = np.union1d(changed, changed + 1)
+    seconds[going], limit[going] = time, under
+    worst = float(ratio.max())
+    return Timing(seconds, limit, worst - 1.0 if worst > 1.0 + _OVER else 0.0)
 
 
-def _ratios(move: Floats, time: Floats, acceleration: Floats, nodes: Floats) -> tuple[Floats, Floats]:
-    """Largest acceleration at nodes between steps, over its limit, and the number of the limit; rest beyond the ends."""
+def _changes(move: Floats, time: Floats, acceleration: Floats, nodes: Ints) -> _Changes:
+    """What changes at nodes (n,): node i lies before step i, and beyond both ends there is rest."""
     last = len(move) - 1
-    speed_before = np.where((nodes > 0)[:, None], move[np.maximum(nodes - 1, 0)], 0.0)
-    time_before = np.where(nodes > 0, time[np.maximum(nodes - 1, 0)], 0.0)
-    speed_after = np.where((nodes <= last)[:, None], move[np.minimum(nodes, last)], 0.0)
-    time_after = np.where(nodes <= last, time[np.minimum(nodes, last)], 0.0)
-    change = speed_after / np.maximum(time_after, TINY)[:, None] - speed_before / np.maximum(time_before, TINY)[:, None]
-    ratios = np.abs(change) / (0.5 * (time_before + time_after))[:, None] / acceleration
-    return ratios.max(axis=1), ratios.argmax(axis=1)
+    one, two = np.maximum(nodes - 1, 0), np.minimum(nodes, last)
+    first, end = nodes == 0, nodes > last
+    before = np.where(first[:, None], 0.0, move[one] / time[one][:, None])
+    after = np.where(end[:, None], 0.0, move[two] / time[two][:, None])
+    mean = 0.5 * (np.where(first, 0.0, time[one]) + np.where(end, 0.0, time[two]))
+    ratios = np.abs(after - before) / (mean[:, None] * acceleration)
+    limit = ratios.argmax(axis=1)
+    rows = np.arange(len(nodes))
+    u, w = before[rows, limit], after[rows, limit]
+    turns = u * w < 0.0
+    fast_before, fast_after = (np.abs(u) >= np.abs(w)) | turns, (np.abs(w) >= np.abs(u)) | turns
+    return _Changes(ratios[rows, limit], limit, fast_before & ~first, fast_after & ~end)
