@@ -5,11 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.core.vectors import unit
 from meshwind.mesh.geometry.facet_tree import FacetTree
 from meshwind.mesh.geometry.rays import cast
 from meshwind.program.mandrel import Mandrel
-from meshwind.surface.grid import grid
-from meshwind.surface.surface import Surface
+from meshwind.surface.evaluate import SU, SV
+from meshwind.surface.grid import Grid
 
 _SKIN = 1e-3
 """Depth, over the part's diagonal, to which a span may dip below the surface: it starts along it."""
@@ -44,10 +45,10 @@ class Shaft:
     ends: tuple[float, float]
 
 
-def obstacle(surface: Surface, diagonal: float, mandrel: Mandrel, shaft: Shaft) -> Obstacle:
-    """The obstacle that a part of a diagonal and the shaft in it are."""
-    on = grid(surface)
-    skin, normal = on.points.reshape(*on.shape, 3), surface.normals(on.uv).reshape(*on.shape, 3)
+def obstacle(on: Grid, diagonal: float, mandrel: Mandrel, shaft: Shaft) -> Obstacle:
+    """The obstacle that a part of a diagonal, sampled on a grid, and the shaft in it are."""
+    normal = unit(np.cross(on.frames[:, SU], on.frames[:, SV])).reshape(*on.shape, 3)
+    skin = on.points.reshape(*on.shape, 3)
     trees = []
     for depth in (_SKIN * diagonal, 0.0):
         points, faces = _closed(skin - depth * normal, on.quads)

@@ -1,6 +1,7 @@
 """A program from the filaments of a run: eye, blocks, time and what is wrong with it."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from meshwind.program.mandrel import Mandrel, mandrel_of
 from meshwind.program.stepping import Steps, divided, whole
 from meshwind.program.track import Track, track
 from meshwind.results.reading import Results
-from meshwind.surface.grid import grid
+from meshwind.surface.grid import Grid, grid
 from meshwind.surface.surface import Surface
 
 CLEARANCE = 0.05
@@ -60,6 +61,11 @@ class Work:
         if not results.filaments:
             raise BadInputError(f"{results.folder} holds no filament; wind it with `meshwind wind MESH --continuous`")
         return Work(results.filaments, results.surface, results.diagonal, results.units, results.name)
+
+    @cached_property
+    def skin(self) -> Grid:
+        """The bare part on a grid."""
+        return grid(self.surface)
 
     @property
     def layers(self) -> int:
@@ -176,7 +182,7 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
     scale = millimetres(work.units)
     shaft = machine.shaft / scale
     body = _body(work, mandrel, points, (shaft, way.clearance))
-    blocked = obstacle(work.surface, work.diagonal, mandrel, Shaft(shaft, (float(body.x[0]), float(body.x[-1]))))
+    blocked = obstacle(work.skin, work.diagonal, mandrel, Shaft(shaft, (float(body.x[0]), float(body.x[-1]))))
     spans, radius = _spans(machine, body, work)
     steps = Steps(
         np.radians(TURN), np.radians(ROLL), np.radians(ROLL),
@@ -206,7 +212,7 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
 
 def _body(work: Work, mandrel: Mandrel, points: Floats, keeps: tuple[float, float]) -> Body:
     """The body round the part, its turnarounds and a shaft; keeps: the shaft's radius, and the clearance."""
-    inside = mandrel.inside(np.concatenate([grid(work.surface).points, points]))
+    inside = mandrel.inside(np.concatenate([work.skin.points, points]))
     return body_round(inside[:, 0], np.maximum(np.hypot(inside[:, 1], inside[:, 2]), keeps[0]), keeps[1])
 
 

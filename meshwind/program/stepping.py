@@ -11,6 +11,10 @@ from meshwind.program.track import AIR, PIVOT, Track
 
 _AIM = 0.95
 """Planned step over the longest: between two places of the fibre the axes do not move quite evenly."""
+_TINY = 1e-4
+"""Step over the longest that is none: no controller tells two such blocks apart."""
+_MOST = 0.99
+"""Step over the longest above which it is halved: steps are a little longer once blocks that hardly differ are gone."""
 _ROUNDS = 12
 """Rounds in which steps are halved; a step that is still too long is at a place where the axes have no limit."""
 _FINE = np.radians(2.0)
@@ -58,11 +62,20 @@ def divided(track: Track, solve: Callable[[Floats], Poses], steps: Steps, at: Fl
         # solved among all places that were looked at, so that no fibre is slack between two blocks
         every = np.union1d(at, wanted)
         found = _chosen(solve(every), np.searchsorted(every, wanted))
-        halves = _halves(track, wanted, steps.effort(found))
+        effort = steps.effort(found)
+        halves = _halves(track, wanted, effort)
         if not len(halves):
             break
         wanted = np.union1d(wanted, halves)
-    return found
+    return _chosen(found, np.flatnonzero(_told(effort)))
+
+
+def _told(effort: Floats) -> Bools:
+    """Which blocks (n,) to keep, given the steps (n - 1,) between them: of two that hardly differ the later one."""
+    keep = np.append(effort > _TINY, True)
+    if not keep[0]:  # the first stays, and the next goes
+        keep[:2] = True, len(keep) == 2
+    return keep
 
 
 def kept(track: Track, at: Floats) -> Bools:
@@ -89,7 +102,7 @@ def _ends(at: Floats) -> Bools:
 
 def _halves(track: Track, at: Floats, effort: Floats) -> Floats:
     """Places halfway through steps (n - 1,) that are too long; a bridge lands at once, so that none is within."""
-    long = np.flatnonzero(effort > 1.0)
+    long = np.flatnonzero(effort > _MOST)
     half = 0.5 * (at[long] + at[long + 1])
     return half[track.motion[track.piece(half)[0]] != AIR]
 
