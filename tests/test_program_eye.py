@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from program_parts import along, chord, filament, numbered, pieces, work
 
 import meshwind as mw
-from meshwind.core.cast import Floats
+from meshwind.core.cast import Bools, Floats
 from meshwind.core.errors import BadInputError
 from meshwind.filament.closing import close_layer
 from meshwind.filament.course import Course, Kind, joined
@@ -190,9 +190,9 @@ def outside(made: Program) -> None:
     assert ((wide > 0.0) | (over >= -1e-9 * body.size) | at_ends(b, body)).all()
 
 
-def at_ends(b: Blocks, body: Body) -> Floats:
+def at_ends(b: Blocks, body: Body) -> Bools:
     """Whether the eye is on the flat ends."""
-    return np.minimum(np.abs(b.eye_x - body.x[0]), np.abs(b.eye_x - body.x[-1])) <= 1e-9 * body.size
+    return np.asarray(np.minimum(np.abs(b.eye_x - body.x[0]), np.abs(b.eye_x - body.x[-1])) <= 1e-9 * body.size)
 
 
 @given(parts, st.floats(0.05, 2.0), st.floats(0.0, 0.8), st.sampled_from(machine_names()), st.sampled_from([1, -1]))
@@ -283,7 +283,7 @@ def test_a_corner_is_turned_about_its_point() -> None:
     assert len(turn) == 1
     sharp = degrees(acos(np.dot([1.0, 0.0, 0.1], [0.4, 0.0, 0.8]) / sqrt(1.01 * 0.8)))
     assert np.degrees(on.corner[turn]) == pytest.approx(sharp, abs=1e-9)
-    point, tangent = on.contact(turn[0] + np.linspace(0.0, 1.0, 9)[:-1])
+    point, tangent = on.contact(np.asarray(turn[0] + np.linspace(0.0, 1.0, 9)[:-1], dtype=float))
     assert point == pytest.approx(np.tile(one[-1], (8, 1)), abs=1e-12)
     step = np.degrees(np.arccos(np.clip((tangent[1:] * tangent[:-1]).sum(axis=1), -1.0, 1.0)))
     assert step == pytest.approx(sharp / 8.0, abs=1e-6)

@@ -12,7 +12,7 @@ from meshwind.program.machine import Machine
 
 SPAN, EYE, TRAVEL = "span", "eye", "travel"
 """Kinds of faults."""
-_WHERE = {
+_WHERE: dict[int, str] = {
     Kind.TURN: ", in its turnaround; another turnaround may clear it",
     Kind.DWELL: ", in its turnaround; another turnaround may clear it",
 }
@@ -40,7 +40,11 @@ def collisions(blocks: Blocks, blocked: Obstacle, size: float) -> list[Fault]:
         (eye, EYE, f"the eye comes nearer to the part than its size {place}"),
     )
     return [
-        Fault(int(k), kind, text.format(blocks.layer[k], blocks.circuit[k], blocks.passed[k], _WHERE.get(int(blocks.kind[k]), "")))
+        Fault(
+            int(k),
+            kind,
+            text.format(blocks.layer[k], blocks.circuit[k], blocks.passed[k], _WHERE.get(int(blocks.kind[k]), "")),
+        )
         for which, kind, text in words
         for k in np.flatnonzero(which)
     ]

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, fields
 from importlib.resources import files
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,8 @@ FEEDS = "G93", "G93-seconds", "G94"
 _FOLDER = "machines"
 _NEEDED = "mandrel", "carriage"
 """Axes without which nothing can be wound."""
+_NEEDED_OF_AXIS = "moves", "letter", "speed", "acceleration"
+"""What an axis has no default for."""
 
 
 @dataclass(frozen=True)
@@ -138,59 +141,60 @@ def _record(kind: type, table: dict[str, Any], source: str, defaults: dict[str, 
     for key, value in table.items():
         if key not in known:
             raise BadInputError(f"{source} has no {key!r}; {nearest(key, known)}")
-        wanted = known[key]
-        if "float" in wanted and isinstance(value, int | float) and not isinstance(value, bool):
-            found[key] = float(value)
-        elif wanted == "int" and isinstance(value, int) and not isinstance(value, bool):
-            found[key] = value
-        elif (wanted == "str" and isinstance(value, str)) or wanted.startswith("tuple"):
-            found[key] = value
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if "float" in known[key]:
+            right, wanted = number, "a number"
+        elif known[key] == "int":
+            right, wanted = number and isinstance(value, int), "a whole number"
         else:
-            kind_ = "text in quotes" if wanted == "str" else "a number"
-            raise BadInputError(f"{key} of {source} is {value!r}; give {kind_}")
-    lacking = [
-        each.name for each in fields(kind)
-        if each.name in ("moves", "letter", "speed", "acceleration") and each.name not in found
-    ]  # fmt: skip
+            right, wanted = isinstance(value, str) or known[key].startswith("tuple"), "text in quotes"
+        if not right:
+            raise BadInputError(f"{key} of {source} is {value!r}; give {wanted}")
+        found[key] = float(value) if "float" in known[key] else value
+    lacking = [name for name in _NEEDED_OF_AXIS if name in known and name not in found]
     if lacking:
-        raise BadInputError(f"{source} lacks {' and '.join(lacking)}; give {' and '.join(lacking)}")
+        raise BadInputError(f"{source} has no {lacking[0]}; give it")
     return found
 
 
 def _check(machine: Machine, source: str) -> None:
     """Raise BadInputError where values of a machine cannot be."""
-
-    def refuse(what: str) -> None:
-        raise BadInputError(f"machine {source}: {what}")
-
     if machine.feed not in FEEDS:
-        refuse(f"feed is {machine.feed!r}; {nearest(machine.feed, FEEDS)}")
+        raise BadInputError(f"machine {source}: feed is {machine.feed!r}; {nearest(machine.feed, FEEDS)}")
     for name in ("fibre_speed", "clearance", "eye_radius"):
         value = getattr(machine, name)
         if value is not None and not 0.0 < value < float("inf"):
-            refuse(f"{name} is {value}; give a number above 0")
+            raise BadInputError(f"machine {source}: {name} is {value}; give a number above 0")
     for name in ("eye_size", "shaft"):
         if not 0.0 <= getattr(machine, name) < float("inf"):
-            refuse(f"{name} is {getattr(machine, name)}; give a number of at least 0")
+            raise BadInputError(f"machine {source}: {name} is {getattr(machine, name)}; give a number of at least 0")
     for axis in machine.axes:
-        if axis.moves not in MOVES:
-            refuse(f"an axis moves {axis.moves!r}; {nearest(axis.moves, MOVES)}")
-        where = f"axis {axis.letter!r}"
-        for name in ("speed", "acceleration"):
-            if not 0.0 < getattr(axis, name) < float("inf"):
-                refuse(f"{name} of {where} is {getattr(axis, name)}; give a number above 0")
-        if axis.sign not in (-1, 1):
-            refuse(f"sign of {where} is {axis.sign}; give 1 or -1")
-        if axis.low is not None and axis.high is not None and not axis.low < axis.high:
-            refuse(f"{where} travels from {axis.low:g} to {axis.high:g}; give low below high")
-        if axis.modulo is not None and (not axis.modulo > 0.0 or axis.unit != "deg"):
-            refuse(f"modulo of {where} is {axis.modulo:g}; give one above 0, and of rotary axes only")
-        if not axis.letter:
-            refuse("an axis has no letter; give one")
-    for what, values in (("move", [each.moves for each in machine.axes]), ("letter", [a.letter for a in machine.axes])):
+        _check_axis(axis, source)
+    moves, letters = [each.moves for each in machine.axes], [each.letter for each in machine.axes]
+    for what, values in (("move", moves), ("have", letters)):
         twice = next((each for each in values if values.count(each) > 1), None)
-        if twice:
-            refuse(f"two axes have the {what} {twice!r}; give each its own")
+        if twice is not None:
+            raise BadInputError(f"machine {source}: two axes {what} {twice!r}; give each its own")
     lacking = next((each for each in _NEEDED if machine.axis(each) is None), None)
-    if lacking:
-        refuse(f"no axis moves the {lacking}; add [[axes]] with moves = {lacking!r}")
+    if lacking is not None:
+        raise BadInputError(f"machine {source}: no axis moves the {lacking}; add [[axes]] with moves = {lacking!r}")
+
+
+def _check_axis(axis: Axis, source: str) -> None:
+    """Raise BadInputError where values of an axis cannot be."""
+    where = f"machine {source}: axis {axis.letter!r}"
+    if axis.moves not in MOVES:
+        raise BadInputError(f"{where} moves {axis.moves!r}; {nearest(axis.moves, MOVES)}")
+    if not axis.letter.strip():
+        raise BadInputError(f"{where} has no letter; give one")
+    for name in ("speed", "acceleration"):
+        if not 0.0 < getattr(axis, name) < float("inf"):
+            raise BadInputError(f"{where} has the {name} {getattr(axis, name)}; give a number above 0")
+    if axis.sign not in (-1, 1):
+        raise BadInputError(f"{where} has the sign {axis.sign}; give 1 or -1")
+    if not all(isfinite(each) for each in (axis.zero, axis.low or 0.0, axis.high or 0.0)):
+        raise BadInputError(f"{where} has a zero or a travel that is no number; give finite ones")
+    if axis.low is not None and axis.high is not None and not axis.low < axis.high:
+        raise BadInputError(f"{where} travels from {axis.low:g} to {axis.high:g}; give low below high")
+    if axis.modulo is not None and not (0.0 < axis.modulo < float("inf") and axis.unit == "deg"):
+        raise BadInputError(f"{where} has the modulo {axis.modulo:g}; give one above 0, and of rotary axes only")

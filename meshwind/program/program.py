@@ -192,7 +192,7 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
     for filament in filaments:
         on = track(filament, way.backwards)
         found = _divided(on, mandrel, spans, steps)
-        part = _blocks(on, mandrel, found, laid, turned)
+        part = _blocks(on, found, laid, turned)
         laid, turned = float(part.arc_length[-1]), float(part.mandrel[-1])
         parts.append(part)
     blocks = _joined(parts)
@@ -234,7 +234,7 @@ def _divided(on: Track, mandrel: Mandrel, spans: Spans, steps: Steps) -> Poses:
     return divided(on, lambda at: poses(on, mandrel, spans, at), steps, whole(on))
 
 
-def _blocks(on: Track, mandrel: Mandrel, found: Poses, laid: float, turned: float) -> Blocks:
+def _blocks(on: Track, found: Poses, laid: float, turned: float) -> Blocks:
     """Blocks at poses on a track, not timed yet; they go on from a length laid and an angle of the mandrel."""
     index, share = on.piece(found.at)
     told = np.where(share == 0.0, np.maximum(index - 1, 0), index)  # what a block has done, not what the next will
@@ -259,7 +259,9 @@ def _blocks(on: Track, mandrel: Mandrel, found: Poses, laid: float, turned: floa
 
 def _joined(parts: list[Blocks]) -> Blocks:
     """Blocks in a row."""
-    return Blocks(*(frozen(np.concatenate(values)) for values in zip(*(vars(each).values() for each in parts), strict=True)))
+    return Blocks(
+        *(frozen(np.concatenate(values)) for values in zip(*(vars(each).values() for each in parts), strict=True))
+    )
 
 
 def _losses(blocks: Blocks, machine: Machine, radius: float | None, scale: float) -> dict[str, float]:

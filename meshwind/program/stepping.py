@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshwind.core.cast import Bools, Floats
+from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.program.eye import Poses
 from meshwind.program.track import AIR, PIVOT, Track
 
@@ -135,6 +135,6 @@ def _spread(at: Floats, effort: Floats, keep: Bools) -> Floats:
     return np.union1d(np.interp(inner, passed, at), at[keep])
 
 
-def _chosen(poses: Poses, index: Floats) -> Poses:
+def _chosen(poses: Poses, index: Ints) -> Poses:
     """Some of the poses."""
     return Poses(*(values[index] for values in vars(poses).values()))
