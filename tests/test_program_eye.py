@@ -283,7 +283,8 @@ def test_a_corner_is_turned_about_its_point() -> None:
     assert len(turn) == 1
     sharp = degrees(acos(np.dot([1.0, 0.0, 0.1], [0.4, 0.0, 0.8]) / sqrt(1.01 * 0.8)))
     assert np.degrees(on.corner[turn]) == pytest.approx(sharp, abs=1e-9)
-    point, tangent = on.contact(np.asarray(turn[0] + np.linspace(0.0, 1.0, 9)[:-1], dtype=float))
+    places: Floats = turn[0] + np.linspace(0.0, 0.875, 8)
+    point, tangent = on.contact(places)
     assert point == pytest.approx(np.tile(one[-1], (8, 1)), abs=1e-12)
     step = np.degrees(np.arccos(np.clip((tangent[1:] * tangent[:-1]).sum(axis=1), -1.0, 1.0)))
     assert step == pytest.approx(sharp / 8.0, abs=1e-6)
