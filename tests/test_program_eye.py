@@ -296,7 +296,7 @@ def test_tangents_between_points_converge() -> None:
         points, tangents = on_cylinder(radians(50.0), count)
         on = track(pieces(chord(points, Kind.LAID, np.array([0.0, 1.0, 0.0]))))
         assert not (on.motion != 0).any()
-        middle = np.arange(count - 1) + 0.5
+        middle: Floats = np.linspace(0.5, count - 1.5, count - 1)
         turn = np.linspace(0.0, 4.0, count)
         half = 0.5 * (turn[1:] + turn[:-1])
         a = radians(50.0)

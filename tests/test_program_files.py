@@ -137,13 +137,14 @@ def test_the_command_says_what_it_wrote(run: Path, tmp_path: Path) -> None:
 
 def test_travel_that_is_too_short_is_a_fault(run: Path, tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
-    file.write_text(MINE.replace("120.0", "0.5"))
+    file.write_text(MINE.replace("low = 0.0, high = 120.0", "low = 0.4, high = 0.5"))
     done = called(run, "--machine", file, "--out", tmp_path)
     assert done.returncode == 3, done.stderr
     assert "carriage Z goes to" in done.stdout
     figures = json.loads((tmp_path / "program.json").read_text())
     faults = [each for each in figures["faults"] if each["kind"] == "travel"]
     values = np.loadtxt(tmp_path / "program.csv", delimiter=",", skiprows=1)[:, COLUMNS.split(",").index("eye_x")]
+    assert values.min() < 0.4 < 0.5 < values.max()
     assert sorted(each["index"] for each in faults) == sorted({int(values.argmin()), int(values.argmax())})
     assert all("take a machine with more travel" in each["words"] for each in faults)
 
