@@ -88,6 +88,10 @@ def test_the_files_keep_to_their_contract(run: Path, tmp_path: Path) -> None:
     assert figures["seconds"] == pytest.approx(column["time"][-1])
     assert sum(figures["seconds_of_layers"]) == pytest.approx(figures["seconds"])
     assert column["mandrel_deg"][-1] > column["mandrel_deg"][0]
+    surface = done.program.work.surface
+    middles = surface.points(np.stack(np.meshgrid(np.arange(64) / 64, [0.0, 1.0]), axis=2).reshape(-1, 2))
+    middles = middles.reshape(2, 64, 3).mean(axis=1)
+    assert o == pytest.approx(middles[0 if a @ (middles[1] - middles[0]) > 0.0 else 1], abs=1e-9)
     # the whole filament is wound
     assert column["arc_length"][-1] == pytest.approx(done.program.work.filaments[0].course.arc_length[-1])
     assert set(column["circuit"]) == {0.0, 1.0}

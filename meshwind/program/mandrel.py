@@ -54,8 +54,8 @@ class Mandrel:
 def mandrel_of(surface: Surface, points: Floats) -> Mandrel:
     """The axis through the middles of a part's rims, with the mandrel's angle growing along a fibre of points (n, 3).
 
-    Origin is the middle of the start rim; zero leads to the start rim at u = 0.  Raises BadInputError if the middles
-    coincide.
+    Origin is the middle of the rim from which the axis leads to the other; zero is the direction from the axis to the
+    start rim at u = 0.  Raises BadInputError if the middles coincide.
     """
     rims = [rim_frames(surface, v, _RIM_SAMPLES)[:, 0] for v in (0.0, 1.0)]
     origin, other = rims[0].mean(axis=0), rims[1].mean(axis=0)
@@ -71,4 +71,4 @@ def mandrel_of(surface: Surface, points: Floats) -> Mandrel:
     flat = made.inside(points)[:, 1:]
     # the eye stands still while the part turns against the sense in which the fibre goes round
     turn = np.arctan2(flat[:-1, 0] * flat[1:, 1] - flat[:-1, 1] * flat[1:, 0], (flat[:-1] * flat[1:]).sum(axis=1)).sum()
-    return made if turn <= 0.0 else Mandrel(made.origin, frozen(-made.direction), made.zero)
+    return made if turn <= 0.0 else Mandrel(frozen(other), frozen(-along), made.zero)
