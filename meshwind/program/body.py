@@ -69,7 +69,12 @@ def body_round(x: Floats, r: Floats, clearance: float) -> Body:
     reach = clearance / np.cos(np.pi / 8.0)
     turn = np.pi / 8.0 + _OCTAGON[:-1]
     around = np.stack([np.cos(turn), np.sin(turn)], axis=1)
-    all_ = (np.stack([x, r], axis=1)[:, None] + reach * around).reshape(-1, 2)
+    flat = np.stack([x, r], axis=1)
+    if np.ptp(x) > 0.0:  # only the corners of its hull count
+        ends = np.array([[x.min(), -1.0], [x.max(), -1.0]])
+        corners = ConvexHull(np.concatenate([flat, ends])).vertices
+        flat = flat[corners[corners < len(flat)]]
+    all_ = (flat[:, None] + reach * around).reshape(-1, 2)
     mirrored = np.concatenate([all_, all_ * [1.0, -1.0]])
     corners = mirrored[ConvexHull(mirrored).vertices]
     corners = corners[corners[:, 1] > 0.0]

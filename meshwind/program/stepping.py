@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 
@@ -35,9 +36,8 @@ class Steps:
 
     def effort(self, poses: Poses) -> Floats:
         """The steps (n - 1,) between poses, in units of the longest."""
-        return np.asarray(
-            np.max([np.abs(np.diff(getattr(poses, name))) / value for name, value in vars(self).items()], axis=0)
-        )
+        shares = (np.abs(np.diff(getattr(poses, name))) / value for name, value in vars(self).items())
+        return reduce(np.maximum, shares)
 
 
 def stepped(track: Track, solve: Callable[[Floats], Poses], steps: Steps) -> Poses:

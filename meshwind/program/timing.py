@@ -73,9 +73,9 @@ def timed(moves: Floats, limits: Limits) -> Timing:
             steps = nodes[over & side] + shift
             np.maximum.at(stretch, steps, found.ratio[over & side] ** _POWER)
             under[steps] = found.limit[over & side]
-        changed = np.flatnonzero(stretch > 1.0)
+        changed = stretch > 1.0
         time[changed] *= stretch[changed]
-        nodes = np.union1d(changed, changed + 1)
+        nodes = np.flatnonzero(np.append(changed, False) | np.append(False, changed))
     seconds[going], limit[going] = time, under
     worst = float(ratio.max())
     return Timing(seconds, limit, worst - 1.0 if worst > 1.0 + _OVER else 0.0)

@@ -70,14 +70,19 @@ class Track:
         s = share[:, None]
         p0, p1 = self.points[index, 0], self.points[index, 1]
         t0, t1 = self.tangents[index, 0], self.tangents[index, 1]
-        size = np.linalg.norm(p1 - p0, axis=1, keepdims=True)
+        chord = p1 - p0
+        size = np.sqrt((chord**2).sum(axis=1))[:, None]
         d0, d1 = size * t0, size * t1
-        lay = (self.motion[index] == LAY)[:, None]
-        point = p0 + s * d0 + s**2 * (3.0 * (p1 - p0) - 2.0 * d0 - d1) + s**3 * (2.0 * (p0 - p1) + d0 + d1)
-        ahead = d0 + 2.0 * s * (3.0 * (p1 - p0) - 2.0 * d0 - d1) + 3.0 * s**2 * (2.0 * (p0 - p1) + d0 + d1)
+        bend, twist = 3.0 * chord - 2.0 * d0 - d1, d0 + d1 - 2.0 * chord
+        lay = self.motion[index] == LAY
+        point = p0 + s * (d0 + s * (bend + s * twist))
+        ahead = d0 + s * (2.0 * bend + 3.0 * s * twist)
         landed = (s >= 1.0) & (self.motion[index] == AIR)[:, None]
-        point = np.where(lay, point, np.where(landed, p1, p0))
-        return point, np.where(lay, unit(ahead), _between(t0, t1, share))
+        point = np.where(lay[:, None], point, np.where(landed, p1, p0))
+        tangent = unit(ahead)
+        turns = np.flatnonzero(~lay)
+        tangent[turns] = _between(t0[turns], t1[turns], share[turns])
+        return point, tangent
 
     def laid(self, at: Floats) -> Floats:
         """Length (n,) laid up to places (n,)."""
