@@ -1,0 +1,1 @@
+"""Programs in the words of machines: dialects as data, and one writer for all of them."""
