@@ -49,12 +49,14 @@ class Dialect:
         The feed conventions that it knows, the usual one first.
     speeds : tuple of Speeds
         For feeds in units a minute: the first of which an axis moves states the speed.
-    start, ready, end : tuple of str
-        Lines before the approach, after it, and at the end; {letters} are those of the axes.
+    head, start, ready, end : tuple of str
+        Lines before the header, before the approach, after it, and at the end; {letters} are those of the axes, {mode}
+        is the mode of feeds.
     comment : str
         A comment with {text}.
-    rapid, move, reset, pause, dwell : str
-        A move of the approach, of the program, a new count, a stop that waits for the operator, and a wait.
+    rapid, rapid_turn, move, reset, pause, dwell : str
+        A move of the approach and that of an axis by an increment, a move of the program, a new count, a stop that
+        waits for the operator, and a wait.
     word, between : str
         An axis with its value, and what separates two of them.
     turned : tuple of str or None
@@ -94,9 +96,11 @@ class Dialect:
     speeds: tuple[Speeds, ...]
     start: tuple[str, ...]
     end: tuple[str, ...]
+    head: tuple[str, ...] = ()
     ready: tuple[str, ...] = ()
     comment: str = "({text})"
     rapid: str = "G0 {axes}"
+    rapid_turn: str = "G0 {axes}"
     move: str = "G1 {axes} {feed}"
     reset: str = "G92 {axes}"
     pause: str = "M0"

@@ -1,0 +1,102 @@
+"""What a text makes a machine do, and what all interpreters have in common."""
+
+import math
+import re
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshwind.core.cast import Floats, Ints
+from meshwind.program.machine import Machine
+from meshwind.program.readback.controllers import Controller
+
+NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
+"""A number as controllers read it: without exponent."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """The m moves and waits of a text after its first stop, and its faults.
+
+    Attributes
+    ----------
+    start : ndarray of float, shape (axes,)
+        Values of the machine's axes before the first of them, in mm and degrees; NaN where the text leaves one open.
+    line : ndarray of int, shape (m,)
+        Numbers of their lines, from 1.
+    values : ndarray of float, shape (m, axes)
+        Values of the axes after each, unwrapped.
+    seconds : ndarray of float, shape (m,)
+        Time that each takes.
+    tension : ndarray of float, shape (m,)
+        Tension in force, NaN where none was set.
+    faults : tuple of (int, str)
+        Lines that a controller would refuse, with the reason.
+    """
+
+    start: Floats
+    line: Ints
+    values: Floats
+    seconds: Floats
+    tension: Floats
+    faults: tuple[tuple[int, str], ...]
+
+
+class Interpreter(ABC):
+    """The state of a controller that reads a text line by line: what it did, and what it would refuse."""
+
+    def __init__(self, machine: Machine, controller: Controller) -> None:
+        self.machine, self.controller = machine, controller
+        self.running = self.over = False
+        self.start = [math.nan] * len(machine.axes)
+        self.tension = math.nan
+        self.rows: list[tuple[int, list[float], float, float]] = []
+        self.faults: list[tuple[int, str]] = []
+        before, _, after = machine.tension.partition("{")
+        tension = re.escape(before) + f"({NUMBER})" + re.escape(after.partition("}")[2])
+        self._tension = re.compile(tension) if machine.tension else None
+
+    @abstractmethod
+    def carry_out(self, number: int, text: str) -> None:
+        """Do what a line says, of which comments are taken off."""
+
+    def read(self, number: int, line: str) -> None:
+        """Read a line."""
+        if len(line) > self.controller.longest:
+            self.fault(number, f"{len(line)} characters, of which {self.controller.longest} are read")
+        if not line.isascii():
+            self.fault(number, "a character that is not ASCII")
+        text = re.sub(self.controller.comment, "", line.strip()).strip()
+        if not text:
+            return
+        if self.over:
+            self.fault(number, f"{text!r} comes after the end")
+        if self._tension and (found := self._tension.fullmatch(text)):
+            self.tension = float(found[1])
+        else:
+            self.carry_out(number, text)
+
+    def fault(self, number: int, words: str) -> None:
+        """Note a fault in a line."""
+        self.faults.append((number, words))
+
+    def done(self, number: int, values: list[float], seconds: float) -> None:
+        """Note a move or a wait."""
+        self.rows.append((number, values, seconds, self.tension))
+
+    def reading(self, lines: int) -> Reading:
+        """What was read in so many lines."""
+        if not self.over:
+            self.fault(lines, f"no {' or '.join(self.controller.ends)} ends the program")
+        if not self.running:
+            self.fault(lines, "no stop before the program, at which the fibre is tied on")
+        line, values, seconds, tension = zip(*self.rows, strict=True) if self.rows else ((), (), (), ())
+        return Reading(
+            start=np.array(self.start),
+            line=np.array(line, dtype=np.int64),
+            values=np.array(values, dtype=float).reshape(len(line), len(self.start)),
+            seconds=np.array(seconds, dtype=float),
+            tension=np.array(tension, dtype=float),
+            faults=tuple(sorted(self.faults)),
+        )
