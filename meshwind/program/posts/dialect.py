@@ -7,8 +7,11 @@ from meshwind.core.errors import BadInputError
 from meshwind.program.machine import Axis, Machine
 
 RESET, INCREMENTS, ALL_INCREMENTS, ON = "reset", "increments", "all increments", "on"
-"""How turns without end are written: the count is reset by whole turns at each circuit; the mandrel, or every axis, moves
-by increments; or the mandrel counts on."""
+"""How turns without end are written.
+
+The count is reset by whole turns at each circuit; the mandrel, or every axis, moves by increments; or the mandrel counts
+on.
+"""
 
 
 @dataclass(frozen=True)
@@ -81,8 +84,8 @@ class Dialect:
         Letters that are written with a value where no axis has them.
     whole : bool
         Whether every move names every axis.
-    plain : str
-        Expression for characters that a comment must not hold.
+    upper, plain : bool, str
+        Whether comments are in capitals, and an expression for characters that they must not hold.
     notes : tuple of str
         What the operator must know of it.
     """
@@ -118,6 +121,7 @@ class Dialect:
     highest: int = 99_999_999
     fixed: tuple[tuple[str, float], ...] = ()
     whole: bool = False
+    upper: bool = False
     plain: str = r"[()\[\]{};%]"
     notes: tuple[str, ...] = ()
 

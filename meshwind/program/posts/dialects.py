@@ -76,7 +76,7 @@ _FANUC = Dialect(
     feeds=("G94", "G93", "G93-seconds"),
     speeds=_TOGETHER,
     head=("%", "O0001"),
-    start=("G21 G17 G40 G49 G80 G64 G90 G94"),
+    start=("G21 G17 G40 G49 G80 G64 G90 G94",),
     ready=("G91 {mode}",),
     end=("M30", "%"),
     rapid="G90 G0 {axes}",
@@ -89,6 +89,7 @@ _FANUC = Dialect(
     decimals=4,
     numbers=1,
     highest=99_999,
+    upper=True,
     plain=r"[^A-Z0-9 .,+\-=/*]",
     notes=("increment system IS-C, 0.0001 mm and degrees",),
 )
@@ -144,9 +145,9 @@ _KRL = Dialect(
     fixed=tuple((letter, 0.0) for letter in "XYZABC"),
     whole=True,
     notes=(
-        "base 1: x along the mandrel's axis, y from the axis to the eye",
-        "tool 1: z along the span, away from the part",
-        "the mandrel counts on without end, or has a modulo and takes the shorter way",
+        "base 1 has x along the axis of the mandrel, y from the axis to the eye",
+        "tool 1 has z along the span, away from the part",
+        "E1 is an endless axis",
     ),
 )  # fmt: skip
 

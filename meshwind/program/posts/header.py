@@ -13,15 +13,15 @@ from meshwind.program.machine import Axis, Machine
 from meshwind.program.posts.dialect import ALL_INCREMENTS, INCREMENTS, ON, RESET, Dialect
 
 _TURNING = {
-    RESET: "its count is set back by whole turns with G92 at each circuit and is never rewound",
-    INCREMENTS: "moved by increments, never back to 0",
-    ALL_INCREMENTS: "moved by increments, never back to 0",
-    ON: "it counts on and is never rewound",
+    RESET: "its count set back by whole turns by G92 at each circuit, never rewound",
+    INCREMENTS: "moved by increments, never rewound",
+    ALL_INCREMENTS: "moved by increments, never rewound",
+    ON: "it counts on, never rewound",
 }
 _MOVES = {
     "mandrel": "turns the mandrel",
     "carriage": "moves the eye along the mandrel",
-    "cross": "is the eye's distance from the mandrel's axis",
+    "cross": "is the distance of the eye from the axis of the mandrel",
     "roll": "rolls the eye",
     "yaw": "yaws the eye",
 }
@@ -45,14 +45,14 @@ def header(blocks: Blocks, machine: Machine, dialect: Dialect, job: Job) -> list
         f"winding program for {dialect.words}, by meshwind {version()}",
         f"part: {job.part}",
         f"machine: {machine.name}, {machine.words}" if machine.words else f"machine: {machine.name}",
-        f"{layers} layers, {circuits} circuits, {len(blocks)} blocks",
+        f"layers: {layers}, circuits: {circuits}, blocks: {len(blocks)}",
         f"time: {seconds:.1f} s, {seconds / 60.0:.1f} min",
         f"fibre: {(blocks.arc_length[-1] - blocks.arc_length[0]) * job.millimetres / 1e3:.3f} m",
         f"units: mm and degrees, {_feed(machine, dialect)}",
         *(f"{axis.letter} {_axis(axis, dialect)}" for axis in machine.axes),
         *dialect.notes,
-        f"start: eye clear, mandrel on its mark, {_zero(machine)}; the program approaches, stops, and waits for "
-        "the fibre to be tied on",
+        f"before the start: eye clear of the part, mandrel on its mark, {_zero(machine)}",
+        f"the program approaches and stops at {dialect.pause} for the fibre to be tied on",
     ]
     if machine.tension and blocks.tension.any():
         words.insert(6, f"tension: {blocks.tension.min():g} to {blocks.tension.max():g} N")
@@ -62,7 +62,8 @@ def header(blocks: Blocks, machine: Machine, dialect: Dialect, job: Job) -> list
 def comments(text: str, dialect: Dialect) -> list[str]:
     """Text as comments of a dialect, in ASCII and within the length of its lines."""
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "replace").decode("ascii")
-    plain = re.sub(dialect.plain, "-", plain.upper() if "A-Z" in dialect.plain else plain)
+    plain = plain.replace("'", "")
+    plain = re.sub(dialect.plain, "-", plain.upper() if dialect.upper else plain)
     room = dialect.longest - len(dialect.comment.format(text=""))
     return [dialect.comment.format(text=line) for line in textwrap.wrap(plain, room)]
 
@@ -87,7 +88,7 @@ def _axis(axis: Axis, dialect: Dialect) -> str:
         words += f", travel {low} to {high}"
     if axis.modulo and dialect.turning != ALL_INCREMENTS:
         return f"{words}, counted from 0 to {axis.modulo:g}"
-    return f"{words}; {_TURNING[dialect.turning]}" if axis.moves == "mandrel" else words
+    return f"{words}, {_TURNING[dialect.turning]}" if axis.moves == "mandrel" else words
 
 
 def _zero(machine: Machine) -> str:

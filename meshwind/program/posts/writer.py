@@ -8,9 +8,10 @@ import numpy as np
 
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
+from meshwind.program.axes import moved
 from meshwind.program.blocks import Blocks
 from meshwind.program.machine import Axis, Machine
-from meshwind.program.posts.dialect import ALL_INCREMENTS, INCREMENTS, RESET, Dialect, Speeds, fitted
+from meshwind.program.posts.dialect import ALL_INCREMENTS, INCREMENTS, RESET, Dialect, fitted
 from meshwind.program.posts.header import Job, comments, header
 from meshwind.program.posts.numbers import figures, number, steps
 
@@ -35,14 +36,7 @@ def program_text(blocks: Blocks, machine: Machine, dialect: Dialect, job: Job) -
 
 def machine_values(blocks: Blocks, machine: Machine, millimetres: float) -> Floats:
     """Values (n, axes) that the machine's axes have in the blocks, in mm and degrees."""
-    moved = {
-        "mandrel": blocks.mandrel,
-        "carriage": blocks.eye_x * millimetres,
-        "cross": blocks.eye_r * millimetres,
-        "roll": blocks.roll,
-        "yaw": blocks.yaw,
-    }
-    return np.stack([axis.sign * moved[axis.moves] + axis.zero for axis in machine.axes], axis=1)
+    return np.stack([axis.sign * moved(blocks, axis.moves, millimetres) + axis.zero for axis in machine.axes], axis=1)
 
 
 class _Writer:
@@ -85,20 +79,11 @@ class _Writer:
         zero = round(axis.zero * self.unit)
         if self.dialect.turning == RESET and not axis.modulo:
             self.lines.append(self.dialect.reset.format(axes=self._word(axis, zero)))
-        cross = next((k for k, each in enumerate(self.machine.axes) if each.moves == "cross"), None)
         turns = self._by_increments(axis)
-        if cross is None:
-            order = [[k for k in range(len(first)) if not (turns and k == self.mandrel)]]
-            stops = [first]
-        else:
-            clear = list(first)
-            far = max if self.machine.axes[cross].sign > 0 else min
-            clear[cross] = far(row[cross] for row in self.at)
-            others = [k for k in range(len(first)) if k != cross and not (turns and k == self.mandrel)]
-            order, stops = [[cross], others, [cross]], [clear, clear, first]
-        for chosen, stop in zip(order, stops, strict=True):
-            # an arm moves as a whole: it has no axis that leads the eye out alone
-            self._rapid(range(len(first)) if self.dialect.whole else chosen, stop)
+        for chosen, stop in self._stops(turns):
+            words = [self._told(k, stop[k], stop[k], absolute=True) for k in chosen]
+            speed = 60.0 * _APPROACH * min(each.speed for each in self.machine.axes)
+            self._say(self.dialect.rapid.format(axes=self._joined(words), rapid=figures(speed)))
         if turns and first[self.mandrel] != zero:
             word = self.dialect.increment.format(
                 letter=axis.letter, value=number(first[self.mandrel] - zero, self.dialect.decimals)
@@ -108,13 +93,29 @@ class _Writer:
         self._layer(0)
         self._tension(0)
 
+    def _stops(self, turns: bool) -> list[tuple[Sequence[int], list[int]]]:
+        """The axes and places of the approach: the eye first goes out as far as it ever does.
+
+        turns: whether the mandrel is left to an increment.
+        """
+        first, every = self.at[0], range(len(self.machine.axes))
+        chosen = [k for k in every if not (turns and k == self.mandrel)]
+        cross = next((k for k, each in enumerate(self.machine.axes) if each.moves == "cross"), None)
+        if cross is None:
+            return [(chosen, first)]
+        clear = list(first)
+        clear[cross] = (max if self.machine.axes[cross].sign > 0 else min)(row[cross] for row in self.at)
+        if self.dialect.whole:  # an arm moves as a whole
+            return [(every, clear), (every, first)]
+        return [([cross], clear), ([k for k in chosen if k != cross], clear), ([cross], first)]
+
     def block(self, index: int) -> None:
         """The lines of a block, none where no axis moves by a last decimal."""
         now, stood = self.at[index], self.at[self.last]
         if index in self.layers:
             self._layer(index)
         if index in self.circuits:
-            self._count_again(index - 1)
+            self._count_again()
         if index in self.tensions:
             self._tension(index)
         end = index == len(self.at) - 1
@@ -150,12 +151,13 @@ class _Writer:
     def _speed(self, moves: list[int], seconds: float) -> tuple[str, float]:
         """The word of the speed at which axes move so far in some seconds, and the seconds by its figures."""
         for speeds in self.dialect.speeds:
-            chosen = [k for k, axis in enumerate(self.machine.axes) if moves[k] and re.fullmatch(speeds.letters, axis.letter)]
+            axes = self.machine.axes
+            chosen = [k for k in range(len(axes)) if moves[k] and re.fullmatch(speeds.letters, axes[k].letter)]
             if not chosen:
                 continue
             length = math.hypot(*(moves[k] for k in chosen)) / self.unit
-            axis = self.machine.axes[chosen[0]]
-            factor = _factor(speeds, axis)
+            axis = axes[chosen[0]]
+            factor = speeds.factor / axis.speed if speeds.share else speeds.factor
             text = figures(length * 60.0 * factor / seconds)
             digits = re.sub(r"\D", "", axis.letter)
             return speeds.text.format(feed=text, number=digits), length * 60.0 * factor / float(text)
@@ -170,7 +172,7 @@ class _Writer:
         self._say(self.dialect.dwell.format(wait=number(count, self.dialect.dwell_decimals)))
         self.said += count * self.dialect.dwell_unit / 10**self.dialect.dwell_decimals
 
-    def _count_again(self, index: int) -> None:
+    def _count_again(self) -> None:
         """Take whole turns off the mandrel's count, where a block ends."""
         axis = self.machine.axes[self.mandrel]
         if self.dialect.turning != RESET or axis.modulo:
@@ -196,13 +198,6 @@ class _Writer:
 
     def _layer(self, index: int) -> None:
         self.lines += comments(f"layer {int(self.blocks.layer[index]) + 1}", self.dialect)
-
-    def _rapid(self, chosen: Sequence[int], stop: list[int]) -> None:
-        """A move of the approach of some axes."""
-        speed = 60.0 * _APPROACH * min(axis.speed for axis in self.machine.axes)
-        words = [self._told(k, stop[k], stop[k], absolute=True) for k in chosen]
-        if words:
-            self._say(self.dialect.rapid.format(axes=self._joined(words), rapid=figures(speed)))
 
     def _by_increments(self, axis: Axis) -> bool:
         if self.dialect.turning == ALL_INCREMENTS:
@@ -242,11 +237,6 @@ class _Writer:
                     "machine of fewer axes or a shorter command"
                 )
             self.lines.append(line)
-
-
-def _factor(speeds: Speeds, axis: Axis) -> float:
-    """The number that states a speed of one mm or degree a minute."""
-    return speeds.factor / axis.speed if speeds.share else speeds.factor
 
 
 def _numbered(lines: list[str], dialect: Dialect) -> list[str]:

@@ -8,6 +8,7 @@ import numpy as np
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import nearest
+from meshwind.program.axes import moved
 from meshwind.program.blocks import Blocks
 from meshwind.program.machine import Machine
 from meshwind.program.mandrel import Mandrel
@@ -97,7 +98,7 @@ def read_back(text: str, blocks: Blocks, machine: Machine, part: Part) -> ReadBa
     reading = read_text(text, machine)
     digit = CONTROLLERS[machine.dialect].digit
     said, start = _program_values(reading, machine)
-    meant = np.stack([_moved(blocks, each.moves, part.millimetres) for each in machine.axes], axis=1)
+    meant = np.stack([moved(blocks, each.moves, part.millimetres) for each in machine.axes], axis=1)
     mandrel = [each.moves for each in machine.axes].index("mandrel")
     turns = 360.0 * np.rint((meant[0, mandrel] - start[mandrel]) / 360.0)
     if np.isfinite(turns):
@@ -107,7 +108,9 @@ def read_back(text: str, blocks: Blocks, machine: Machine, part: Part) -> ReadBa
     if not (np.abs(start - meant[0]) <= _DIGITS * digit).all():
         faults.append((1, "the approach does not lead to the first block"))
     at = _blocks_of(said, blocks.time[0] + np.cumsum(reading.seconds), meant, blocks.time, digit)
-    faults += _faults_of_axes(reading, said, meant[at], machine, max(_DIGITS * digit, TOUCHED * part.diagonal * part.millimetres))
+    faults += _faults_of_axes(
+        reading, said, meant[at], machine, max(_DIGITS * digit, TOUCHED * part.diagonal * part.millimetres)
+    )
     faults += _faults_of_time(reading, blocks, at)
     faults += _faults_of_end(reading, meant, blocks, at, digit)
     faults += _faults_of_tension(reading, blocks, at, machine)
@@ -128,15 +131,6 @@ def read_back(text: str, blocks: Blocks, machine: Machine, part: Part) -> ReadBa
         seconds=float(abs(reading.seconds.sum() - total) / total) if total > 0.0 else 0.0,
         faults=tuple(sorted(faults)[:_SHOWN]),
     )
-
-
-def _moved(blocks: Blocks, moves: str, millimetres: float) -> Floats:
-    """What an axis moves in the blocks, in mm or degrees."""
-    columns = {
-        "mandrel": blocks.mandrel, "roll": blocks.roll, "yaw": blocks.yaw,
-        "carriage": blocks.eye_x * millimetres, "cross": blocks.eye_r * millimetres,
-    }  # fmt: skip
-    return columns[moves]
 
 
 def _program_values(reading: Reading, machine: Machine) -> tuple[Floats, Floats]:
@@ -177,7 +171,7 @@ def _faults_of_axes(
     return [
         (
             int(reading.line[row]),
-            f"{machine.axes[k].moves} comes to {said[row, k]:.4f} {machine.axes[k].unit} instead of {meant[row, k]:.4f}",
+            f"{machine.axes[k].moves} comes to {said[row, k]:.4f} instead of {meant[row, k]:.4f} {machine.axes[k].unit}",
         )
         for row, k in np.argwhere(~(np.abs(said - meant) <= allowed))[:_SHOWN]
     ]
@@ -213,7 +207,7 @@ def _faults_of_tension(reading: Reading, blocks: Blocks, at: Ints, machine: Mach
 
 
 def _of_the_fibre(said: Floats, meant: Blocks, machine: Machine, part: Part) -> tuple[Floats, Floats]:
-    """Distance (m,) of the text's eye from the program's, and of its line along the fibre from the point on the part."""
+    """Distance (m,) of the text's eye from the program's, and of its line along the fibre from where that touches."""
     column = {each.moves: said[:, k] for k, each in enumerate(machine.axes)}
     x = column["carriage"] / part.millimetres
     # an eye without a cross-feed keeps its distance, of which the text says nothing

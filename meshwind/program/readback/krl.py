@@ -12,7 +12,8 @@ _PART = re.compile(rf"([XYZABC]|E[1-6]) ({NUMBER})")
 _SPEED = re.compile(rf"\$VEL(\.CP|\.ORI1|_EXTAX\[\d\])=({NUMBER})")
 _WAIT = re.compile(rf"WAIT SEC ({NUMBER})")
 _SILENT = re.compile(
-    rf"DEF \w+\( ?\)|BAS ?\(#INITMOV,0\)|\$BASE=BASE_DATA\[\d+\]|\$TOOL=TOOL_DATA\[\d+\]|\$APO\.CDIS={NUMBER}|PTP \$AXIS_ACT"
+    r"DEF \w+\( ?\)|BAS ?\(#INITMOV,0\)|\$BASE=BASE_DATA\[\d+\]|\$TOOL=TOOL_DATA\[\d+\]|PTP \$AXIS_ACT"
+    rf"|\$APO\.CDIS={NUMBER}"
 )
 _ARM = "XYZABC"
 
