@@ -9,8 +9,7 @@ from meshwind.program.machine import Axis, Machine
 RESET, INCREMENTS, ALL_INCREMENTS, ON = "reset", "increments", "all increments", "on"
 """How turns without end are written.
 
-The count is reset by whole turns at each circuit; the mandrel, or every axis, moves by increments; or the mandrel counts
-on.
+The count is reset by whole turns at each circuit; the mandrel, or every axis, moves by increments; or it counts on.
 """
 
 

@@ -171,7 +171,7 @@ def _faults_of_axes(
     return [
         (
             int(reading.line[row]),
-            f"{machine.axes[k].moves} comes to {said[row, k]:.4f} instead of {meant[row, k]:.4f} {machine.axes[k].unit}",
+            f"{machine.axes[k].moves} comes to {said[row, k]:.4f} instead of {meant[row, k]:.4f}",
         )
         for row, k in np.argwhere(~(np.abs(said - meant) <= allowed))[:_SHOWN]
     ]
