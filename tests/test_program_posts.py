@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from program_blocks import MANDREL, PART, blocks_of, wound
 
@@ -181,15 +181,15 @@ def programs(draw: st.DrawFn) -> tuple[Blocks, Machine, str, Part]:
     moves = [moves for moves, *_ in said.usual][:held]
     modulo = 360.0 if said.turned and draw(st.booleans()) else None
     axes = tuple(
-        Axis(each, letter, **LIMITS, sign=draw(st.sampled_from([-1, 1])), zero=draw(st.sampled_from([0.0, -7.5, 100.25])),
-             modulo=modulo if each == "mandrel" else None)
+        Axis(each, letter, **LIMITS, sign=draw(st.sampled_from([-1, 1])),
+             zero=draw(st.sampled_from([0.0, -7.5, 100.25])), modulo=modulo if each == "mandrel" else None)
         for each, letter, _ in said.usual if each in moves
     )  # fmt: skip
     feed = draw(st.sampled_from(said.feeds))
     return blocks, Machine("any", "", axes, name, feed, "M68 E0 Q{tension:g}"), name, part
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=400, deadline=None, phases=[Phase.generate])
 @given(programs())
 def test_every_program_is_read_back_as_it_was_meant(case: tuple[Blocks, Machine, str, Part]) -> None:
     blocks, machine, name, part = case
@@ -243,7 +243,7 @@ def broken(text: str, pattern: str, change: str, place: int = 20) -> tuple[str, 
 
 
 MENDED = {
-    "an angle is off by 0.02 degrees": (r"\bA(=IC\()?(\d+)\.(\d)\d*", r"A\1\2.\g<3>99"),
+    "an angle is off by 0.02 degrees": (r"(?<![A-Z])A(=IC\()?(\d+)\.(\d)\d*", r"A\1\2.\g<3>99"),
     "a carriage is off by 1 mm": (r"X=?(\d+)\.", r"X=9\1."),
     "a feed is 1 % off": (r"F(\d)(\d)(\d)", r"F\g<1>9\g<3>"),
     "a move is missing": (r"^.*G1.*$", ""),
@@ -365,10 +365,12 @@ def test_the_last_decimal_of_a_feed_does_not_add_up() -> None:
 @pytest.mark.parametrize(("machine", "name", "says"), [
     (replace(LATHE, dialect="grbl", axes=tuple(replace(each, letter=each.letter + "1") for each in LATHE.axes)), "grbl",
      "machine lathe-4 has an axis 'A1', which GRBL 1.1 does not have as that; give Y for mandrel"),
-    (replace(LATHE, dialect="marlin"), "marlin", "feed of machine lathe-4 is 'G93', which Marlin 2 does not know; give G94"),
+    (replace(LATHE, dialect="marlin"), "marlin",
+     "feed of machine lathe-4 is 'G93', which Marlin 2 does not know; give G94"),
     (replace(LATHE, dialect="grbl", axes=(replace(LATHE.axes[0], modulo=360.0), *LATHE.axes[1:])), "grbl",
      "axis 'A' of machine lathe-4 has a modulo, which GRBL 1.1 does not know; leave modulo out"),
-    (replace(LATHE, dialect="krl", feed="G94"), "krl", "has an axis 'A', which KUKA KRL does not have as that; give E1"),
+    (replace(LATHE, dialect="krl", feed="G94"), "krl",
+     "has an axis 'A', which KUKA KRL does not have as that; give E1"),
 ])  # fmt: skip
 def test_a_machine_that_its_own_dialect_cannot_name_is_refused(machine: Machine, name: str, says: str) -> None:
     with pytest.raises(BadInputError, match=re.escape(says)):
@@ -379,7 +381,7 @@ def test_wrong_input_is_one_line() -> None:
     blocks = wound()
     with pytest.raises(BadInputError, match="no dialect 'gbrl'; did you mean 'grbl'"):
         dialect("gbrl")
-    with pytest.raises(BadInputError, match="give the command with {tension}"):
+    with pytest.raises(BadInputError, match=re.escape("give the command with {tension}")):
         text_of("linuxcnc", replace(blocks, tension=blocks.time), replace(LATHE, tension="M68 Q{newtons}"))
     with pytest.raises(BadInputError, match="over 69 characters"):
         text_of("grbl", replace(blocks, tension=blocks.time), replace(LATHE, tension="M3" + 70 * " " + "S{tension:g}"))

@@ -90,7 +90,7 @@ class Interpreter(ABC):
         if not self.over:
             self.fault(lines, f"no {' or '.join(self.controller.ends)} ends the program")
         if not self.running:
-            self.fault(lines, "no stop before the program, at which the fibre is tied on")
+            self.fault(1, "no stop before the program, at which the fibre is tied on")
         line, values, seconds, tension = zip(*self.rows, strict=True) if self.rows else ((), (), (), ())
         return Reading(
             start=np.array(self.start),

@@ -138,7 +138,7 @@ class Words(Interpreter):
 def turned(now: float, wanted: float, modulo: float, forwards: bool) -> float:
     """Where an axis that counts to a modulo comes to stand as it turns to a value, in one direction."""
     ahead = (wanted - now) % modulo
-    close = 1e-7 * modulo  # the same place, but for round-off
+    close = 1e-9 * modulo  # the same place, but for round-off
     if ahead < close or ahead > modulo - close:
         return now
     return now + ahead if forwards else now + ahead - modulo
