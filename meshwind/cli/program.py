@@ -16,10 +16,13 @@ EXAMPLES = """
     # for a machine of your own, and as poses for a robot
     meshwind program part-wound --machine mine.toml --to csv,poses
 
+    # in the words of a controller
+    meshwind program part-wound --to linuxcnc
+
     # which machines are known
     meshwind program --machines
 """
-TARGETS = "csv", "poses"
+TARGETS = "csv", "poses", "linuxcnc", "grbl", "marlin", "fanuc", "siemens", "krl"
 """Names for help and completion: the module that defines them takes long to import."""
 WITH_FAULTS = 3
 _MOST = 3
@@ -61,18 +64,22 @@ def program(
 
     program.csv: every block with the fibre, the eye, the axes and the time.  program.json: the mandrel's axis, the
     time and what is wrong.  poses.csv (poses): the eye for a robot, the mandrel on an external axis, in mm.
+    program.ngc (linuxcnc), program.gcode (grbl, marlin), program.nc (fanuc), program.mpf (siemens), program.src (krl):
+    the program in the words of a controller.  Each is read back from its text and compared with the program.
 
     Exit status: 0 done; 1 the summary could not be printed; 2 bad input or usage; 3 written, but with faults: the free
-    span or the eye meets the part, or an axis cannot go where it must (program.json lists them).
+    span or the eye meets the part, an axis cannot go where it must, or a text was not read back as it was meant
+    (program.json lists them).
     """
     del machines
     from meshwind.program.targets import write_program
 
     done = write_program(folder, machine, split_names(to), out, tension)
     lines = [*program_lines(done.figures), *(f"note      {note}" for note in done.notes)]
+    lines += [line for name, found in done.figures["texts"].items() for line in text_lines(name, found)]
     lines += [f"file      {file}" for file in done.files]
     print_report(lines, {**done.figures, "notes": list(done.notes), "folder": str(out or folder)}, printed)
-    return WITH_FAULTS if done.program.faults else 0
+    return 0 if done.sound else WITH_FAULTS
 
 
 def program_lines(figures: dict[str, Any]) -> list[str]:
@@ -106,6 +113,17 @@ def program_lines(figures: dict[str, Any]) -> list[str]:
         if len(found) > _MOST:
             lines.append(f"warning   and {len(found) - _MOST} more blocks of this kind; program.json has them")
     return lines
+
+
+def text_lines(name: str, found: dict[str, Any]) -> list[str]:
+    """What is printed of a text that was read back."""
+    if not found["faults"]:
+        return [
+            f"text      {name} read back: mandrel within {found['angle']:.1g} degrees, time within "
+            f"{found['seconds']:.1g}, touch point within {found['touch']:.1g} of the part"
+        ]
+    shown = found["faults"][:_MOST]
+    return [f"warning   {name}, line {line}: {words}; please report it" for line, words in shown]
 
 
 def _clock(seconds: float) -> str:

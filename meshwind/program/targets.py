@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from os import PathLike
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -14,8 +14,11 @@ from meshwind.core.parsing import nearest
 from meshwind.core.units import UNKNOWN, millimetres
 from meshwind.core.version import version
 from meshwind.program.machine import DEFAULT, read_machine
+from meshwind.program.posts.dialects import DIALECTS
 from meshwind.program.program import Program, Work, program
+from meshwind.program.readback.compare import ReadBack
 from meshwind.program.robot import HEADER, LEGEND, rows
+from meshwind.program.texts import write_texts
 from meshwind.results.folder import beside
 from meshwind.results.reading import read_results
 from meshwind.results.report import plain
@@ -31,12 +34,18 @@ Writer: TypeAlias = Callable[[Path, Program], list[str]]
 
 @dataclass(frozen=True)
 class Written:
-    """A program that was written, its files, its figures as in program.json, and notes for the user."""
+    """A program that was written, its files, its figures as in program.json, notes, and its texts as read back."""
 
     program: Program
     files: tuple[Path, ...]
     figures: dict[str, Any]
     notes: tuple[str, ...]
+    texts: dict[str, ReadBack]
+
+    @property
+    def sound(self) -> bool:
+        """Whether nothing is wrong with the program, and its texts say what it does."""
+        return not self.program.faults and all(found.same for found in self.texts.values())
 
 
 def write_program(
@@ -51,21 +60,27 @@ def write_program(
     program.csv and program.json are always written, and what `to` names of `TARGETS` beside them.  All files appear,
     or none.  Raises BadInputError if the folder has no filament, or a machine or a target is not known.
     """
+    known = (*TARGETS, *DIALECTS)
     for name in to:
-        if name not in TARGETS:
-            raise BadInputError(f"target {name!r} is not known; {nearest(name, TARGETS)}")
+        if name not in known:
+            raise BadInputError(f"target {name!r} is not known; {nearest(name, known)}")
     used = read_machine(machine)
     made = program(Work.of(read_results(folder)), used, tension)
     target = Path(folder if out is None else out)
     notes: list[str] = []
     with beside(target) as staging:
-        for name in dict.fromkeys(("csv", *to)):
+        wanted = dict.fromkeys(("csv", *to))
+        for name in (each for each in wanted if each in TARGETS):
             notes += TARGETS[name](staging, made)
+        texts = write_texts(staging, made, [name for name in wanted if name in DIALECTS])
         names = sorted(path.relative_to(staging) for path in staging.rglob("*") if path.is_file())
         names = sorted([*names, Path(PROGRAM_JSON)])
-        figures = figures_of(made) | {"files": [name.as_posix() for name in names]}
+        figures = figures_of(made) | {
+            "texts": plain({name: asdict(found) for name, found in texts.items()}),
+            "files": [name.as_posix() for name in names],
+        }
         (staging / PROGRAM_JSON).write_text(json.dumps(figures, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    return Written(made, tuple(target / name for name in names), figures, tuple(notes))
+    return Written(made, tuple(target / name for name in names), figures, tuple(notes), texts)
 
 
 def figures_of(made: Program) -> dict[str, Any]:

@@ -166,6 +166,6 @@ def file_names(names: list[str]) -> dict[str, str]:
     """The file of each of the dialects that are written together: no two have the same."""
     endings = [dialect(name).ending for name in names]
     return {
-        name: f"{STEM}{'' if endings.count(ending) == 1 else f'-{dialect(name).name}'}.{ending}"
+        name: f"{STEM}{'' if endings.count(ending) == 1 else f'_{dialect(name).name}'}.{ending}"
         for name, ending in zip(names, endings, strict=True)
     }
