@@ -28,6 +28,11 @@ def calculix() -> None:
     """For tests that run a shell deck: this machine has CalculiX."""
 
 
+@pytest.fixture(scope="session")
+def linuxcnc() -> None:
+    """For tests of programs for LinuxCNC: this machine has its interpreter."""
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """Look for what the test's fixtures need before any of them is set up."""

@@ -45,6 +45,7 @@ NEEDS = {
     "opengl": Need("an OpenGL driver", _can_draw, "libegl1 libgl1-mesa-dri"),
     "chromium": Need("Chromium with its driver", lambda: _has(*CHROMIUM), "chromium chromium-driver"),
     "calculix": Need("CalculiX", lambda: _has("ccx"), "calculix-ccx"),
+    "linuxcnc": Need("LinuxCNC's interpreter", lambda: _has("rs274"), "linuxcnc-uspace"),
 }
 """By the name of the fixture (in conftest.py) that a test asks for."""
 
