@@ -24,7 +24,7 @@ def canonical(text: str, folder: Path) -> tuple[np.ndarray, np.ndarray]:
     program, commands, tools = folder / "program.ngc", folder / "commands", folder / "tool.tbl"
     program.write_text(text, encoding="ascii")
     tools.write_text("")
-    order = ["rs274", "-g", "-t", tools, "-v", folder / "numbers.var", program, commands]
+    order = ["rs274", "-g", "-t", str(tools), "-v", str(folder / "numbers.var"), str(program), str(commands)]
     done = subprocess.run(order, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     offset, feed, places, feeds = np.zeros(6), 0.0, [], []
