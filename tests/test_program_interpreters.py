@@ -2,6 +2,7 @@
 
 import re
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,12 +20,25 @@ ALL = "XYZABC"
 """Axes in the order of LinuxCNC's canonical commands."""
 
 
-def canonical(text: str, folder: Path) -> tuple[np.ndarray, np.ndarray]:
+def canonical(text: str, folder: Path, wraps: bool = False) -> tuple[np.ndarray, np.ndarray]:
     """Places (m, 6) to which LinuxCNC moves at a feed, with the offsets in force, and the feeds (m,)."""
     program, commands, tools = folder / "program.ngc", folder / "commands", folder / "tool.tbl"
     program.write_text(text, encoding="ascii")
     tools.write_text("")
-    order = ["rs274", "-g", "-t", str(tools), "-v", str(folder / "numbers.var"), str(program), str(commands)]
+    settings = folder / "machine.ini"
+    settings.write_text(f"[AXIS_A]\nWRAPPED_ROTARY={int(wraps)}\n[TRAJ]\nLINEAR_UNITS=mm\n")
+    order = [
+        "rs274",
+        "-g",
+        "-i",
+        str(settings),
+        "-t",
+        str(tools),
+        "-v",
+        str(folder / "numbers.var"),
+        str(program),
+        str(commands),
+    ]
     done = subprocess.run(order, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     offset, feed, places, feeds = np.zeros(6), 0.0, [], []
@@ -70,6 +84,18 @@ def test_linuxcnc_moves_as_the_program_says(machine: str, feed: str, tmp_path: P
     places, feeds = canonical(text, tmp_path)
     np.testing.assert_allclose(places, wanted(blocks, used), atol=1.2e-4)  # the commands have four decimals
     np.testing.assert_allclose(seconds_by_feeds(places, feeds), np.diff(blocks.time)[1:], rtol=2e-3)
+
+
+@pytest.mark.usefixtures("linuxcnc")
+@pytest.mark.parametrize("sign", [1, -1])
+def test_linuxcnc_turns_a_wrapped_mandrel_on_without_end(sign: int, tmp_path: Path) -> None:
+    blocks = wound(turns=12.0, count=300, circuits=4)
+    lathe = read_machine("lathe-4")
+    machine = replace(lathe, axes=(replace(lathe.axes[0], modulo=360.0, sign=sign), *lathe.axes[1:]))
+    text = program_text(blocks, machine, DIALECTS["linuxcnc"], Job("part"))
+    assert all(abs(float(angle)) < 360.0 for angle in re.findall(r" A(-?[\d.]+)", text))
+    places, _ = canonical(text, tmp_path, wraps=True)
+    np.testing.assert_allclose(places, wanted(blocks, machine), atol=1.2e-4)
 
 
 @pytest.mark.usefixtures("linuxcnc")
