@@ -24,6 +24,7 @@ EXAMPLES = """
 """
 TARGETS = "csv", "poses", "linuxcnc", "grbl", "marlin", "fanuc", "siemens", "krl"
 """Names for help and completion: the module that defines them takes long to import."""
+_MACHINE = "Machine and files"
 WITH_FAULTS = 3
 _MOST = 3
 """Faults of a kind that are printed; program.json has them all."""
@@ -43,7 +44,12 @@ def program(
     *,
     folder: ResultsFolder,
     machine: Annotated[
-        str, typer.Option(metavar="NAME", help="Machine: a name of --machines, or a TOML file of your own.")
+        str,
+        typer.Option(
+            metavar="NAME",
+            help="Machine: a name of --machines, or a TOML file of your own.",
+            rich_help_panel=_MACHINE,
+        ),
     ] = "lathe-4",
     to: Annotated[
         str,
@@ -51,11 +57,21 @@ def program(
             metavar="LIST",
             help=f"What is written, separated by commas: {', '.join(TARGETS)}.",
             autocompletion=some_of(*TARGETS),
+            rich_help_panel=_MACHINE,
         ),
     ] = "csv",
-    tension: Annotated[float, typer.Option(help="Tension of the fibre, in N; 0 sets none.")] = 0.0,
+    tension: Annotated[
+        float, typer.Option(help="Tension of the fibre, in N; 0 sets none.", rich_help_panel=_MACHINE)
+    ] = 0.0,
     machines: Annotated[
-        bool, typer.Option("--machines", callback=_list_machines, is_eager=True, help="List the machines.")
+        bool,
+        typer.Option(
+            "--machines",
+            callback=_list_machines,
+            is_eager=True,
+            help="List the machines that are shipped.",
+            rich_help_panel=_MACHINE,
+        ),
     ] = False,
     out: OtherFolder = None,
     printed: Printed,
