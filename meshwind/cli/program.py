@@ -18,9 +18,6 @@ EXAMPLES = """
 
     # in the words of a controller
     meshwind program part-wound --to linuxcnc
-
-    # which machines are known
-    meshwind program --machines
 """
 TARGETS = "csv", "poses", "linuxcnc", "grbl", "marlin", "fanuc", "siemens", "krl"
 """Names for help and completion: the module that defines them takes long to import."""
