@@ -10,10 +10,10 @@ from meshwind.core.cast import Bools, Floats, Ints
 FIBRE = "fibre"
 """Name of the fibre's speed among what limits a program."""
 _ROUNDS = 5000
-"""Rounds in which steps are stretched; programs of machines take about a hundred."""
+"""Rounds in which steps are stretched; programs of machines take about two hundred."""
 _OVER = 1e-3
 """Share by which an acceleration may be over its limit."""
-_POWER = 0.1
+_POWER = 0.05
 """Power of the ratio by which a step is stretched a round: larger ones are quicker, and leave the program slower."""
 
 
