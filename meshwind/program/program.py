@@ -231,7 +231,7 @@ def _spans(machine: Machine, body: Body, work: Work) -> tuple[Spans, float | Non
 
 
 def _divided(on: Track, mandrel: Mandrel, spans: Spans, steps: Steps) -> Poses:
-    return divided(on, lambda at: poses(on, mandrel, spans, at), steps, whole(on))
+    return divided(on, lambda at: poses(on, mandrel, spans, at), steps, whole(on, steps))
 
 
 def _blocks(on: Track, found: Poses, laid: float, turned: float) -> Blocks:

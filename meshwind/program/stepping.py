@@ -8,7 +8,7 @@ import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.program.eye import Poses
-from meshwind.program.track import AIR, PIVOT, Track
+from meshwind.program.track import AIR, LAY, PIVOT, Track
 
 _AIM = 0.95
 """Planned step over the longest: between two places of the fibre the axes do not move quite evenly."""
@@ -18,8 +18,10 @@ _MOST = 0.99
 """Step over the longest above which it is halved: steps are a little longer once blocks that hardly differ are gone."""
 _ROUNDS = 12
 """Rounds in which steps are halved; a step that is still too long is at a place where the axes have no limit."""
-_FINE = np.radians(2.0)
-"""Turn of a span about a point between two looks at it."""
+_FINE = np.radians(1.0)
+"""Turn of the fibre between two looks at it."""
+_SHARE = 0.25
+"""Length between two looks over the longest step of the eye."""
 _TOLD = np.radians(3.0)
 """Turn about a point from which its start and end have blocks of their own."""
 
@@ -42,15 +44,22 @@ class Steps:
 
 def stepped(track: Track, solve: Callable[[Floats], Poses], steps: Steps) -> Poses:
     """The poses of the blocks of a track, the axes being solved anew at every place that is looked at."""
-    return divided(track, solve, steps, whole(track))
+    return divided(track, solve, steps, whole(track, steps))
 
 
-def whole(track: Track) -> Floats:
-    """Places at all ends of a track's pieces, and between those of its turns about a point."""
-    parts = np.where(track.motion == PIVOT, np.maximum(np.ceil(track.corner / _FINE), 1.0), 1.0).astype(np.int64)
-    first = np.repeat(np.cumsum(parts) - parts, parts)
-    index = np.repeat(np.arange(len(track)), parts)
-    return np.append(index + (np.arange(len(index)) - first) / parts[index], float(len(track)))
+def whole(track: Track, steps: Steps) -> Floats:
+    """Places at which a track is looked at first: where pieces begin to differ, and as dense between as it bends."""
+    lays = track.motion == LAY
+    ends = np.concatenate([[0], np.flatnonzero(~lays), np.flatnonzero(~lays) + 1, [len(track)]])
+    every = np.arange(len(track) + 1.0)
+    dense = np.where(lays, track.corner / _FINE + np.diff(track.arc, axis=1)[:, 0] / (_SHARE * steps.x), 0.0)
+    mark = np.floor(np.concatenate([[0.0], np.cumsum(dense)]))
+    chosen = np.append(True, np.diff(mark) > 0.0) | kept(track, every)
+    chosen[ends] = True
+    turns = np.flatnonzero(track.motion == PIVOT)
+    parts = np.maximum(np.ceil(track.corner[turns] / _FINE), 1.0).astype(np.int64)
+    within = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+    return np.union1d(every[chosen], np.repeat(turns, parts) + within / np.repeat(parts, parts))
 
 
 def divided(track: Track, solve: Callable[[Floats], Poses], steps: Steps, at: Floats) -> Poses:
