@@ -7,16 +7,15 @@ from pathlib import Path
 import numpy as np
 
 from meshwind.core.cast import Floats, frozen
-from meshwind.core.errors import BadInputError
 from meshwind.filament.course import Course, Kind
 from meshwind.filament.filament import Filament
+from meshwind.path.paths import Paths
 from meshwind.results import schema
 from meshwind.results.laminate_types import LayerFigures
-from meshwind.results.vtk_reading import Lines, read_faces, read_lines
+from meshwind.results.vtk_reading import read_faces
+from meshwind.results.wound_layers import read_layer_paths, spoilt
 from meshwind.surface.surface import Surface
 
-_OFF = 1e-5
-"""Largest distance, over the part's size, of a fibre that lies on what is below it."""
 _COLUMNS = 6
 """Columns of laminate.csv."""
 
@@ -54,7 +53,7 @@ def read_laminate(folder: Path, surface: Surface) -> ReadLaminate | None:
         return None
     thickness = read_faces(folder / schema.LAMINATE).point_data.get(schema.THICKNESS)
     if thickness is None or not np.isfinite(thickness).all():
-        raise _spoilt(folder / schema.LAMINATE, "no thickness in it")
+        raise spoilt(folder / schema.LAMINATE, "no thickness in it")
     stations = _stations(folder / schema.STATIONS)
     return ReadLaminate(frozen(thickness), stations, _fibres(folder, surface))
 
@@ -68,52 +67,21 @@ def _stations(path: Path) -> Floats:
     try:
         rows = np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2)
     except (OSError, ValueError) as error:
-        raise _spoilt(path, error) from error
+        raise spoilt(path, error) from error
     if rows.shape[1:] != (_COLUMNS,) or not len(rows):
-        raise _spoilt(path, "no stations in it")
+        raise spoilt(path, "no stations in it")
     return frozen(rows)
 
 
 def _fibres(folder: Path, surface: Surface) -> tuple[Filament, ...]:
-    lines = read_lines(folder / schema.LAYER_FIBRES)
-    nets = _nets(folder / schema.LAYER_SURFACES)
-    lacking = [str(name) for name in schema.LAYER_FIBRES.point_data if name not in lines.point_data]
-    lacking += [str(name) for name in schema.LAYER_FIBRES.cell_data if name not in lines.cell_data]
-    layers = lines.cell_data.get(schema.LAYER, np.zeros(0)).astype(np.int64)
-    if lacking or not len(layers) or not 0 <= layers.min() <= layers.max() < len(nets):
-        raise _spoilt(folder / schema.LAYER_FIBRES, f"no {' or '.join(lacking)} in it" if lacking else "no layers")
-    off = np.zeros(len(lines.points))
-    sizes = np.diff(lines.starts)
-    layer_of = np.repeat(layers, sizes)
-    for number in np.unique(layers):
-        mine = layer_of == number
-        below = Surface(nets[number], surface.periodic)
-        uv = np.ascontiguousarray(lines.point_data[schema.UV][mine])
-        off[mine] = np.linalg.norm(lines.points[mine] - below.points(uv), axis=1)
-    kind = np.where(off > _OFF * surface.size, Kind.BRIDGE, Kind.LAID)
-    return tuple(_fibre(lines, kind, row, int(layers[row])) for row in range(len(layers)))
+    layers = enumerate(read_layer_paths(folder, surface)[0])
+    return tuple(_fibre(paths, row, number) for number, paths in layers for row in range(len(paths)))
 
 
-def _nets(path: Path) -> Floats:
-    try:
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as held:
-            nets = np.asarray(held[schema.CONTROL_POINTS], dtype=np.float64)
-    except (OSError, EOFError, ValueError, LookupError) as error:
-        raise _spoilt(path, error) from error
-    if nets.ndim != 4 or not np.isfinite(nets).all():
-        raise _spoilt(path, "no surfaces in it")
-    return nets
-
-
-def _fibre(lines: Lines, kind: Floats, row: int, layer: int) -> Filament:
-    one = slice(int(lines.starts[row]), int(lines.starts[row + 1]))
-    count = one.stop - one.start
+def _fibre(paths: Paths, row: int, layer: int) -> Filament:
+    count = paths.points.shape[1]
     none, zero = np.full(count, np.nan), np.zeros(count, dtype=np.int64)
-    passed = zero + int(lines.cell_data[schema.FAMILY][row] < 0)
-    points, normal = frozen(lines.points[one]), frozen(lines.point_data[schema.NORMAL][one])
-    course = Course(points, normal, none, none, frozen(kind[one]), zero, passed, zero - 1)
+    kind = np.where(paths.on_surface[row], Kind.LAID, Kind.BRIDGE)
+    passed = zero + int(paths.family[row] < 0)
+    course = Course(paths.points[row], paths.normal[row], none, none, frozen(kind), zero, passed, zero - 1)
     return Filament(course, zero + layer, none)
-
-
-def _spoilt(path: Path, why: object) -> BadInputError:
-    return BadInputError(f"{path} cannot be used ({why}); run `meshwind wind --layers` again")

@@ -62,19 +62,30 @@ def read_wound_layers(folder: Path, part: Surface, figures: list[LayerFigures]) 
     """
     if not figures:
         return None
-    nets, lines = _nets(folder / schema.LAYER_SURFACES), read_lines(folder / schema.LAYER_FIBRES)
     maps = read_faces(folder / schema.LAMINATE).point_data
     shape, names = grid(part).shape, [schema.layer_fields(k).thickness for k in range(1, len(figures) + 1)]
     lacking = [name for name in names if maps.get(name, np.zeros(0)).size != shape[0] * shape[1]]
     if lacking or not all(np.isfinite(maps[name]).all() for name in names):
-        raise _spoilt(folder / schema.LAMINATE, f"no map {lacking[0]} of the part" if lacking else "it holds NaN")
-    if len(nets) != len(figures) + 1 or nets.shape[1:] != part.control_points.shape:
-        raise _spoilt(folder / schema.LAYER_SURFACES, "its surfaces are not those of the layers")
-    surfaces = [part, *(Surface(net, part.periodic) for net in nets[1:])]
-    paths = [_paths(folder, lines, k, surface) for k, surface in enumerate(surfaces[:-1])]
+        raise spoilt(folder / schema.LAMINATE, f"no map {lacking[0]} of the part" if lacking else "it holds NaN")
+    paths, top = read_layer_paths(folder, part)
+    if len(paths) != len(figures):
+        raise spoilt(folder / schema.LAYER_SURFACES, "its surfaces are not those of the layers")
     each = zip(figures, paths, names, strict=True)
-    layers = tuple(WoundLayer(says, laid, frozen(maps[name].reshape(shape))) for says, laid, name in each)
-    return WoundLayers(layers, surfaces[-1])
+    return WoundLayers(
+        tuple(WoundLayer(says, laid, frozen(maps[name].reshape(shape))) for says, laid, name in each), top
+    )
+
+
+def read_layer_paths(folder: Path, part: Surface) -> tuple[list[Paths], Surface]:
+    """Read the fibres of each layer on the surface that it lies on, and the surface on top of the last.
+
+    Raises BadInputError if a file is missing or damaged.
+    """
+    nets, lines = _nets(folder / schema.LAYER_SURFACES), read_lines(folder / schema.LAYER_FIBRES)
+    if len(nets) < 2 or nets.shape[1:] != part.control_points.shape:
+        raise spoilt(folder / schema.LAYER_SURFACES, "its surfaces are not those of the part")
+    surfaces = [part, *(Surface(net, part.periodic) for net in nets[1:])]
+    return [_paths(folder, lines, k, surface) for k, surface in enumerate(surfaces[:-1])], surfaces[-1]
 
 
 def _nets(path: Path) -> Floats:
@@ -83,9 +94,9 @@ def _nets(path: Path) -> Floats:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as held:
             nets = np.asarray(held[schema.CONTROL_POINTS], dtype=np.float64)
     except (OSError, EOFError, ValueError, LookupError) as error:
-        raise _spoilt(path, error) from error
+        raise spoilt(path, error) from error
     if nets.ndim != 4 or not np.isfinite(nets).all():
-        raise _spoilt(path, "no surfaces in it")
+        raise spoilt(path, "no surfaces in it")
     return nets
 
 
@@ -95,11 +106,11 @@ def _paths(folder: Path, lines: Lines, number: int, surface: Surface) -> Paths:
     data: dict[str, Any] = {**lines.point_data, **lines.cell_data}
     lacking = [name for name in (*schema.LAYER_FIBRES.point_data, *schema.LAYER_FIBRES.cell_data) if name not in data]
     if lacking:
-        raise _spoilt(source, f"no {' or '.join(lacking)} in it")
+        raise spoilt(source, f"no {' or '.join(lacking)} in it")
     sizes = np.diff(lines.starts)
     mine = data[schema.LAYER] == number
     if not mine.any() or len(set(sizes[mine])) > 1:
-        raise _spoilt(source, f"its lines are not those of layer {number + 1}")
+        raise spoilt(source, f"its lines are not those of layer {number + 1}")
     shape = int(mine.sum()), int(sizes[mine][0])
     at = np.repeat(mine, sizes)
     points, uv, normal = (
@@ -107,7 +118,7 @@ def _paths(folder: Path, lines: Lines, number: int, surface: Surface) -> Paths:
         for values in (lines.points, data[schema.UV], data[schema.NORMAL])
     )
     if not all(np.isfinite(values).all() for values in (points, uv, normal)):
-        raise _spoilt(source, "it holds NaN or infinite values")
+        raise spoilt(source, "it holds NaN or infinite values")
     gap = np.linalg.norm(points - surface.points(uv.reshape(-1, 2)).reshape(points.shape), axis=2)
     on = gap <= _OFF * surface.size
     return Paths(
@@ -119,5 +130,6 @@ def _paths(folder: Path, lines: Lines, number: int, surface: Surface) -> Paths:
     )  # fmt: skip
 
 
-def _spoilt(path: Path, why: object) -> BadInputError:
+def spoilt(path: Path, why: object) -> BadInputError:
+    """The error of a laminate's file that cannot be used."""
     return BadInputError(f"{path} cannot be used ({why}); run `meshwind wind --layers` again")
