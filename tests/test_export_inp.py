@@ -103,6 +103,16 @@ def test_sections_hold_the_thickness(written: tuple[Deck, Path]) -> None:
     assert (np.abs(thick / deck.plies.layer / np.stack([p.layers for p in deck.plies.families]) - 1.0) < 0.08).all()
 
 
+def test_a_layer_is_as_thick_as_the_band_of_the_run(tmp_path: Path) -> None:
+    results = plain_results(tmp_path)
+    elements = regular(results.surface, 100)
+    assert results.band_thickness is None
+    assert plies(results, elements).layer == pytest.approx(1e-3 * results.diagonal)
+    results.report["fibre"] = {**results.report["fibre"], "band_thickness": 0.02}
+    assert plies(results, elements).layer == 0.02
+    assert plies(results, elements, layer=0.03).layer == 0.03
+
+
 def test_units_scale_the_material() -> None:
     """The same part in metres: moduli in Pa, density in kg/m3."""
     assert Material().moduli("m")[0] == pytest.approx(135e9)

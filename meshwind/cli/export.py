@@ -74,7 +74,7 @@ class Shell:
         float | None,
         typer.Option(
             help="Thickness of one layer of band, in the mesh's units; layers of --layers have their own.  "
-            "[default: 1e-3 of the part's diagonal]",
+            "[default: that of the run's band, or 1e-3 of the part's diagonal]",
             rich_help_panel=_SHELL,
         ),
     ] = None

@@ -1,12 +1,14 @@
 """Frames for a robot in the order of winding: of filaments, and layer by layer where the layers are none."""
 
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints, frozen
-from meshwind.export.frames import FORMAT, HEADER, Frames, Limits, frames, table, too_sharp
+from meshwind.core.vectors import unit
+from meshwind.export.frames import FORMAT, HEADER, Frames, Limits, frames, table, too_sharp, turns_of
 from meshwind.filament.course import Kind
 from meshwind.results.reading import Results
 from meshwind.results.schema import FILAMENT_FRAMES, FRAMES_FOLDER, layer_frames
@@ -16,6 +18,8 @@ OF_FILAMENT = "filament", "layer", "circuit", "pass", "path", "kind", "bridge"
 """Columns before those of a frame in the file of filaments: numbers from 0 as in filament.vtp, bridge 1 in the air."""
 OF_LAYER = "layer", "path", "family", "bridge"
 """The same in the file of a layer; path is the number of the line in layers.vtp."""
+_CORNER = np.radians(20.0)
+"""Turn at a point of a filament that is a corner: a spline through it would swing to both sides."""
 _AT_POINT = 1e-12
 """Share of its arc length that a frame at a point may be past it by round-off."""
 
@@ -38,18 +42,16 @@ def write_ordered_frames(folder: Path, results: Results, limits: Limits) -> list
 
 
 def _write_filaments(folder: Path, results: Results, limits: Limits) -> str:
-    widths = [layer["band_width"] for layer in results.layers] or [results.band_width or 0.0]
-    if limits.width is not None:
-        widths = [limits.width for _ in widths]
+    widths = np.array(results.band_widths if limits.width is None else [limits.width] * len(results.band_widths))
     found, labels = [], []
     for number, filament in enumerate(results.filaments):
         course, layer = filament.course, filament.layer
-        laid = frames(course.points, course.normal, widths[0], limits.step, limits.turn)
+        laid = _cornered(course.points, course.normal, limits)
         at = _ends(course.points, laid)
         bridge = _in_air(course.kind == Kind.BRIDGE, at)
         own = np.stack([layer, course.circuit, course.passed, course.path], axis=1)[at]
         kind = np.where(bridge, int(Kind.BRIDGE), course.kind[at])
-        found.append(replace(laid, width=frozen(np.array(widths)[layer[at]])))
+        found.append(replace(laid, width=frozen(widths[layer[at]])))
         labels.append(np.column_stack([np.full(len(at), number), own, kind, bridge]))
     return _write(folder, FILAMENT_FRAMES, OF_FILAMENT, (labels, found), limits)
 
@@ -67,6 +69,29 @@ def _write_layer(folder: Path, layer: WoundLayer, numbers: tuple[int, int], limi
         own = np.broadcast_to([number, first + k, paths.family[k]], (len(bridge), 3))
         labels.append(np.column_stack([own, bridge]))
     return _write(folder, layer_frames(number), OF_LAYER, (labels, found), limits)
+
+
+def _cornered(points: Floats, normals: Floats, limits: Limits) -> Frames:
+    """Frames along a polyline (n, 3) with corners, as at pins: a spline from corner to corner, where two frames meet.
+
+    Their width is 0.
+    """
+    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    kept = np.flatnonzero(np.concatenate([[True], np.diff(arc) > _AT_POINT * arc[-1]]))
+    way = unit(np.diff(points[kept], axis=0))
+    corners = kept[1:-1][turns_of(way) > _CORNER]
+    ends = np.unique([0, *corners, kept[-1]])
+    each = [
+        frames(points[first : last + 1], normals[first : last + 1], 0.0, limits.step, limits.turn)
+        for first, last in pairwise(ends)
+    ]
+    along = np.concatenate([arc[first] + one.arc_length for first, one in zip(ends[:-1], each, strict=True)])
+    along = np.maximum.accumulate(along)  # where two stretches meet, both are there but for round-off
+    point, tangent, normal, side, width = (
+        frozen(np.concatenate([getattr(one, name) for one in each]))
+        for name in ("point", "tangent", "normal", "side", "width")
+    )
+    return Frames(frozen(along), float(arc[-1]), point, tangent, normal, side, width)
 
 
 def _ends(points: Floats, laid: Frames) -> Ints:

@@ -20,7 +20,7 @@ from meshwind.results.wound_layers import WoundLayer, WoundLayers
 from meshwind.surface.surface import Surface
 
 LAYER = 1e-3
-"""Default thickness of one layer of band, over the part's diagonal."""
+"""Thickness of one layer of band, over the part's diagonal, where the run has none."""
 
 
 @dataclass(frozen=True)
@@ -77,8 +77,8 @@ def laid_on(results: Results) -> Surface:
 def plies(results: Results, elements: Elements, layer: float | None = None, width: float | None = None) -> Plies:
     """Plies of the layers of a run, or of its converged paths as bands of `width` and of the thickness `layer`.
 
-    Both are in mesh units.  By default a layer is 1e-3 of the part's diagonal thick, and the band is that of the run's
-    coverage; layers of a laminate have their own.  Raises BadInputError if either is not a length above 0, or is given
+    Both are in mesh units.  By default a layer is as thick as the run's band, or 1e-3 of the part's diagonal where
+    that is not known, and the band is that of the run's coverage; layers of a laminate have their own.  Raises BadInputError if either is not a length above 0, or is given
     for a laminate.
 
     In a laminate an element is as thick as the volume of each layer over it makes it, so that no volume is lost
@@ -88,7 +88,8 @@ def plies(results: Results, elements: Elements, layer: float | None = None, widt
     wound = results.wound_layers
     if wound is not None:
         return _of_laminate(wound, elements, normal, layer, width)
-    thick = _length("thickness", LAYER * results.diagonal if layer is None else layer)
+    by_default = results.band_thickness or LAYER * results.diagonal
+    thick = _length("thickness", by_default if layer is None else layer)
     wide = _length("band width", results.band_width if width is None else width)
 
     def layers(paths: Paths) -> Floats:

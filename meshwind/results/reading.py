@@ -91,6 +91,12 @@ class Results:
         return widths(self.layers, self.layup.coverage.width)
 
     @property
+    def band_thickness(self) -> float | None:
+        """Thickness of the band, None if the report has none."""
+        thickness = _under(self.report, "fibre", "band_thickness")
+        return float(thickness) if thickness else None
+
+    @property
     def partings(self) -> Ints:
         """Pairs (k, 2) of neighbours that part round a body; none if the report does not say."""
         pairs = _under(self.report, "spacing", "partings")
