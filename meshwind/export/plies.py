@@ -77,9 +77,9 @@ def laid_on(results: Results) -> Surface:
 def plies(results: Results, elements: Elements, layer: float | None = None, width: float | None = None) -> Plies:
     """Plies of the layers of a run, or of its converged paths as bands of `width` and of the thickness `layer`.
 
-    Both are in mesh units.  By default a layer is as thick as the run's band, or 1e-3 of the part's diagonal where
-    that is not known, and the band is that of the run's coverage; layers of a laminate have their own.  Raises BadInputError if either is not a length above 0, or is given
-    for a laminate.
+    Both are in mesh units.  By default a layer is as thick as the run's band, or 1e-3 of the part's diagonal where that
+    is not known, and the band is that of the run's coverage; layers of a laminate have their own.  Raises BadInputError
+    if either is not a length above 0, or is given for a laminate.
 
     In a laminate an element is as thick as the volume of each layer over it makes it, so that no volume is lost
     between the surfaces that the layers lie on and that of the elements.
