@@ -15,7 +15,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.filament.joining import join, passes
 from meshwind.filament.polar import PolarPasses, natural_turns, passes_between_caps, passes_over_a_cap
 from meshwind.path.paths import Status
-from meshwind.surface.interpolate import Formula
+from meshwind.surface.interpolate import Formula, interpolate
 
 A2, B2, C2 = 160.0**2, 100.0**2, 80.0**2
 """Semi-axes squared of a triaxial ellipsoid, wound about the longest."""
@@ -130,6 +130,7 @@ def test_a_vessel_with_elliptic_caps_from_a_mesh() -> None:
     assert natural_turns(surface) == pytest.approx(circuit, rel=1e-5)
     layer = passes_between_caps(surface, 233, turns=277, friction=0.1, particles=51)
     assert layer.pattern is not None and 1e-3 < layer.worst < 0.0072
+    assert layer.holds  # where curvature leaps, the fit overshoots by less than it is certain
     found = layer.pattern.shift, layer.pattern.number, layer.pattern.leading, layer.pattern.filaments
     assert found == (44, 90, False, 1)
     assert layer.paths.length.sum() / 233 == pytest.approx(1820.796, rel=1e-3)
@@ -191,3 +192,14 @@ def test_what_is_no_cap_is_refused() -> None:
 def test_the_annulus_knows_its_caps() -> None:
     assert mw.annulus(mw.read("data/tank.ply")).caps == (True, True)
     assert mw.annulus(mw.read("data/elbow.obj")).caps == (False, False)
+
+
+def test_passes_do_not_lie_over_a_waist() -> None:
+    def dumbbell(u: Floats, v: Floats) -> Floats:
+        t = 0.4 + (np.pi - 0.8) * v
+        r = 100.0 * np.sin(t) * (1.0 - 0.3 * np.exp(-(((t - 0.5 * np.pi) / 0.3) ** 2)))
+        return np.stack([r * np.cos(2 * np.pi * u), r * np.sin(2 * np.pi * u), -200.0 * np.cos(t)], axis=-1)
+
+    layer = passes_between_caps(interpolate(dumbbell, (48, 64)), 5, friction=0.5, particles=101)
+    assert not layer.holds
+    assert (layer.paths.status == Status.STALLED).all()

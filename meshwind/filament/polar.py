@@ -15,6 +15,7 @@ from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
 from meshwind.filament.pattern import Pattern
+from meshwind.filament.polar_hollow import hollow
 from meshwind.filament.polar_legs import End, Half, halves, opening
 from meshwind.filament.polar_meet import MEETS, met
 from meshwind.filament.polar_natural import Natural, Tables, natural, tables
@@ -27,8 +28,6 @@ from meshwind.surface.surface import Surface
 
 Side: TypeAlias = Literal["start", "end"]
 
-_SLACK = 1e-9
-"""Normal curvature times the part's size, below 0, that is round-off of a straight fibre."""
 _INSIDE = 1e-9
 """How far out over its opening in v a fibre may be for round-off."""
 _SHARES = 4096
@@ -338,10 +337,10 @@ def _status(surface: Surface, ends: tuple[End, ...], fibres: list[list[Stretch]]
     status = np.full(len(fibres), int(Status.CONVERGED))
     status[beyond[:, -1]] = Status.SLID_OFF_END
     status[beyond[:, 0]] = Status.SLID_OFF_START
-    press = np.array([min(stretch.trace.normal_curvature.min() for stretch in fibre) for fibre in fibres])
+    lifts = np.array([hollow(surface, fibre) for fibre in fibres])
     out = np.min([end.opening.inside(uv).min(axis=1) for end in ends], axis=0)
     stopped = np.array([any(s.trace.stop == Stop.STEP_LIMIT for s in fibre) for fibre in fibres])
-    status[(press * surface.size < -_SLACK) | (out < -_INSIDE) | stopped] = Status.STALLED
+    status[lifts | (out < -_INSIDE) | stopped] = Status.STALLED
     return frozen(status)
 
 
