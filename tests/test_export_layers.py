@@ -3,6 +3,7 @@
 import csv
 import re
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import meshio
@@ -115,6 +116,19 @@ def test_the_thickness_is_that_of_the_maps(written: Results, wound: Laminate) ->
     assert len(np.unique(total.round(12))) < 12
     share = thicknesses(deck) / total
     assert share == pytest.approx(np.stack([p.thickness for p in deck.plies.families]) / deck.plies.thickness)
+
+
+def test_thickness_that_varies_much_has_coarser_steps(written: Results) -> None:
+    """CalculiX has no room for a knot in every node."""
+    deck = deck_of(written)
+    ply = deck.plies.families[0]
+    rough = np.exp(np.random.default_rng(5).normal(0.0, 0.1, len(deck.elements)))
+    wild = replace(deck, plies=replace(deck.plies, families=(replace(ply, thickness=rough),)))
+    fine, coarse = (thicknesses(each).sum(axis=0) for each in (deck, wild))
+    assert len(np.unique(coarse.round(12))) <= 4
+    area = deck.elements.samples()[1].sum(axis=1)
+    assert (coarse * area).sum() == pytest.approx((rough * area).sum(), rel=1e-12)
+    assert np.abs(fine / deck.plies.thickness - 1.0).max() < 0.07
 
 
 @pytest.mark.parametrize("kind", ["grid", "quads"])

@@ -6,12 +6,13 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TextIO
 
 import numpy as np
 
-from meshwind.core.cast import Floats
+from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import millimetres
 from meshwind.core.vectors import TINY
@@ -23,11 +24,15 @@ from meshwind.results.schema import SHELL, SHELL_S4R
 
 LEAST = 0.05
 """Least thickness of a family, in layers, also where it has no fibres."""
-_STEPS = 1.07
-"""Ratio of the steps of thickness, as CalculiX joins elements of different thickness by rigid knots.
+_STEPS = 1.07, 1.15, 1.25, 1.4, 1.6, 2.0
+"""Ratios of the steps of thickness: the finest with few enough knots, and at most so much does an element change.
 
-It is the largest change of an element's thickness.
+CalculiX joins elements of different thickness by rigid knots.
 """
+_KNOTS = 0.5
+"""Largest share of the nodes that are knots: CalculiX stopped for want of room at 0.7 of them, and not at 0.58."""
+_MUCH = 0.1
+"""Change of an element's thickness that is worth a note."""
 _SHAPES = {3: "S3", 4: "S4R", 6: "S6", 8: "S8R"}
 
 
@@ -81,6 +86,11 @@ class Deck:
         if self.pressure is not None and not (np.isfinite(self.pressure) and self.pressure != 0.0):
             raise BadInputError(f"pressure is {self.pressure:g}; give MPa, above 0 for pressure inside")
 
+    @cached_property
+    def levels(self) -> Ints:
+        """The step of thickness (k,) that each element is on, from 0."""
+        return _levels(self.elements, _unrounded(self.plies).sum(axis=0))
+
     @property
     def load(self) -> float | None:
         """The pressure in N over the unit of length squared, None without one."""
@@ -93,6 +103,10 @@ def write_decks(folder: Path, deck: Deck) -> list[str]:
         with (folder / name).open("w", encoding="ascii", errors="replace") as file:
             _write(file, deck, nodes_of(deck.elements, quadratic))
     notes = [f"{SHELL}: {note}" for note in (_of_layers(deck) if deck.plies.wound else _of_families(deck))]
+    if (change := _rounded_by(deck)) > _MUCH:
+        notes.append(
+            f"{SHELL}: thickness is rounded by up to {100.0 * change:.2g} %, as it varies too much for CalculiX"
+        )
     if not deck.units:
         notes.append(f"{SHELL}: the run names no unit, so the material is in N and mm")
     return notes
@@ -122,21 +136,43 @@ def thicknesses(deck: Deck) -> Floats:
     """Thickness (f, k) of each family on each element in the deck, 0 where a layer of a laminate is not.
 
     Without layers each family has at least `LEAST` of a layer.  The whole of an element is rounded: elements between
-    two steps of `_STEPS` get their mean, weighted by their areas, so that the deck keeps the volume.
+    two steps get their mean, weighted by their areas, so that the deck keeps the volume.
     """
-    laid = deck.plies
+    each = _unrounded(deck.plies)
+    total, area = each.sum(axis=0), deck.elements.samples()[1].sum(axis=1)
+    mean = np.bincount(deck.levels, total * area) / np.maximum(np.bincount(deck.levels, area), TINY)
+    return np.asarray(each * (mean[deck.levels] / total))
+
+
+def _rounded_by(deck: Deck) -> float:
+    """Largest change of an element's thickness by rounding, over the thickness."""
+    return float(np.abs(thicknesses(deck).sum(axis=0) / _unrounded(deck.plies).sum(axis=0) - 1.0).max())
+
+
+def _unrounded(laid: Plies) -> Floats:
     each = np.stack([ply.thickness for ply in laid.families])
     least = LEAST * laid.layer
-    if laid.wound:
-        inner = list(laid.stacks[0])
-        each[inner] += np.maximum(least - each.sum(axis=0), 0.0) / len(inner)
-    else:
-        each = np.maximum(each, least)
-    total, area = each.sum(axis=0), deck.elements.samples()[1].sum(axis=1)
-    level = np.round(np.log(total / _median(total, area)) / np.log(_STEPS)).astype(np.int64)
-    level -= level.min()
-    mean = np.bincount(level, total * area) / np.maximum(np.bincount(level, area), TINY)
-    return np.asarray(each * (mean[level] / total))
+    if not laid.wound:
+        return np.asarray(np.maximum(each, least))
+    inner = list(laid.stacks[0])
+    each[inner] += np.maximum(least - each.sum(axis=0), 0.0) / len(inner)
+    return each
+
+
+def _levels(elements: Elements, total: Floats) -> Ints:
+    """Step (k,), from 0, that the thickness (k,) of each element is on: the finest steps with few enough knots."""
+    nodes = nodes_of(elements, True)
+    middle = _median(total, elements.samples()[1].sum(axis=1))
+    for ratio in _STEPS:
+        level = np.round(np.log(total / middle) / np.log(ratio)).astype(np.int64)
+        level -= level.min()
+        least, most = np.full(len(nodes.points), level.max()), np.zeros(len(nodes.points), dtype=np.int64)
+        for faces, own in ((nodes.quads, level[: len(nodes.quads)]), (nodes.triangles, level[len(nodes.quads) :])):
+            np.minimum.at(least, faces, own[:, None])
+            np.maximum.at(most, faces, own[:, None])
+        if (least < most).mean() <= _KNOTS:
+            break
+    return level
 
 
 def _median(values: Floats, weight: Floats) -> float:
@@ -173,6 +209,8 @@ def _head(deck: Deck) -> Iterator[str]:
     yield f"meshwind: {deck.name}, wound shell"
     yield f"** lengths in {deck.units or 'mm (assumed)'}, forces in N; {len(deck.elements)} elements, {_contents(laid)}"
     yield from _about_layers(laid) if laid.wound else _about_families(laid)
+    yield f"** The whole of an element is rounded, by at most {100.0 * _rounded_by(deck):.2g} %, and its layers with it,"
+    yield "** at unchanged volume of all, as CalculiX joins elements of different thickness by rigid knots."
     yield "** Each element has its own orientation: 1 along the fibre, 3 along the outward normal."
     yield "** Node sets: START (v=0), END (v=1), NALL; element set: SHELL."
 
@@ -193,8 +231,7 @@ def _about_layers(laid: Plies) -> Iterator[str]:
     yield "** Elements lie on the middle of the laminate. Each has its layers from the inside out as thick as they are"
     yield "** there, and lacks those that are not there. The families of a helical layer share its thickness, and the"
     yield "** inner and the outer half of the first hold the second between them: wound families interlace, so each"
-    yield "** layer is kept free of coupling. A hoop has one direction. The whole of an element is rounded to"
-    yield f"** steps of {100.0 * (_STEPS - 1.0):.3g} %, and its layers with it: CalculiX joins others by rigid knots."
+    yield "** layer is kept free of coupling. A hoop has one direction."
     yield f"** A bare element has {LEAST:g} of a band of the first layer, as elements need a thickness."
     for number, layer in enumerate(laid.stacks, 1):
         turned = ", ".join(f"{np.degrees(np.median(laid.families[k].angle)):+.4g}" for k in layer)
