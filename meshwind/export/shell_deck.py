@@ -209,7 +209,7 @@ def _head(deck: Deck) -> Iterator[str]:
     yield f"meshwind: {deck.name}, wound shell"
     yield f"** lengths in {deck.units or 'mm (assumed)'}, forces in N; {len(deck.elements)} elements, {_contents(laid)}"
     yield from _about_layers(laid) if laid.wound else _about_families(laid)
-    yield f"** The whole of an element is rounded, by at most {100.0 * _rounded_by(deck):.2g} %, and its layers with it,"
+    yield f"** The whole of an element is rounded, by at most {100.0 * _rounded_by(deck):.2g} %, with its layers,"
     yield "** at unchanged volume of all, as CalculiX joins elements of different thickness by rigid knots."
     yield "** Each element has its own orientation: 1 along the fibre, 3 along the outward normal."
     yield "** Node sets: START (v=0), END (v=1), NALL; element set: SHELL."
