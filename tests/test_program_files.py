@@ -21,6 +21,7 @@ from meshwind.layup.layup import assess
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.program.axes import limits_of
 from meshwind.program.machine import DEFAULT, FEEDS, MOVES, machine_names, machine_of, read_machine
+from meshwind.program.posts.dialects import DIALECTS
 from meshwind.program.program import Work, program
 from meshwind.program.robot import APPROACH, robot_poses
 from meshwind.program.targets import COLUMNS, TARGETS, write_program
@@ -134,7 +135,7 @@ def test_the_command_says_what_it_wrote(run: Path, tmp_path: Path) -> None:
     listed = called("--machines")
     assert listed.returncode == 0
     assert [line.split()[0] for line in listed.stdout.splitlines()] == machine_names()
-    assert tuple(TARGETS) == command.TARGETS
+    assert (*TARGETS, *DIALECTS) == command.TARGETS
     assert DEFAULT in machine_names()
     assert len(machine_names()) == 6
 
