@@ -22,7 +22,8 @@ class Blocks:
     eye_x, eye_r : ndarray of float, shape (n,)
         The eye along the mandrel's axis, and its distance from it.
     mandrel, roll, yaw : ndarray of float, shape (n,)
-        Angles of mandrel, roll and yaw in degrees, unwrapped; the mandrel's never falls.
+        Angles of mandrel, roll and yaw in degrees, unwrapped; the mandrel's falls at most while the eye swings over
+        an edge or where it goes round what is tilted to the axis.
     time : ndarray of float, shape (n,)
         Seconds since the start.
     tension : ndarray of float, shape (n,)
