@@ -46,7 +46,7 @@ def test_a_run(tmp_path: Path) -> None:
     mw.wind(DATA / "tank.ply", paths=2, out=tmp_path, render=False, units="mm", command="meshwind wind tank.ply")
     done = info(tmp_path)
     labels = [line.split()[0] for line in done.stdout.splitlines()]
-    assert labels == ["run", "part", "mesh", "surface", "fitted", "paths", "coverage", "seconds"]
+    assert labels == ["run", "part", "mesh", "surface", "fitted", "paths", "coverage", "angle", "seconds"]
     assert f"meshwind wind tank.ply (meshwind {mw.__version__})" in done.stdout
     assert "4 of 4 at rest" in done.stdout
     assert json.loads(info(tmp_path, "--json").stdout) == json.loads((tmp_path / "report.json").read_text())
