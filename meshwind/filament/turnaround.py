@@ -9,7 +9,9 @@ from meshwind.filament.course import Course, Courses, Kind, runs
 from meshwind.filament.edge import Edge, Legs
 
 _STEP = np.radians(3.0)
-"""Turn of the prism's normal between points of a straight stretch."""
+"""Turn of the prism's normal between points of a straight stretch, ..."""
+_LONGEST = 1 / 60
+"""... and share of the hull's perimeter: its sides are straight where the rim is hollow."""
 
 
 class Turnaround(Protocol):
@@ -50,7 +52,8 @@ def straight(edge: Edge, start: Place, end: Place, kind: Kind) -> Courses:
     """Straight stretches on the unrolled prism, between places, sampled as the hull turns."""
     (a, low), (b, high) = start, end
     turned = np.abs(edge.hull.normal_angle(b) - edge.hull.normal_angle(a))
-    count = np.maximum(np.ceil(turned / _STEP).astype(np.int64), 1) + 1
+    far = np.abs(b - a) / (_LONGEST * edge.hull.perimeter)
+    count = np.maximum(np.ceil(np.maximum(turned / _STEP, far)).astype(np.int64), 1) + 1
     angle = np.where((a != b) | (low != high), np.arctan2(np.abs(b - a), np.abs(high - low)), 0.5 * np.pi)
     share, many = shares(count), int(count.sum())
     around, height = (np.repeat(x, count) + share * np.repeat(y - x, count) for x, y in ((a, b), (low, high)))
