@@ -116,18 +116,21 @@ class Ground:
 
 def from_path(on: Ground, u: float, v: float, to: float, course: Floats) -> Spiral:
     """A way from (u, v) to the line `to`, at first as paths of this course (k,) lie and at last as a hoop."""
-
-    def tried(late: float) -> Spiral:
-        return on.way(u, v, to, lambda share, v, hoop: _bent(on, v, hoop, course, (share - late) / (1.0 - late)))
-
-    return min(map(tried, _LATE), key=lambda way: way.slip)
+    return _bending(on, (u, v, to), course, lambda share, late: (share - late) / (1.0 - late))
 
 
 def to_path(on: Ground, u: float, v: float, to: float, course: Floats) -> Spiral:
     """A way from a hoop at v to the line `to`, at last as paths of this course (k,) lie."""
+    return _bending(on, (u, v, to), course, lambda share, late: 1.0 - share / (1.0 - late))
+
+
+def _bending(
+    on: Ground, between: tuple[float, float, float], course: Floats, bend_at: Callable[[Floats, float], Floats]
+) -> Spiral:
+    """The way with the least slip of those that lie as a path for some share of it, and bend on the rest."""
 
     def tried(late: float) -> Spiral:
-        return on.way(u, v, to, lambda share, v, hoop: _bent(on, v, hoop, course, 1.0 - share / (1.0 - late)))
+        return on.way(*between, lambda share, v, hoop: _bent(on, v, hoop, course, bend_at(share, late)))
 
     return min(map(tried, _LATE), key=lambda way: way.slip)
 
@@ -148,8 +151,12 @@ def between_hoops(on: Ground, u: float, v: float, to: float, friction: float) ->
     def tried(low: float) -> Spiral:
         return on.way(u, v, to, lambda share, _, hoop: hoop + (low - hoop) * np.sin(np.pi * share) ** 2)
 
-    ways = [tried(low) for low in np.linspace(_FLATTEST, 0.5 * np.pi, _TRIES)]
-    return next((way for way in ways if way.slip <= friction), min(ways, key=lambda way: way.slip))
+    ways = []
+    for low in np.linspace(_FLATTEST, 0.5 * np.pi, _TRIES):
+        ways.append(tried(low))
+        if ways[-1].slip <= friction:
+            return ways[-1]
+    return min(ways, key=lambda way: way.slip)
 
 
 def _bent(on: Ground, v: Floats, hoop: Floats, course: Floats, share: Floats) -> Floats:
