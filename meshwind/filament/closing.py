@@ -11,10 +11,10 @@ from meshwind.filament.cap_turn import Cap, ends_with_caps, joined_on_caps, pass
 from meshwind.filament.course import Course, Courses, Kind, in_a_row, runs
 from meshwind.filament.ends import CAP, ROOM, End, LayerPlan, Pairs, choose_end
 from meshwind.filament.joining import Joining, join, passes
+from meshwind.filament.lift import Hung, hung
 from meshwind.filament.pattern import Pattern, nearest_pattern, patterns
 from meshwind.filament.turnaround import Turnaround
 from meshwind.path import Paths, Status, solve
-from meshwind.path.winding_angle import winding_angle
 from meshwind.planning.families import families
 from meshwind.surface.rims import rim
 from meshwind.surface.surface import Surface
@@ -41,6 +41,8 @@ class ClosedLayer:
         Turns of a path with which the layer closes.
     paths : Paths
         The paths that are joined, family +1 first, as many of each.
+    hung : Hung
+        The paths as their fibres lie: before a rim that its prism stands up from they leave the part.
     joining : Joining
         Which path follows which.
     turnarounds : tuple of Turnaround or Cap
@@ -56,6 +58,7 @@ class ClosedLayer:
     plan: LayerPlan
     revolutions: float
     paths: Paths
+    hung: Hung
     joining: Joining
     turnarounds: tuple[Turnaround | Cap, Turnaround | Cap]
     filaments: tuple[Course, ...]
@@ -104,9 +107,10 @@ def close_layer(surface: Surface, plan: LayerPlan) -> ClosedLayer:
     kept, left_out = _at_rest(_solved(surface, plan, plan.paths, planned.revolutions, -planned.dwells[0]))
     pairs = [end.pairs(kept) for end in ends]
     joining = _joined(pairs)
-    filaments = _filaments(kept, joining, *_turns(pairs, joining))
+    fibres = _hung(kept, pairs)
+    filaments = _filaments(_laid(kept, fibres), kept.family, joining, _turns(pairs, joining))
     turnarounds = (ends[0].turnaround, ends[1].turnaround)
-    return ClosedLayer(plan, planned.revolutions, kept, joining, turnarounds, filaments, left_out)
+    return ClosedLayer(plan, planned.revolutions, kept, fibres, joining, turnarounds, filaments, left_out)
 
 
 def _on_caps(surface: Surface, plan: LayerPlan) -> ClosedLayer:
@@ -115,13 +119,15 @@ def _on_caps(surface: Surface, plan: LayerPlan) -> ClosedLayer:
     ends = ends_with_caps(surface, plan, laid)
     pairs = [None if isinstance(end, Cap) else end.pairs(laid.paths) for end in ends]
     joining = joined_on_caps(laid) if laid.pattern is not None else _joined_at_rim(surface, laid.paths, pairs)
-    filaments = _filaments(laid.paths, joining, *_turns(pairs, joining))
+    fibres = _hung(laid.paths, pairs)
+    filaments = _filaments(_laid(laid.paths, fibres), laid.paths.family, joining, _turns(pairs, joining))
     start, end = (end if isinstance(end, Cap) else end.turnaround for end in ends)
     turned = np.abs(laid.paths.uv[:, -1, 0] - laid.paths.uv[:, 0, 0]).mean()
     return ClosedLayer(
         plan,
         float(turned),
         laid.paths,
+        fibres,
         joining,
         (start, end),
         filaments,
@@ -227,10 +233,10 @@ def _joined(pairs: list[Pairs]) -> Joining:
 
 
 def _filaments(
-    paths: Paths, joining: Joining, over_start: Courses | None, over_end: Courses | None
+    laid: Courses, families_: Ints, joining: Joining, turns: tuple[Courses | None, Courses | None]
 ) -> tuple[Course, ...]:
     """The courses of all filaments: each path there, the turn at the end, the path back, and the turn at the start."""
-    laid, ways = _laid(paths), [np.flatnonzero(paths.family == family) for family in (1, -1)]
+    (over_start, over_end), ways = turns, [np.flatnonzero(families_ == family) for family in (1, -1)]
     sources = [laid, *(turn for turn in (over_end, over_start) if turn is not None)]
     whole = in_a_row([each.course for each in sources])
     base = np.cumsum([0, *(len(each.course) for each in sources)])
@@ -275,15 +281,29 @@ def _turns(pairs: Sequence[Pairs | None], joining: Joining) -> tuple[Courses | N
     return made[0], made[1]
 
 
-def _laid(paths: Paths) -> Courses:
+def _hung(paths: Paths, pairs: Sequence[Pairs | None]) -> Hung:
+    """The paths as their fibres lie."""
+    over = [
+        (legs, pair.end.edge.end, legs.sense if pair.end.edge.end else -legs.sense)
+        for pair in pairs
+        if pair is not None
+        for legs in (pair.arriving, pair.leaving)
+    ]
+    return hung(paths, over)
+
+
+def _laid(paths: Paths, fibres: Hung) -> Courses:
     """The courses of all paths from the start rim to the end rim."""
-    kind = np.where(paths.on_surface, int(Kind.LAID), int(Kind.BRIDGE)).ravel()
+    kind = np.where(paths.on_surface & ~fibres.aloft, int(Kind.LAID), int(Kind.BRIDGE))
+    # where a fibre comes to its prism, its turnaround begins
+    kind[:, [0, -1]] = np.where(fibres.aloft[:, [0, -1]], int(Kind.TURN), kind[:, [0, -1]])
     count = np.full(len(paths), paths.gap.shape[1])
-    none = np.full(len(kind), -1)
+    none = np.full(kind.size, -1)
+    slip = np.where(fibres.aloft, np.nan, paths.slip)
     return Courses(
         Course(
-            paths.points.reshape(-1, 3), paths.normal.reshape(-1, 3), winding_angle(paths).ravel(), paths.slip.ravel(),
-            kind, none, none, np.repeat(np.arange(len(paths)), count),
+            fibres.points.reshape(-1, 3), fibres.normal.reshape(-1, 3), fibres.angle.ravel(), slip.ravel(),
+            kind.ravel(), none, none, np.repeat(np.arange(len(paths)), count),
         ),
         count,
     )  # fmt: skip

@@ -7,7 +7,7 @@ import numpy as np
 from meshwind.core.cast import Floats
 from meshwind.filament.course import Courses, Kind, in_turn
 from meshwind.filament.edge import Edge, Legs
-from meshwind.filament.turnaround import Place, on_prism, straight
+from meshwind.filament.turnaround import Catch, Place, on_prism, straight
 
 _STEP = np.radians(2.0)
 """Turn of the normal between points of a steered leg: heights are then right to 1e-5."""
@@ -36,6 +36,11 @@ class Collar:
     name: str = field(default="collar", init=False)
     rule: str = field(default="steered at a constant slip on a convex prism; the hoop needs none", init=False)
     reach: float = field(default=0.0, init=False)
+
+    @property
+    def catch(self) -> Catch:
+        """See `Turnaround.catch`."""
+        return Catch()
 
     def surplus(self, arriving: Legs, leaving: Legs, later: Floats) -> Floats:
         """Turns (n,) to spare beyond the two legs and the stretch that levels them."""

@@ -67,6 +67,12 @@ class Edge:
         at = np.interp(rest, np.append(self.u - self.u[0], 1.0), np.append(self.hull.passed, self.hull.perimeter))
         return np.asarray(whole * self.hull.perimeter + at)
 
+    def turned(self, around: Floats) -> Floats:
+        """Parameters u (n,) of the rim at lengths (n,) along the hull, both unwrapped."""
+        whole, rest = np.divmod(np.asarray(around), self.hull.perimeter)
+        at = np.interp(rest, np.append(self.hull.passed, self.hull.perimeter), np.append(self.u, self.u[0] + 1.0))
+        return np.asarray(whole + at)
+
     def points(self, around: Floats, height: Floats) -> Floats:
         """Points (n, 3) of the prism at lengths (n,) along the hull and heights (n,)."""
         return np.asarray(self.origin + self.hull.at(around) @ self.across + height[:, None] * self.axis)
@@ -77,13 +83,57 @@ class Edge:
         angle = self.hull.normal_angle(around)
         return np.asarray(np.stack([np.cos(angle), np.sin(angle)], axis=1) @ self.across)
 
+    def tangents(self, around: Floats) -> Floats:
+        """Unit tangents (n, 3) of the hull, in the sense of turning, at lengths (n,) along it."""
+        angle = self.hull.normal_angle(around)
+        return np.asarray(np.stack([-np.sin(angle), np.cos(angle)], axis=1) @ self.across)
+
+
+@dataclass(frozen=True)
+class Lift:
+    """How legs leave the part.
+
+    Attributes
+    ----------
+    aloft : ndarray of int, shape (n,)
+        Particles of each path that hang between part and prism, from the rim on; 0 where it does not leave before it.
+    off : ndarray of float, shape (n, 3)
+        Where they leave the part.
+    corner : ndarray of float, shape (n, 3)
+        Where they meet the prism.
+    ahead : ndarray of float, shape (n, 3)
+        Unit vectors from the one to the other.
+    held : ndarray of bool, shape (n,)
+        Which meet it at the pins.
+    before : ndarray of float, shape (n,)
+        Length of the path from where they leave the part to the rim.
+    normal : ndarray of float, shape (n, 3)
+        Unit normals of the prism where they meet it.
+    angle : ndarray of float, shape (n,)
+        Their angle from the prism's axis on the way, in radians.
+    """
+
+    aloft: Ints
+    off: Floats
+    corner: Floats
+    ahead: Floats
+    held: Bools
+    before: Floats
+    normal: Floats
+    angle: Floats
+
+    def chosen(self, index: Ints | Bools) -> "Lift":
+        """That of some of the legs."""
+        return Lift(*(values[index] for values in vars(self).values()))
+
 
 @dataclass(frozen=True)
 class Legs:
-    """Fibres that cross a rim outwards, continued on its prism.
+    """Fibres that come over a rim outwards, continued on its prism.
 
-    around, height (n,): where they cross it; angle (n,): from the axis, in radians; points (n, 3) of the crossing;
-    sense: +1 for fibres that arrive, in the sense of turning, and -1 for those that leave, followed backwards.
+    around, height (n,): where they come to lie on it; angle (n,): from the axis, in radians; points (n, 3) where the
+    turnaround begins; sense: +1 for fibres that arrive, in the sense of turning, and -1 for those that leave, followed
+    backwards; lift: how some leave the part before its rim, None where all lie on it up to there.
     """
 
     around: Floats
@@ -91,13 +141,15 @@ class Legs:
     angle: Floats
     points: Floats
     sense: int
+    lift: Lift | None = None
 
     def __len__(self) -> int:
         return len(self.around)
 
     def chosen(self, index: Ints | Bools) -> "Legs":
         """Some of the legs."""
-        return Legs(self.around[index], self.height[index], self.angle[index], self.points[index], self.sense)
+        lift = None if self.lift is None else self.lift.chosen(index)
+        return Legs(self.around[index], self.height[index], self.angle[index], self.points[index], self.sense, lift)
 
 
 def edge(surface: Surface, v: float, end: int | None = None) -> Edge:
@@ -153,7 +205,7 @@ def edge(surface: Surface, v: float, end: int | None = None) -> Edge:
     outward = unit(np.cross(frames[:, SU], frames[:, SV]))
     su, normal = frames[:, SU], made.normals(around, height)
     normal = unit(normal - ((normal * su).sum(axis=1) / (su**2).sum(axis=1))[:, None] * su)
-    turn = np.arcsin(np.clip((np.cross(outward, normal) * unit(np.cross(along, outward))).sum(axis=1), -1.0, 1.0))
+    turn = np.arcsin(np.clip((np.cross(outward, normal) * unit(np.cross(outward, along))).sum(axis=1), -1.0, 1.0))
     return replace(made, hollow=float(hollow), crease=(float(turn.min()), float(turn.max())))
 
 

@@ -10,8 +10,9 @@ from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import AUTO
 from meshwind.filament.collar_turn import Collar
-from meshwind.filament.edge import Edge, Legs, edge, legs
+from meshwind.filament.edge import Edge, Legs, edge
 from meshwind.filament.joining import Surplus
+from meshwind.filament.lift import legs_over
 from meshwind.filament.part_edge import part_edge
 from meshwind.filament.part_turn import Bend
 from meshwind.filament.pin_turn import Pins, Shaft
@@ -90,7 +91,12 @@ class End:
     def pairs(self, paths: Paths) -> "Pairs":
         """The legs that arrive and those that leave."""
         families_ = (1, -1) if self.edge.end else (-1, 1)
-        into, out = (legs(self.edge, paths, family) for family in families_)
+        into, out = (legs_over(self.turnaround, paths, family) for family in families_)
+        if np.isinf(into.height).any() or np.isinf(out.height).any():
+            raise BadInputError(
+                f"the {self.turnaround.name} at the {'end' if self.edge.end else 'start'} stands up from the part, and "
+                "fibres that aim at its axis slide up on it without end; give pins or a shaft for this end"
+            )
         at, off = (self.shares(paths, family) for family in families_)
         return Pairs(self, into, out, at, off)
 
@@ -167,12 +173,18 @@ def choose_end(surface: Surface, end: int, plan: LayerPlan, word: str, scouts: P
         raise BadInputError("a collar holds no fibre without friction; give friction, or pins or a shaft for this end")
     if friction > 0.0:
         collar = Collar(on, friction)
-        if word == "collar":
-            return End(surface, v, on, collar)
-        tops = [collar.reached(legs(on, scouts, family), np.zeros(len(scouts) // 2))[1].max() for family in (1, -1)]
-        if max(tops) - on.highest <= _LONGEST_COLLAR * on.hull.perimeter / np.pi:
+        if word == "collar" or _top(collar, scouts) <= _LONGEST_COLLAR * on.hull.perimeter / np.pi:
             return End(surface, v, on, collar)
     return End(surface, v, on, pins)
+
+
+def _top(collar: Collar, scouts: Paths) -> float:
+    """Height over the rim up to which a collar must reach; infinite where no collar is long enough."""
+    each = [legs_over(collar, scouts, family) for family in (1, -1)]
+    if any(np.isinf(legs.height).any() for legs in each):
+        return np.inf
+    tops = [collar.reached(legs, np.zeros(len(legs)))[1].max() for legs in each]
+    return float(max(tops)) - collar.edge.highest
 
 
 def _within(surface: Surface, end: int, v: float, word: str, friction: float) -> End:

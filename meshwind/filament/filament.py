@@ -6,7 +6,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.filament.closing import ClosedLayer
-from meshwind.filament.course import Course, Kind, in_a_row
+from meshwind.filament.course import Course, in_a_row
 from meshwind.filament.laminate import LaidLayer, Laminate
 
 
@@ -67,7 +67,7 @@ def particles(course: Course, family: Ints, count: int) -> tuple[Ints, Ints]:
 
     Paths of family -1 are walked from their end to their start.
     """
-    path = np.where(np.isin(course.kind, (int(Kind.LAID), int(Kind.BRIDGE))), course.path, -1)
+    path = course.path
     run = np.concatenate([[0], np.cumsum(np.diff(path) != 0)])
     last = np.append(np.flatnonzero(np.diff(path) != 0), len(path) - 1)
     # the first particle of a path may be the last point of the turnaround before it, so they count from the last

@@ -14,9 +14,10 @@ from meshwind.core.parsing import AUTO
 from meshwind.filament.cap_turn import Cap
 from meshwind.filament.closing import ClosedLayer
 from meshwind.filament.course import Course, Kind, joined
-from meshwind.filament.edge import Edge, Legs, legs
+from meshwind.filament.edge import Edge, Legs
 from meshwind.filament.ends import choose_end
 from meshwind.filament.hoop import Hoop, HoopPlan, begins_at, hoop
+from meshwind.filament.lift import legs_over
 from meshwind.filament.part_turn import Bend
 from meshwind.filament.spiral import Ground, between_hoops, from_path, most_slip, path_on, to_path
 from meshwind.filament.turnaround import Turnaround
@@ -107,7 +108,7 @@ def strand_of_paths(closed: ClosedLayer, tail: Tail | None, ground: Ground, fric
     if isinstance(turn, Cap | Bend):
         first, ways, slip = _on_part(closed, turn, tail, ground, friction)
     else:
-        leaving = legs(turn.edge, closed.paths, _away(tail.end))
+        leaving = legs_over(turn, closed.paths, _away(tail.end))
         arriving, ways, slip = _arriving(tail, turn.edge, ground, closed)
         first, later = _next(turn, arriving, leaving)
         ways = [*ways, turn.courses(arriving, leaving.chosen(np.array([first])), later).course]
@@ -223,7 +224,12 @@ def _arrived(tail: Tail, on: Edge) -> Legs:
     assert tail.layer is not None
     paths = tail.layer.paths
     mine = np.flatnonzero(paths.family == -_away(tail.end))
-    return legs(on, paths, -_away(tail.end)).chosen(np.flatnonzero(mine == tail.path))
+    turn = tail.turnaround
+    assert turn is not None
+    leg = legs_over(turn, paths, -_away(tail.end)).chosen(np.flatnonzero(mine == tail.path))
+    own = turn.edge
+    around = on.around(own.turned(leg.around))
+    return replace(leg, around=frozen(around), height=frozen(leg.height + (own.origin - on.origin) @ on.axis))
 
 
 def _legs_at(on: Edge, ground: Ground, u: Floats, v: float, angle: float, sense: int) -> Legs:

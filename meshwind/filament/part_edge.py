@@ -49,9 +49,7 @@ class PartEdge(Edge):
 
     def places(self, around: Floats, height: Floats) -> Floats:
         """Parameters (n, 2) of places on the unrolled prism."""
-        whole, rest = np.divmod(np.asarray(around), self.hull.perimeter)
-        hull = self.hull
-        u = whole + np.interp(rest, np.append(hull.passed, hull.perimeter), np.append(self.u, self.u[0] + 1.0))
+        u = self.turned(around)
         beyond = height - np.interp(u, self.rim[0], self.rim[1], period=1.0)
         if beyond.max(initial=0.0) > self.room:
             raise BadInputError(

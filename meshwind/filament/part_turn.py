@@ -11,6 +11,7 @@ from meshwind.filament.course import Courses
 from meshwind.filament.edge import Legs
 from meshwind.filament.part_edge import PartEdge
 from meshwind.filament.thickness import Tracks
+from meshwind.filament.turnaround import Catch
 
 
 @dataclass
@@ -39,6 +40,11 @@ class Bend:
 
     def __post_init__(self) -> None:
         self._collar = Collar(self.edge, self.steered)
+
+    @property
+    def catch(self) -> Catch:
+        """See `Turnaround.catch`."""
+        return self._collar.catch
 
     @property
     def reach(self) -> float:

@@ -4,14 +4,15 @@ Behind the pins it is a hoop on the prism, which needs no friction; the pins car
 from the pin inwards to a shaft on the axis, round it, and out again.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from meshwind.core.cast import Floats
-from meshwind.filament.course import Course, Courses, Kind, in_turn
+from meshwind.core.cast import Floats, frozen
+from meshwind.core.vectors import TINY
+from meshwind.filament.course import Course, Courses, Kind, in_turn, runs
 from meshwind.filament.edge import Edge, Legs
-from meshwind.filament.turnaround import Place, on_prism, shares, straight
+from meshwind.filament.turnaround import Catch, Place, on_prism, shares, straight
 
 _STEEPEST = np.radians(85.0)
 """Winding angle above which a leg is taken to have this one: a hoop never comes up to the pins."""
@@ -44,6 +45,11 @@ class Pins:
     name: str = field(default="pins", init=False)
     rule: str = field(default="held by pins; the hoop behind them needs no friction", init=False)
     slip: float = field(default=0.0, init=False)
+
+    @property
+    def catch(self) -> Catch:
+        """See `Turnaround.catch`."""
+        return Catch(self.edge.highest + self.reach, self.radius)
 
     @property
     def reach(self) -> float:
@@ -83,7 +89,39 @@ class Pins:
             self.edge, (around.ravel(), height.ravel()), bend.ravel(), np.zeros(bend.size),
             np.full(len(legs), _BEND), Kind.TURN,
         )  # fmt: skip
-        return in_turn([up, round_], share=True), (around[:, -1], height[:, -1])
+        round_ = self._straight_to(legs, start, round_)
+        return in_turn([_begun(legs, up), round_], share=True), (around[:, -1], height[:, -1])
+
+    def _straight_to(self, legs: Legs, start: Floats, round_: Courses) -> Courses:
+        """The ways round pins; of legs that come to theirs through the air in the plane of both stretches."""
+        if legs.lift is None or not legs.lift.held.any():
+            return round_
+        which = np.flatnonzero(legs.lift.held)
+        start, level, ahead = start[which], legs.height[which], legs.lift.ahead[which][:, None]
+        corner, along = self.edge.points(start, level)[:, None], legs.sense * self.edge.tangents(start)[:, None]
+        turn = 0.5 * np.pi - legs.angle[which][:, None]
+        bend = turn * np.linspace(0.0, 1.0, _BEND)
+        inner = along - np.cos(turn)[..., None] * ahead
+        inner /= np.maximum(np.linalg.norm(inner, axis=2, keepdims=True), TINY)
+        passed = np.sin(bend) - np.tan(0.5 * turn)
+        points = corner + self.radius * (passed[..., None] * ahead + (1.0 - np.cos(bend))[..., None] * inner)
+        # past the corner it goes round with the prism
+        on = np.maximum(((points - corner) * along).sum(axis=2), 0.0)
+        place = (start[:, None] + legs.sense * on).ravel(), np.repeat(level, _BEND)
+        points += self.edge.points(*place).reshape(points.shape) - corner - on[..., None] * along
+        way = np.cos(bend)[..., None] * ahead + np.sin(bend)[..., None] * inner
+        course, at = round_.course, (round_.first[which, None] + np.arange(_BEND)).ravel()
+        new, angle = np.array(course.points), np.array(course.angle)
+        new[at], angle[at] = points.reshape(-1, 3), np.arccos(np.clip(np.abs(way @ self.edge.axis), 0.0, 1.0)).ravel()
+        return Courses(replace(course, points=frozen(new), angle=frozen(angle)), round_.count)
+
+
+def _begun(legs: Legs, up: Courses) -> Courses:
+    """The ways up the prism; of legs that come to their pins through the air the first point alone."""
+    if legs.lift is None:
+        return up
+    count = np.where(legs.lift.held, 1, up.count)
+    return Courses(up.course.chosen(runs(up.first, count)), count)
 
 
 @dataclass
@@ -106,6 +144,11 @@ class Shaft:
     name: str = field(default="shaft", init=False)
     rule: str = field(default="held by pins and round a shaft, where it needs no friction", init=False)
     slip: float = field(default=0.0, init=False)
+
+    @property
+    def catch(self) -> Catch:
+        """See `Turnaround.catch`."""
+        return Catch(self.edge.highest + self.height)
 
     @property
     def reach(self) -> float:
@@ -136,8 +179,8 @@ class Shaft:
         at, first, near = self._at_pins(arriving, arriving.around)
         end, last, far = self._at_pins(leaving, later)
         level = np.full(len(later), self.edge.highest + self.height)
-        up = straight(self.edge, (arriving.around, arriving.height), (at, level), Kind.TURN)
-        down = straight(self.edge, (later, leaving.height), (end, level), Kind.TURN)
+        up = _begun(arriving, straight(self.edge, (arriving.around, arriving.height), (at, level), Kind.TURN))
+        down = _begun(leaving, straight(self.edge, (later, leaving.height), (end, level), Kind.TURN))
         touch = first + np.arccos(self.radius / near)
         leave = np.maximum(last - np.arccos(self.radius / far), touch)
         whole = in_turn([up, self._round(touch, leave), down.backwards], share=False)

@@ -1,5 +1,6 @@
 """What every turnaround is: the way of a fibre over a rim, from the end of one path to the start of the next."""
 
+from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
 import numpy as np
@@ -12,6 +13,14 @@ _STEP = np.radians(3.0)
 """Turn of the prism's normal between points of a straight stretch, ..."""
 _LONGEST = 1 / 60
 """... and share of the hull's perimeter: its sides are straight where the rim is hollow."""
+
+
+@dataclass(frozen=True)
+class Catch:
+    """What stops a fibre from sliding up the prism: pins whose far side is at a height, of a radius."""
+
+    height: float = np.inf
+    radius: float = 0.0
 
 
 class Turnaround(Protocol):
@@ -28,6 +37,11 @@ class Turnaround(Protocol):
     @property
     def edge(self) -> Edge:
         """The prism that it stands on."""
+        ...
+
+    @property
+    def catch(self) -> Catch:
+        """What stops a fibre from sliding up the prism."""
         ...
 
     def surplus(self, arriving: Legs, leaving: Legs, later: Floats) -> Floats:

@@ -1,0 +1,231 @@
+"""Where fibres leave the part before a rim that its prism stands up from: no taut fibre lies in that corner.
+
+Just before such a rim the ray along a fibre already meets the prism.  The fibre leaves the part where that ray first
+does: there it grazes the prism, as the fibre is to lie on both, and goes over to it in a straight line.  Where pins
+stop it from sliding so far up the prism, it leaves where the ray meets the prism at the pins.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.core.vectors import unit
+from meshwind.filament.edge import Edge, Legs, Lift, legs
+from meshwind.filament.part_edge import PartEdge
+from meshwind.filament.turnaround import Catch, Turnaround
+from meshwind.path.paths import Paths
+from meshwind.path.winding_angle import winding_angle
+
+_FLUSH = np.sin(np.radians(0.1))
+"""Sine of the angle by which a fibre must come in to the prism for a corner: a fit leaves less on a cylinder."""
+_HALVED = 48
+"""Halvings in which the place where a fibre leaves is found: to round-off of the number of a particle."""
+
+
+def legs_over(turn: Turnaround, paths: Paths, family: int) -> Legs:
+    """The fibres of a family on the prism of a turnaround, from where they come to lie on it.
+
+    The height of those is infinite that slide up the prism without end, as they aim at its axis and no pins stop them.
+    """
+    on, catch = turn.edge, turn.catch
+    crossing = legs(on, paths, family)
+    if isinstance(on, PartEdge):
+        return crossing
+    rays = _Rays.of(on, paths, family)
+    point, ahead = rays.at(np.zeros(len(crossing)))
+    corner = (ahead * on.normals(crossing.around, crossing.height)).sum(axis=1) < -_FLUSH
+    if not corner.any():
+        return crossing
+    which = np.flatnonzero(corner)
+    rays = rays.chosen(which)
+    last = (paths.points.shape[1] - 1) / 2.0  # the other end of a path has the other half to leave from
+    place, found = _first(rays, on, catch, last)
+    slides = which[~found] if np.isinf(catch.height) else which[:0]
+    if len(slides):
+        height = np.array(crossing.height)
+        height[slides] = np.inf
+        crossing = replace(crossing, height=frozen(height))
+    which, rays, place = which[found], rays.chosen(found), place[found]
+    return _lifted(crossing, which, rays, (on, catch, place)) if len(which) else crossing
+
+
+@dataclass(frozen=True)
+class Hung:
+    """Paths of n points as their fibres lie, some of which hang between the part and what they turn on.
+
+    Attributes
+    ----------
+    points, normal : ndarray of float, shape (p, n, 3)
+        Points of the fibres, and normals of what they lie on; where they hang, between those of both its ends.
+    angle : ndarray of float, shape (p, n)
+        Their winding angle, in radians, likewise.
+    aloft : ndarray of bool, shape (p, n)
+        Which points lie on the part no more.
+    before : tuple of float
+        Largest length of a path that no fibre lies on, at the start and at the end of the part.
+    """
+
+    points: Floats
+    normal: Floats
+    angle: Floats
+    aloft: Bools
+    before: tuple[float, float] = (0.0, 0.0)
+
+    def chosen(self, index: Ints | Bools) -> "Hung":
+        """Some of them."""
+        names = "points", "normal", "angle", "aloft"
+        return replace(self, **{name: getattr(self, name)[index] for name in names})
+
+
+def hung(paths: Paths, over: Sequence[tuple[Legs, int, int]]) -> Hung:
+    """Paths as their fibres lie; over: legs with the end and the family that they are of.
+
+    The particle next to where a fibre leaves the part is moved there, those between it and the rim to the straight way
+    to the prism, and the last to where that ends.
+    """
+    points, normals, angle = np.array(paths.points), np.array(paths.normal), np.array(winding_angle(paths))
+    aloft, before = np.zeros(points.shape[:2], dtype=bool), [0.0, 0.0]
+    many = points.shape[1]
+    for legs_, end, family in over:
+        if legs_.lift is None:
+            continue
+        leaves = np.flatnonzero(legs_.lift.aloft)
+        rows, lift = np.flatnonzero(paths.family == family)[leaves], legs_.lift.chosen(leaves)
+        left = np.arange(many)[::-1] if end else np.arange(many)
+        share = np.clip(left / lift.aloft[:, None], 0.0, 1.0)[..., None]  # from the rim, 1 where it leaves the part
+        moved = (left <= lift.aloft[:, None])[..., None]
+        way = share * lift.off[:, None] + (1.0 - share) * legs_.points[leaves][:, None]
+        last = many - 1 - lift.aloft if end else lift.aloft
+        turn = unit(share * normals[rows, last][:, None] + (1.0 - share) * lift.normal[:, None])
+        lean = share[..., 0] * angle[rows, last][:, None] + (1.0 - share[..., 0]) * lift.angle[:, None]
+        angle[rows] = np.where(moved[..., 0], lean, angle[rows])
+        points[rows], normals[rows] = np.where(moved, way, points[rows]), np.where(moved, turn, normals[rows])
+        aloft[rows] |= left < lift.aloft[:, None]
+        before[end] = max(before[end], float(lift.before.max(initial=0.0)))
+    return Hung(frozen(points), frozen(normals), frozen(angle), frozen(aloft), (before[0], before[1]))
+
+
+@dataclass(frozen=True)
+class _Rays:
+    """Rays along n fibres: their points (n, k, 3) from the rim inwards, and splines through these."""
+
+    points: Floats
+    coefficients: Floats
+    sense: int
+
+    @staticmethod
+    def of(on: Edge, paths: Paths, family: int) -> "_Rays":
+        """Those of a family at an edge."""
+        rows = np.flatnonzero(paths.family == family)
+        points = paths.points[rows][:, :: -1 if on.end else 1]
+        spline = CubicSpline(np.arange(points.shape[1]), points, axis=1)
+        return _Rays(points, spline.c, family if on.end else -family)
+
+    def chosen(self, index: Ints | Bools) -> "_Rays":
+        """Some of them."""
+        return _Rays(self.points[index], self.coefficients[:, :, index], self.sense)
+
+    def at(self, place: Floats) -> tuple[Floats, Floats]:
+        """Points and outward unit tangents (n, 3) at places (n,): numbers of particles from the rim, with fractions."""
+        index = np.clip(place.astype(np.int64), 0, self.coefficients.shape[1] - 1)
+        a, b, c, d = self.coefficients[:, index, np.arange(len(place))]
+        s = (place - index)[:, None]
+        return d + s * (c + s * (b + s * a)), -unit(c + s * (2.0 * b + 3.0 * s * a))
+
+
+def _met(on: Edge, point: Floats, ahead: Floats) -> Floats:
+    """Lengths (n,) along rays from points (n, 3) to where they meet the prism; infinite where they do not."""
+    hull = on.hull.points
+    sides = np.roll(hull, -1, axis=0) - hull
+    out = np.stack([sides[:, 1], -sides[:, 0]], axis=1)
+    start, way = (point - on.origin) @ on.across.T, ahead @ on.across.T
+    off, rate = (out * hull).sum(axis=1) - start @ out.T, way @ out.T
+    length = np.divide(off, rate, out=np.full_like(off, np.inf), where=rate != 0.0)
+    enters = np.where(rate < 0.0, length, np.where((rate == 0.0) & (off < 0.0), np.inf, -np.inf)).max(axis=1)
+    leaves = np.where(rate > 0.0, length, np.inf).min(axis=1)
+    return np.where((enters < leaves) & (leaves > 0.0), np.maximum(enters, 0.0), np.inf)
+
+
+def _first(rays: _Rays, on: Edge, catch: Catch, last: float) -> tuple[Floats, Bools]:
+    """Places (n,) nearest to the rim from which rays pass the prism by or meet it at the pins, and which have one.
+
+    last: the farthest place that is looked at.
+    """
+
+    def past(place: Floats) -> Bools:
+        point, ahead = rays.at(place)
+        length = _met(on, point, ahead)
+        height = (point - on.origin) @ on.axis + np.where(np.isfinite(length), length, 0.0) * (ahead @ on.axis)
+        return np.asarray(~np.isfinite(length) | (height >= catch.height))
+
+    count = len(rays.points)
+    low, high, found = np.zeros(count), np.zeros(count), np.zeros(count, dtype=bool)
+    step = 1.0
+    while not found.all() and step < 2.0 * last:
+        tried = np.full(count, min(step, last))
+        now = past(tried) & ~found
+        high = np.where(now, tried, high)
+        low = np.where(found | now, low, tried)
+        found, step = found | now, 2.0 * step
+    for _ in range(_HALVED):
+        middle = 0.5 * (low + high)
+        there = past(middle)
+        low, high = np.where(there, low, middle), np.where(there, middle, high)
+    return high, found
+
+
+def _around(on: Edge, points: Floats, near: Floats) -> Floats:
+    """Lengths (n,) along the hull of points (n, 3) on the prism, next to others (n,)."""
+    hull, flat = on.hull.points, (points - on.origin) @ on.across.T
+    sides = np.roll(hull, -1, axis=0) - hull
+    off = flat[:, None] - hull
+    share = np.clip((off * sides).sum(axis=2) / (sides**2).sum(axis=1), 0.0, 1.0)
+    side = np.linalg.norm(off - share[..., None] * sides, axis=2).argmin(axis=1)
+    passed = on.hull.passed[side] + share[np.arange(len(side)), side] * np.linalg.norm(sides[side], axis=1)
+    return np.asarray(passed + on.hull.perimeter * np.round((near - passed) / on.hull.perimeter))
+
+
+def _lifted(crossing: Legs, which: Ints, rays: _Rays, found: tuple[Edge, Catch, Floats]) -> Legs:
+    """Legs of which some leave the part at places."""
+    on, catch, place = found
+    off, ahead = rays.at(place)
+    length = _met(on, off, ahead)
+    held = np.isfinite(length)
+    # a fibre that passes by touches the prism where its normal is square to the fibre
+    way = ahead @ on.across.T
+    turned = np.arctan2(-rays.sense * way[:, 0], rays.sense * way[:, 1])
+    near = on.hull.normal_angle(crossing.around[which])
+    grazed = on.hull.passed_at(turned + 2.0 * np.pi * np.round((near - turned) / (2.0 * np.pi)))
+    touch = ((on.hull.at(grazed) - (off - on.origin) @ on.across.T) * way).sum(axis=1) / (way**2).sum(axis=1)
+    length = np.where(held, length, touch)
+    corner = off + length[:, None] * ahead
+    around = np.where(held, _around(on, corner, crossing.around[which]), grazed)
+    height = (corner - on.origin) @ on.axis
+    hoop = rays.sense * on.tangents(around)
+    # of a fibre that pins hold, the angle that it turns by on its pin is what counts
+    leans = np.arccos(np.clip(ahead @ on.axis, 0.0, 1.0))
+    angle = np.where(held, np.arcsin(np.clip((ahead * hoop).sum(axis=1), 0.0, 1.0)), leans)
+    points = np.where(held[:, None], corner - (catch.radius * np.tan(0.25 * np.pi - 0.5 * angle))[:, None] * ahead,
+                      on.points(around, height))  # fmt: skip
+    aloft = np.maximum(np.round(place), 1.0).astype(np.int64)
+    steps = np.linalg.norm(np.diff(rays.points, axis=1), axis=2)
+    passed = np.concatenate([np.zeros((len(which), 1)), np.cumsum(steps, axis=1)], axis=1)
+    index = place.astype(np.int64)
+    row = np.arange(len(which))
+    before = passed[row, index] + (place - index) * steps[row, np.minimum(index, steps.shape[1] - 1)]
+    full = [np.array(values) for values in (crossing.around, crossing.height, crossing.angle, crossing.points)]
+    for values, new in zip(full, (around, height, angle, points), strict=True):
+        values[which] = new
+    n = len(crossing)
+    lift = Lift(
+        np.zeros(n, dtype=np.int64), full[3].copy(), full[3].copy(), np.zeros((n, 3)), np.zeros(n, dtype=bool),
+        np.zeros(n), np.zeros((n, 3)), np.zeros(n),
+    )  # fmt: skip
+    made = aloft, off, corner, ahead, held, before, on.normals(around, height), leans
+    for values, new in zip(vars(lift).values(), made, strict=True):
+        values[which] = new
+    at, high, lean, start = (frozen(values) for values in full)
+    return Legs(at, high, lean, start, crossing.sense, lift)
