@@ -78,7 +78,7 @@ class LaidLayer:
         if self.hoop is not None:
             return self.hoop.tracks
         assert self.paths is not None
-        return tracks(self.paths, None if self.closed is None else self.closed.hung)
+        return tracks(self.paths)
 
     @property
     def fibre_length(self) -> float:
@@ -134,9 +134,7 @@ class Ply:
 
 def helical_layer(paths: Paths, ply: Ply, lines: Levels, left_out: int = 0, strand: Strand | None = None) -> LaidLayer:
     """The layer of taut paths, deposited on their surface with these level lines, and the surface above it."""
-    closed = None if strand is None else strand.tail.layer
-    laid = tracks(paths, None if closed is None else closed.hung)
-    thickness, above = _deposited(paths.surface, [laid, *_bends(strand)], ply)
+    thickness, above = _deposited(paths.surface, [tracks(paths), *_bends(strand)], ply)
     stations = helix_stations(paths, lines, ply.laying.width)
     return LaidLayer(
         paths.surface, paths, None, ply.laying, thickness, above, stations, ply.friction, left_out, ply.roving, strand

@@ -74,11 +74,6 @@ class Hung:
     aloft: Bools
     before: tuple[float, float] = (0.0, 0.0)
 
-    def chosen(self, index: Ints | Bools) -> "Hung":
-        """Some of them."""
-        names = "points", "normal", "angle", "aloft"
-        return replace(self, **{name: getattr(self, name)[index] for name in names})
-
 
 def hung(paths: Paths, over: Sequence[tuple[Legs, int, int]]) -> Hung:
     """Paths as their fibres lie; over: legs with the end and the family that they are of.

@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 from meshwind.core.units import millimetres
 from meshwind.filament.band import Roving
 from meshwind.filament.levels import levels
-from meshwind.filament.lift import Hung
 from meshwind.filament.stations import Stations, helix_stations
 from meshwind.filament.thickness import Laying, Thickness, deposit, tracks
 from meshwind.path.paths import Paths, converged_or_all
@@ -50,17 +49,12 @@ class PlainLayer:
     thickness: Thickness | None = None
 
 
-def plain_layer(paths: Paths, band: Band, width: float, fibres: Hung | None = None) -> PlainLayer:
-    """The layer of the paths at rest, or of all where none is; width: of the band for the cover.
-
-    fibres: those of a closed layer, as they lie.
-    """
+def plain_layer(paths: Paths, band: Band, width: float) -> PlainLayer:
+    """The layer of the paths at rest, or of all where none is; width: of the band for the cover."""
     if not paths.surface.periodic:
         return PlainLayer(band)
-    rest = converged_or_all(paths.status)
-    laid = paths.subset(rest)
+    laid = paths.subset(converged_or_all(paths.status))
     stations = helix_stations(laid, levels(paths.surface), width)
     if band.width is None or band.thickness is None:
         return PlainLayer(band, stations)
-    where = tracks(laid, None if fibres is None else fibres.chosen(rest))
-    return PlainLayer(band, stations, deposit(paths.surface, where, Laying(band.width, band.thickness)))
+    return PlainLayer(band, stations, deposit(paths.surface, tracks(laid), Laying(band.width, band.thickness)))

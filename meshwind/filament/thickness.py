@@ -8,7 +8,6 @@ import numpy as np
 from meshwind.core.cast import Bools, Floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import TINY
-from meshwind.filament.lift import Hung
 from meshwind.layup.bands import cells_for
 from meshwind.layup.coverage import add_lengths, between_centres, cell_areas
 from meshwind.path.paths import Paths
@@ -82,16 +81,10 @@ class Tracks:
         return float(self.steps.sum())
 
 
-def tracks(paths: Paths, fibres: Hung | None = None) -> Tracks:
-    """Where paths lie; the steps of each add up to its `length`, which is more exact than its polyline.
-
-    fibres: how they lie where some hang between the part and what they turn on: nothing lies on the part there.
-    """
+def tracks(paths: Paths) -> Tracks:
+    """Where paths lie; the steps of each add up to its `length`, which is more exact than its polyline."""
     steps = np.linalg.norm(np.diff(paths.points, axis=1), axis=2)
     exact = paths.length / np.maximum(steps.sum(axis=1), TINY)
-    if fibres is not None and fibres.aloft.any():
-        steps = np.linalg.norm(np.diff(fibres.points, axis=1), axis=2)
-        steps[fibres.aloft[:, 1:] | fibres.aloft[:, :-1]] = 0.0
     return Tracks(paths.uv, frozen(steps * exact[:, None]), paths.gap)
 
 

@@ -129,8 +129,7 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: 
         layup = assess(laid, options.band_width)
         # a laminate has bands of its own
         band = band_plan(options, units) if layers is None else Band(options.band_width, units=units)
-        fibres = closed.hung if closed is not None and spaced is None else None
-        plain = plain_layer(laid, band, layup.coverage.width, fibres)
+        plain = plain_layer(laid, band, layup.coverage.width)
         notes = (*notes, *about_layup(layup), *about_band(band))
     source = part.source
     return Winding(
