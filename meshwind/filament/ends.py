@@ -1,6 +1,6 @@
 """The two ends of a layer: which turnaround suits each, and how long the dwell there must be."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -29,7 +29,9 @@ _SETTLED = 60
 ROOM = 1e-6
 """Turns of dwell beyond the least, so that round-off does not cost a place."""
 _PIN_WIDE, _PIN_HIGH = 1 / 6, 1 / 2
-"""Radius of a pin, and height of its middle over the rim, over the distance of the paths along the rim."""
+"""Radius of a pin, and height of its middle over the rim, over the distance of the paths along the rim, ..."""
+_PIN_HIGHER = 3 / 4
+"""... and the height where the prism stands up from the part, over which a span swings as it turns round its pin."""
 _SHAFT = 0.5
 """Radius of a shaft over the least distance of the hull from its axis."""
 _LONGEST_DWELL = 20.0
@@ -164,11 +166,13 @@ def choose_end(surface: Surface, end: int, plan: LayerPlan, word: str, scouts: P
     friction = float(held.table[:, -end].min())
     pitch = on.hull.perimeter / plan.paths
     pins = Pins(on, _PIN_HIGH * pitch, _PIN_WIDE * pitch, pitch)
+    if any(legs_over(pins, scouts, family).lift is not None for family in (1, -1)):
+        pins = replace(pins, height=_PIN_HIGHER * pitch)
     if word == "pins":
         return End(surface, v, on, pins)
     if word == "shaft":
         least = float(np.linalg.norm(on.hull.points, axis=1).min())
-        return End(surface, v, on, Shaft(on, _PIN_HIGH * pitch, _SHAFT * least))
+        return End(surface, v, on, Shaft(on, pins.height, _SHAFT * least))
     if word == "collar" and not friction > 0.0:
         raise BadInputError("a collar holds no fibre without friction; give friction, or pins or a shaft for this end")
     if friction > 0.0:
