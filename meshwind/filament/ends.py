@@ -96,8 +96,8 @@ class End:
         into, out = (legs_over(self.turnaround, paths, family) for family in families_)
         if np.isinf(into.height).any() or np.isinf(out.height).any():
             raise BadInputError(
-                f"the {self.turnaround.name} at the {'end' if self.edge.end else 'start'} stands up from the part, and "
-                "fibres that aim at its axis slide up on it without end; give pins or a shaft for this end"
+                f"the turnaround at the {'end' if self.edge.end else 'start'} ({self.turnaround.name}) stands up from "
+                "the part, and fibres that aim at its axis slide up on it without end; give pins or a shaft there"
             )
         at, off = (self.shares(paths, family) for family in families_)
         return Pairs(self, into, out, at, off)

@@ -21,6 +21,10 @@ from meshwind.path.winding_angle import winding_angle
 
 _FLUSH = np.sin(np.radians(0.1))
 """Sine of the angle by which a fibre must come in to the prism for a corner: a fit leaves less on a cylinder."""
+_SAME = 1e-9
+"""Heights that differ by less than this share of the hull's perimeter are the same."""
+_LEAST = 2
+"""Particles on the way from part to prism at least, so that one of them is in the air."""
 _HALVED = 48
 """Halvings in which the place where a fibre leaves is found: to round-off of the number of a particle."""
 
@@ -188,7 +192,9 @@ def _lifted(crossing: Legs, which: Ints, rays: _Rays, found: tuple[Edge, Catch, 
     on, catch, place = found
     off, ahead = rays.at(place)
     length = _met(on, off, ahead)
-    held = np.isfinite(length)
+    hits = np.isfinite(length)  # or grazes, but for round-off
+    level = (off - on.origin) @ on.axis + np.where(hits, length, 0.0) * (ahead @ on.axis)
+    held = hits & (level >= catch.height - _SAME * on.hull.perimeter)
     # a fibre that passes by touches the prism where its normal is square to the fibre
     way = ahead @ on.across.T
     turned = np.arctan2(-rays.sense * way[:, 0], rays.sense * way[:, 1])
@@ -202,10 +208,11 @@ def _lifted(crossing: Legs, which: Ints, rays: _Rays, found: tuple[Edge, Catch, 
     hoop = rays.sense * on.tangents(around)
     # of a fibre that pins hold, the angle that it turns by on its pin is what counts
     leans = np.arccos(np.clip(ahead @ on.axis, 0.0, 1.0))
-    angle = np.where(held, np.arcsin(np.clip((ahead * hoop).sum(axis=1), 0.0, 1.0)), leans)
+    angle = np.where(held, np.arcsin(np.clip((ahead * hoop).sum(axis=1), -1.0, 1.0)), leans)
     points = np.where(held[:, None], corner - (catch.radius * np.tan(0.25 * np.pi - 0.5 * angle))[:, None] * ahead,
                       on.points(around, height))  # fmt: skip
-    aloft = np.maximum(np.round(place), 1.0).astype(np.int64)
+    last = max((rays.points.shape[1] - 1) // 2, 1)
+    aloft = np.clip(np.round(place), min(_LEAST, last), last).astype(np.int64)
     steps = np.linalg.norm(np.diff(rays.points, axis=1), axis=2)
     passed = np.concatenate([np.zeros((len(which), 1)), np.cumsum(steps, axis=1)], axis=1)
     index = place.astype(np.int64)
