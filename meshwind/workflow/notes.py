@@ -50,8 +50,10 @@ _CAPS = (
 )
 _SAME_TURNS = 1e-9
 """Revolutions that differ by less are the same."""
-_STANDS_UP = 5.0
-"""Degrees by which a turnaround may stand up from the part at a rim without a warning."""
+_STANDS_UP = 1.0
+"""Degrees by which a turnaround stands up from the part at a rim that are worth a word."""
+_AWAY = 1e-3
+"""Share of the diagonal by which fibres may leave the part before a rim without a note."""
 _HOLLOW = 1e-3
 """Share of the diagonal by which a rim may be hollow without a note."""
 _HELD = 0.2
@@ -170,13 +172,14 @@ def about_filament(layer: ClosedLayer, caps: tuple[bool, bool], units: str = "")
                     True,
                 )
             )
-        standing = -np.degrees(turn.edge.crease[0])
-        if standing > _STANDS_UP:
+        before = layer.hung.before[turn.edge.end]
+        if before > _AWAY * layer.paths.surface.size:
+            standing = -np.degrees(turn.edge.crease[0])
+            up = f" by up to {standing:.0f} degrees" if standing > _STANDS_UP else ""
             notes.append(
                 Note(
-                    f"at the {name} the rim flares: what continues it stands up from the part by up to {standing:.0f} "
-                    "degrees, and fibres lift off there; leave the flare off the mesh if that matters",
-                    True,
+                    f"at the {name} the {turn.name} stand{'' if turn.name == 'pins' else 's'} up from the part{up}: "
+                    f"fibres leave it up to {quantity(before, units, 3)} before the rim and go straight over"
                 )
             )
         if turn.edge.hollow > _HOLLOW * layer.paths.surface.size:

@@ -1,0 +1,177 @@
+"""Fibres that leave the part before a rim that its prism stands up from: closed forms on a cone, and what a way must be."""
+
+from math import atan2, cos, hypot, pi, sin, sqrt
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import meshwind as mw
+from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
+from meshwind.filament.closing import ClosedLayer, close_layer
+from meshwind.filament.collar_turn import Collar
+from meshwind.filament.course import Kind
+from meshwind.filament.edge import Edge, edge
+from meshwind.filament.ends import LayerPlan
+from meshwind.filament.filament import filaments_of
+from meshwind.filament.lift import legs_over
+from meshwind.filament.pin_turn import Pins
+from meshwind.program.faults import SPAN
+from meshwind.program.machine import read_machine
+from meshwind.program.program import Work, program
+from meshwind.surface import Surface
+from meshwind.surface.interpolate import interpolate
+
+property_test = settings(max_examples=10, deadline=None, derandomize=True, database=None)
+WIDE, NARROW, HIGH, TURNS = 98.0, 54.0, 120.0, 0.35
+
+
+def cone(turned: bool) -> Surface:
+    """A cone that narrows towards its end, or its start."""
+
+    def place(u: Floats, v: Floats) -> Floats:
+        t, w = 2.0 * pi * u, 1.0 - v if turned else v
+        radius = WIDE + (NARROW - WIDE) * w
+        return np.stack([radius * np.cos(t), radius * np.sin(t), HIGH * v], axis=-1)
+
+    return interpolate(place, (96, 8))
+
+
+def wound(surface: Surface, count: int, turns: float, particles: int = 401) -> mw.Paths:
+    ends = mw.families(surface, paths=count, revolutions=turns)
+    return mw.solve(surface, ends.start, ends.end, family=ends.family, particles=particles)
+
+
+def from_axis(on: Edge, points: Floats) -> Floats:
+    return np.asarray(np.hypot(*((points - on.origin) @ on.across.T).T))
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_fibre_on_a_cone_goes_over_to_a_collar(turned: bool) -> None:
+    """With c = r sin(a) a ray is c / sqrt(sin^2 b + c^2 cos^2 b / r^2) from the axis, b being half the cone's angle."""
+    surface = cone(turned)
+    paths = wound(surface, 3, TURNS)
+    slant = hypot(HIGH, WIDE - NARROW)
+    sine, cosine = (WIDE - NARROW) / slant, HIGH / slant
+    far, near, between = WIDE / sine, NARROW / sine, 2.0 * pi * TURNS * sine
+    c = far * near * sin(between) / sqrt(far**2 + near**2 - 2.0 * far * near * cos(between)) * sine
+    radius = NARROW * c * cosine / sqrt(c**2 - (NARROW * sine) ** 2)
+    across = sqrt(sine**2 + (c * cosine / radius) ** 2)
+    along = cosine * sqrt(1.0 - (c / radius) ** 2)
+    high = sqrt(radius**2 - NARROW**2) * along / across - (radius - NARROW) * cosine / sine
+    on = edge(surface, 0.0 if turned else 1.0)
+    half = atan2(sine, cosine)
+    assert on.crease == pytest.approx((-half, -half), abs=1e-5)
+    for family in (1, -1):
+        legs = legs_over(Collar(on, 0.2), paths, family)
+        assert legs.lift is not None
+        assert from_axis(on, legs.lift.off) == pytest.approx(radius, rel=1e-4)
+        assert from_axis(on, legs.lift.corner) == pytest.approx(NARROW, rel=1e-5)
+        assert legs.height == pytest.approx(high, rel=2e-3)
+        assert legs.angle == pytest.approx(atan2(across, along), abs=1e-4)
+        # the fibres keep their distances round the axis, by which they land as far from where they would cross the rim
+        assert np.diff(np.sort(np.mod(legs.around, 2.0 * pi * NARROW))) == pytest.approx(
+            2.0 * pi * NARROW / 3, rel=1e-4
+        )
+        # pins below that hold them: they come straight along the cone to where these are
+        low = legs_over(Pins(on, 0.4 * high, 0.02 * high, 20.0), paths, family)
+        assert low.lift is not None and low.lift.held.all()
+        assert (low.lift.corner - on.origin) @ on.axis == pytest.approx(0.42 * high, rel=1e-4)
+        assert from_axis(on, low.lift.corner) == pytest.approx(NARROW, rel=1e-5)
+        place, ahead = low.lift.off - on.origin, low.lift.ahead
+        out = np.stack([place @ each for each in on.across], axis=1)
+        out /= np.linalg.norm(out, axis=1, keepdims=True)
+        normal = cosine * out @ on.across + sine * on.axis
+        assert (ahead * normal).sum(axis=1) == pytest.approx(0.0, abs=1e-4)
+        round_ = np.stack([-out[:, 1], out[:, 0]], axis=1) @ on.across * low.sense
+        assert from_axis(on, low.lift.off) * (ahead * round_).sum(axis=1) == pytest.approx(c, rel=1e-4)
+    # over the other rim the fibre presses on the edge
+    other = edge(surface, 1.0 if turned else 0.0)
+    assert other.crease == pytest.approx((half, half), abs=1e-5)
+    assert legs_over(Collar(other, 0.2), paths, 1).lift is None
+
+
+def barrel(bulge: float, flat: float, lean: float) -> Surface:
+    """A barrel with elliptic sections whose rims lie off its axis: prisms stand up from it at both."""
+
+    def place(u: Floats, v: Floats) -> Floats:
+        t, z = 2.0 * pi * u, 2.0 * v - 1.0
+        radius = 1.0 - bulge * z**2
+        return np.stack(
+            [(1.0 + flat) * radius * np.cos(t) + lean * (1.0 - z**2), (1.0 - flat) * radius * np.sin(t), 1.5 * z],
+            axis=-1,
+        )
+
+    return interpolate(place, (96, 32))
+
+
+@property_test
+@given(
+    st.floats(0.15, 0.5), st.floats(0.0, 0.25), st.floats(-0.05, 0.05), st.integers(3, 9), st.floats(0.25, 0.6),
+    st.sampled_from(["pins", "shaft", "collar"]),
+)  # fmt: skip
+def test_ways_touch_the_part_and_the_prism(
+    bulge: float, flat: float, lean: float, count: int, turns: float, kind: str
+) -> None:
+    surface = barrel(bulge, flat, lean)
+    try:
+        layer = close_layer(surface, LayerPlan(count, turns, 0.4, 201, (kind, kind)))
+    except BadInputError as refusal:
+        assert "turnaround" in str(refusal)
+        return
+    filament, paths = layer.filaments[0], layer.paths
+    assert np.linalg.norm(filament.points[0] - filament.points[-1]) <= 1e-9 * surface.size
+    for turn in layer.turnarounds:
+        for family in (1, -1):
+            legs = legs_over(turn, paths, family)  # type: ignore[arg-type]
+            assert legs.lift is not None
+            lift, rows, end = legs.lift, np.flatnonzero(paths.family == family), turn.edge.end
+            assert (lift.aloft > 0).all()
+            leaves = paths.points.shape[1] - 1 - lift.aloft if end else lift.aloft
+            # it leaves along the part, between two particles, and touches the prism where no pins hold it
+            feet = surface.normals(paths.uv[rows, leaves])
+            assert np.abs((lift.ahead * feet).sum(axis=1)).max() < 0.08
+            touch = (lift.ahead * turn.edge.normals(legs.around, legs.height)).sum(axis=1)
+            assert np.abs(touch[~lift.held]).max(initial=0.0) < 5e-3
+            assert (touch[lift.held] < 0.0).all()
+            assert (legs.height >= turn.edge.lowest - 1e-9).all()
+            # nothing of it is inside of the prism, or of the part
+            share = np.linspace(0.0, 1.0, 9)[:, None, None]
+            way = ((1.0 - share) * lift.off + share * lift.corner).reshape(-1, 3)
+            z = way[:, 2] / 1.5
+            wide = np.hypot((way[:, 0] - lean * (1.0 - z**2)) / (1.0 + flat), way[:, 1] / (1.0 - flat))
+            assert (wide - np.where(np.abs(z) <= 1.0, 1.0 - bulge * z**2, 1.0 - bulge)).min() > -2e-4
+    # each path is in the filament once, and its length that of its parts
+    assert sorted(set(filament.path[filament.path >= 0].tolist())) == list(range(len(paths)))
+    kinds = [
+        float(np.linalg.norm(np.diff(filament.points, axis=0), axis=1)[filament.kind[1:] == k].sum()) for k in Kind
+    ]
+    assert layer.length == pytest.approx(sum(kinds), rel=1e-12)
+    hung = filament.kind == Kind.BRIDGE
+    assert hung.any() and np.isnan(filament.slip[hung]).all()
+    assert (filament.kind[filament.path >= 0] != Kind.DWELL).all()
+
+
+def program_of(layer: ClosedLayer) -> int:
+    """Blocks of the program of a layer at which the free span meets the part."""
+    surface = layer.paths.surface
+    made = program(Work(tuple(filaments_of(layer)), surface, surface.size), read_machine())
+    return sum(fault.kind == SPAN for fault in made.faults)
+
+
+def test_the_span_is_clear_in_turnarounds_on_domes() -> None:
+    dome = mw.shapes.sphere_band(60.0, polar0=0.6, polar1=pi - 0.6, spans=(96, 48))
+    for turn, turns in (("pins", 0.45), ("shaft", 0.45), ("collar", 0.45)):
+        layer = close_layer(dome, LayerPlan(7, turns, 0.3, 201, (turn, turn)))
+        assert program_of(layer) == 0, turn
+        assert min(layer.hung.before) > 1.0
+
+
+def test_a_fibre_that_aims_at_the_axis_of_a_collar_is_refused() -> None:
+    dome = mw.shapes.sphere_band(60.0, polar0=0.6, polar1=pi - 0.6, spans=(96, 48))
+    with pytest.raises(BadInputError, match="slide up on it without end; give pins or a shaft there"):
+        close_layer(dome, LayerPlan(5, 1e-3, 0.3, 101, ("pins", "collar")))
+    layer = close_layer(dome, LayerPlan(5, 0.05, 0.3, 101))
+    assert [each.name for each in layer.turnarounds] == ["pins", "pins"]
