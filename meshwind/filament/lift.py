@@ -21,6 +21,8 @@ from meshwind.path.winding_angle import winding_angle
 
 _FLUSH = np.sin(np.radians(0.1))
 """Sine of the angle by which a fibre must come in to the prism for a corner: a fit leaves less on a cylinder."""
+_ENDLESS = 10.0
+"""Height over the rim, in perimeters of the hull, up to which no collar is made: above it a fibre aims at the axis."""
 _SAME = 1e-9
 """Heights that differ by less than this share of the hull's perimeter are the same."""
 _LEAST = 2
@@ -47,13 +49,12 @@ def legs_over(turn: Turnaround, paths: Paths, family: int) -> Legs:
     rays = rays.chosen(which)
     last = (paths.points.shape[1] - 1) / 2.0  # the other end of a path has the other half to leave from
     place, found = _first(rays, on, catch, last)
-    slides = which[~found] if np.isinf(catch.height) else which[:0]
-    if len(slides):
-        height = np.array(crossing.height)
-        height[slides] = np.inf
-        crossing = replace(crossing, height=frozen(height))
-    which, rays, place = which[found], rays.chosen(found), place[found]
-    return _lifted(crossing, which, rays, (on, catch, place)) if len(which) else crossing
+    legs_ = _lifted(crossing, which[found], rays.chosen(found), (on, catch, place[found])) if found.any() else crossing
+    if np.isfinite(catch.height):
+        return legs_
+    height = np.where(legs_.height > on.highest + _ENDLESS * on.hull.perimeter, np.inf, legs_.height)
+    height[which[~found]] = np.inf
+    return replace(legs_, height=frozen(height))
 
 
 @dataclass(frozen=True)
