@@ -11,6 +11,8 @@ from scipy.interpolate import BSpline
 from meshwind.path import solve
 from meshwind.surface import Surface, shapes
 from meshwind.surface.evaluate import DEGREE
+from meshwind.surface.grid import parameter_grid
+from meshwind.surface.interpolate import sites, through
 
 
 @pytest.mark.parametrize("periodic", [True, False])
@@ -26,6 +28,16 @@ def test_frames_agree_with_scipy(periodic: bool) -> None:
         left = np.array([BSpline(knots_u, surface.net, DEGREE).derivative(a)(u) for u in uv[:, 0]])
         want = np.array([BSpline(knots_v, n, DEGREE).derivative(b)(v) for n, v in zip(left, uv[:, 1], strict=True)])
         assert got[:, row] == pytest.approx(want, rel=1e-11, abs=1e-11 * np.abs(want).max())
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+@pytest.mark.parametrize("spans", [(4, 3), (5, 7), (128, 20)])
+def test_a_net_comes_back_from_its_values(spans: tuple[int, int], periodic: bool) -> None:
+    """Interpolation is a projection: the values of a spline give its control points, to round-off."""
+    net = np.random.default_rng(8).normal(size=(spans[0] + (0 if periodic else DEGREE), spans[1] + DEGREE, 3))
+    u, v = sites(spans[0], periodic), sites(spans[1], False)
+    values = Surface(net, periodic).points(parameter_grid(u, v)).reshape(len(u), len(v), 3)
+    assert through(values, spans, periodic).control_points == pytest.approx(net, abs=1e-12)
 
 
 PLAIN = """

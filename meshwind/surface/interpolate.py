@@ -5,6 +5,7 @@ from typing import TypeAlias
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
+from scipy.linalg import solve_circulant
 
 from meshwind.core.cast import Floats
 from meshwind.surface.evaluate import DEGREE
@@ -35,9 +36,12 @@ def sites(spans: int, periodic: bool) -> Floats:
 
 
 def _control(values: Floats, sites: Floats, spans: int, periodic: bool) -> Floats:
-    if periodic:
-        closed = np.concatenate([values, values[:1]])
-        spline = make_interp_spline(np.r_[sites, 1.0], closed, DEGREE, bc_type="periodic")
-        return np.asarray(spline.c[:spans])
-    knots = np.arange(-DEGREE, spans + DEGREE + 1) / spans
-    return np.asarray(make_interp_spline(sites, values, DEGREE, t=knots).c)
+    """The control points (m, ...) of splines that have the values (p, ...) at the sites."""
+    if not periodic:
+        knots = np.arange(-DEGREE, spans + DEGREE + 1) / spans
+        return np.asarray(make_interp_spline(sites, values, DEGREE, t=knots).c)
+    # SciPy solves periodic splines a column at a time; the value at knot k is (c[k] + 4 c[k + 1] + c[k + 2]) / 6
+    weights = np.zeros(spans)
+    np.add.at(weights, np.array([0, 1, -1]) % spans, np.array([4.0, 1.0, 1.0]) / 6.0)
+    found = np.roll(solve_circulant(weights, values.reshape(spans, -1)), 1, axis=0)
+    return np.asarray(found.reshape(values.shape))
