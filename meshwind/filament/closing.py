@@ -5,28 +5,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from meshwind.core.cast import Bools, Floats, Ints, frozen
-from meshwind.core.errors import BadInputError
+from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.filament.cap_turn import Cap, ends_with_caps, joined_on_caps, passes_on_caps
 from meshwind.filament.course import Course, Courses, Kind, in_a_row, runs
-from meshwind.filament.ends import CAP, ROOM, End, LayerPlan, Pairs, choose_end
+from meshwind.filament.ends import CAP, LayerPlan, Pairs
 from meshwind.filament.joining import Joining, join, passes
 from meshwind.filament.lift import Hung, hung
-from meshwind.filament.pattern import Pattern, nearest_pattern, patterns
+from meshwind.filament.pattern import Pattern
+from meshwind.filament.settling import lay, settle
 from meshwind.filament.turnaround import Turnaround
-from meshwind.path import Paths, Status, solve
-from meshwind.planning.families import families
+from meshwind.path import Paths
 from meshwind.surface.rims import rim
 from meshwind.surface.surface import Surface
-
-_SCOUTS = 12
-"""Paths per family from which the turnarounds are chosen and their dwell is planned."""
-_SETTLED_IN = 8
-"""Rounds in which revolutions and dwells are to suit one another."""
-_FAR = 1.0
-"""Revolutions times the circuits by which those that close may differ from those asked for; they are 1/2 apart."""
-_CONTRACTS = 0.95
-"""Share of a shortage of dwell that may be left after a round for the secant to be taken."""
 
 
 @dataclass(frozen=True)
@@ -101,37 +91,36 @@ def close_layer(surface: Surface, plan: LayerPlan) -> ClosedLayer:
     """
     if CAP in plan.turns:
         return _on_caps(surface, plan)
-    scouts, _ = _at_rest(_solved(surface, plan, min(plan.paths, _SCOUTS), plan.revolutions, 0.0))
-    ends = [choose_end(surface, end, plan, word, scouts) for end, word in enumerate(plan.turns)]
-    planned = _planned(surface, plan, ends, scouts)
-    kept, left_out = _at_rest(_solved(surface, plan, plan.paths, planned.revolutions, -planned.dwells[0]))
-    pairs = [end.pairs(kept) for end in ends]
+    settled = settle(surface, plan)
+    kept, left_out = lay(surface, settled)
+    pairs = [end.pairs(kept) for end in settled.ends]
     joining = _joined(pairs)
     fibres = _hung(kept, pairs)
     filaments = _filaments(_laid(kept, fibres), kept.family, joining, _turns(pairs, joining))
-    turnarounds = (ends[0].turnaround, ends[1].turnaround)
-    return ClosedLayer(plan, planned.revolutions, kept, fibres, joining, turnarounds, filaments, left_out)
+    turnarounds = (settled.ends[0].turnaround, settled.ends[1].turnaround)
+    plan = replace(plan, paths=settled.plan.paths)
+    return ClosedLayer(plan, settled.revolutions, kept, fibres, joining, turnarounds, filaments, left_out)
 
 
 def _on_caps(surface: Surface, plan: LayerPlan) -> ClosedLayer:
     """The layer where one end or both turn on a cap."""
-    laid = passes_on_caps(surface, plan)
-    ends = ends_with_caps(surface, plan, laid)
-    pairs = [None if isinstance(end, Cap) else end.pairs(laid.paths) for end in ends]
-    joining = joined_on_caps(laid) if laid.pattern is not None else _joined_at_rim(surface, laid.paths, pairs)
-    fibres = _hung(laid.paths, pairs)
-    filaments = _filaments(_laid(laid.paths, fibres), laid.paths.family, joining, _turns(pairs, joining))
+    over = passes_on_caps(surface, plan)
+    ends = ends_with_caps(surface, plan, over)
+    pairs = [None if isinstance(end, Cap) else end.pairs(over.paths) for end in ends]
+    joining = joined_on_caps(over) if over.pattern is not None else _joined_at_rim(surface, over.paths, pairs)
+    fibres = _hung(over.paths, pairs)
+    filaments = _filaments(_laid(over.paths, fibres), over.paths.family, joining, _turns(pairs, joining))
     start, end = (end if isinstance(end, Cap) else end.turnaround for end in ends)
-    turned = np.abs(laid.paths.uv[:, -1, 0] - laid.paths.uv[:, 0, 0]).mean()
+    turned = np.abs(over.paths.uv[:, -1, 0] - over.paths.uv[:, 0, 0]).mean()
     return ClosedLayer(
         plan,
         float(turned),
-        laid.paths,
+        over.paths,
         fibres,
         joining,
         (start, end),
         filaments,
-        words=laid.words.removeprefix(f"{joining.pattern.words}; "),
+        words=over.words.removeprefix(f"{joining.pattern.words}; "),
     )
 
 
@@ -147,81 +136,6 @@ def _joined_at_rim(surface: Surface, paths: Paths, pairs: list[Pairs | None]) ->
     (start, home), (end, away) = at
     dwells = [None if each is None else each.surplus for each in pairs]
     return join(passes(start, end), passes(away, home), end_dwell=dwells[1], start_dwell=dwells[0])
-
-
-@dataclass(frozen=True)
-class _Planned:
-    """A pattern of N circuits in so many turns, and the dwells in turns at the start and at the end."""
-
-    plan: LayerPlan
-    turns: int
-    dwells: tuple[float, float]
-
-    @property
-    def revolutions(self) -> float:
-        """Turns of a path from end to end."""
-        return 0.5 * (self.turns / self.plan.paths - sum(self.dwells))
-
-    @property
-    def near(self) -> bool:
-        """Whether the revolutions are next to those that were asked for."""
-        return self.revolutions >= 0.0 and abs(self.revolutions - self.plan.revolutions) <= _FAR / self.plan.paths
-
-
-def _as_asked(plan: LayerPlan, needed: list[float]) -> _Planned:
-    """The nearest pattern with the revolutions that were asked for: the filament waits as hoops until it closes."""
-    pattern = patterns(plan.paths, 2.0 * plan.revolutions + sum(needed))[0]
-    more = 0.5 * pattern.dwell
-    # round-off must not leave fewer revolutions than none
-    return _Planned(
-        plan, pattern.turns, (needed[0] + more, min(needed[1] + more, pattern.turns / plan.paths - needed[0] - more))
-    )
-
-
-def _planned(surface: Surface, plan: LayerPlan, ends: list[End], scouts: Paths) -> _Planned:
-    """The pattern next to what was asked for, with dwells that are long enough at the revolutions that it leaves.
-
-    Longer dwells leave fewer revolutions, with which collars need still longer ones: the secant of the two gives where
-    they meet.  Where they do not, the revolutions stay, and the filament waits as hoops until it closes.
-    """
-    needed = [end.pairs(scouts).least_dwell() for end in ends]
-    pattern = nearest_pattern(plan.paths, 2.0 * plan.revolutions + sum(needed))
-    planned = _Planned(plan, pattern.turns, (needed[0], needed[1]))
-    short = np.inf
-    for _ in range(_SETTLED_IN):
-        if not planned.near:
-            break
-        tried, _ = _at_rest(_solved(surface, plan, len(scouts) // 2, planned.revolutions, -planned.dwells[0]))
-        now = np.array([end.pairs(tried).least_dwell() for end in ends]) - planned.dwells
-        if now.max() <= ROOM:
-            return planned
-        factor = 1.0 / (1.0 - now.sum() / short) if now.sum() < _CONTRACTS * short else 1.0
-        short = now.sum()
-        start, end = np.array(planned.dwells) + factor * now
-        planned = replace(planned, dwells=(float(start), float(end)))
-    return _as_asked(plan, needed)
-
-
-def _solved(surface: Surface, plan: LayerPlan, count: int, revolutions: float, phase: float) -> Paths:
-    ends = families(surface, count, revolutions, phase=phase, between=plan.between)
-    return solve(surface, ends.start, ends.end, family=ends.family, particles=plan.particles, friction=plan.friction)
-
-
-def _at_rest(paths: Paths) -> tuple[Paths, int]:
-    """The paths in equilibrium, evened to as many of each family, and how many are left out."""
-    rest: Bools = paths.status == Status.CONVERGED
-    counts = [int((rest & (paths.family == family)).sum()) for family in (1, -1)]
-    if not min(counts):
-        raise BadInputError(
-            "no filament can be wound, as no path of a family is at rest; " + paths.advice(int(np.argmin(rest)))
-        )
-    keep = np.flatnonzero(rest)
-    richer = 1 if counts[0] > counts[1] else -1
-    mine = keep[paths.family[keep] == richer]
-    spare = abs(counts[0] - counts[1])
-    out = mine[np.linspace(0, len(mine) - 1, spare).round().astype(np.int64)] if spare else mine[:0]
-    keep = np.setdiff1d(keep, out)
-    return (paths if len(keep) == len(paths) else paths.subset(keep)), len(paths) - len(keep)
 
 
 def _joined(pairs: list[Pairs]) -> Joining:

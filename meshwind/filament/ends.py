@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -40,6 +41,13 @@ _LONGEST_COLLAR = 1.0
 """Collar over the rim's mean diameter, above which pins are taken instead."""
 
 
+class Wish(NamedTuple):
+    """The winding angle that a layer is to have: the median over its paths on the level line v, in radians."""
+
+    v: float
+    wanted: float
+
+
 @dataclass(frozen=True)
 class LayerPlan:
     """What a closed layer is to be.
@@ -61,6 +69,10 @@ class LayerPlan:
         Distance at which fibres pass the opening of a cap, in the surface's units.
     between : tuple of float, default (0, 1)
         The v of the lines that the paths start and end on.  Within the part they turn beyond these lines, on the part.
+    grows : bool, default False
+        Whether there may be a few paths more where they close nearer to the revolutions.
+    angle : Wish or None, default None
+        The angle that the revolutions are for, and are moved for as well; not on caps.
     """
 
     paths: int
@@ -70,6 +82,8 @@ class LayerPlan:
     turns: tuple[str, str] = (AUTO, AUTO)
     clearance: float = 0.0
     between: tuple[float, float] = (0.0, 1.0)
+    grows: bool = False
+    angle: Wish | None = None
 
 
 @dataclass(frozen=True)

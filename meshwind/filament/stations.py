@@ -12,6 +12,7 @@ from meshwind.path.paths import Paths
 from meshwind.path.winding_angle import winding_angle
 from meshwind.surface.evaluate import SU
 from meshwind.surface.grid import rings
+from meshwind.surface.rims import rim
 
 STATIONS = 65
 """Level lines, evenly spaced in v, on which figures along the part are given."""
@@ -71,6 +72,21 @@ def _passing(paths: Paths, values: Floats, v: Floats) -> Floats:
     found = np.interp(np.clip(v, -1.0, 2.0)[None] + apart, (height + apart).ravel(), values.ravel())
     passed = (v[None] >= height[:, :1] - 1e-12) & (v[None] <= height[:, -1:] + 1e-12)
     return np.asarray(np.where(passed, found, np.nan))
+
+
+def median_angle(paths: Paths, v: float, count: int, phase: float = 0.0) -> float:
+    """Median winding angle in radians, on the level line v, of `count` paths a family, spread and ahead as `families`.
+
+    It is that of a smooth function of where paths start through those that are known: with the revolutions it changes
+    evenly, where the median of a few leaps from one path to the next.  NaN where none passes.
+    """
+    found, start = angles_at(paths, np.array([v]))[:, 0], paths.uv[:, 0]
+    shares, line, medians = np.arange(count) / count, rim(paths.surface, float(start[0, 1])), []
+    for family, ahead in ((1, 0.0), (-1, phase)):
+        mine = (paths.family == family) & np.isfinite(found)
+        if mine.any():
+            medians.append(_around(start[mine, 0], found[mine], np.mod(line.parameters(shares + ahead), 1.0)))
+    return float(np.median(np.concatenate(medians))) if medians else np.nan
 
 
 def to_cover(paths: Paths, v: Floats) -> tuple[Floats, Ints]:

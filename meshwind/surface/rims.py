@@ -44,7 +44,13 @@ class Rim:
 
 
 def rim(surface: Surface, v: float) -> Rim:
-    """The ring of a surface at v."""
+    """The ring of a surface at v, measured once."""
+    if v not in surface.rims:
+        surface.rims[v] = _measured(surface, v)
+    return surface.rims[v]
+
+
+def _measured(surface: Surface, v: float) -> Rim:
     u = np.linspace(0.0, 1.0, _SAMPLES * surface.spans[0] + 1)
     speed = np.linalg.norm(surface.frames(np.stack([u, np.full_like(u, v)], axis=1))[:, SU], axis=1)
     speed[-1] = speed[0]

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +14,9 @@ from meshwind.core.vectors import unit
 from meshwind.surface import evaluate, tree
 from meshwind.surface.evaluate import DEGREE, SU, SV, Spline
 from meshwind.surface.tree import NO_TREE, Body, SearchTree
+
+if TYPE_CHECKING:
+    from meshwind.surface.rims import Rim
 
 _LEAST, _MOST = 1e-50, 1e50
 """Sizes of a surface: fourth powers of lengths beside them overflow, or underflow, where u and v are found."""
@@ -154,6 +158,11 @@ class Surface(PicklableRecord):
     def spline(self) -> Spline:
         """The surface as the evaluation kernels take it."""
         return Spline(self.net, self.periodic)
+
+    @cached_property
+    def rims(self) -> "dict[float, Rim]":
+        """The rings that `rims.rim` has measured, by v."""
+        return {}
 
     @cached_property
     def tree(self) -> SearchTree:

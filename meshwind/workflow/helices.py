@@ -5,29 +5,34 @@ from typing import NamedTuple
 
 import numpy as np
 
+from meshwind.core.cast import Bools
+from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
+from meshwind.filament.ends import Wish
 from meshwind.filament.levels import Levels, station
-from meshwind.filament.stations import angles_at, circuits_to_cover
+from meshwind.filament.stations import angles_at, circuits_to_cover, median_angle
 from meshwind.path import Paths, Status, solve
 from meshwind.path.friction import Friction
 from meshwind.planning.families import families
 from meshwind.surface import Surface
+from meshwind.workflow.angle_search import back_to_held, hunt, last_held
 from meshwind.workflow.notes import Note
 
 _TRIAL_PATHS, _TRIAL_PARTICLES = 24, 101
-"""Paths a family at most, and their particles, with which revolutions and the number of paths are found."""
+"""Paths a family at most, and their particles, with which revolutions and the number of paths are found, ..."""
+_ROUGH_PATHS, _ROUGH_PARTICLES = 8, 51
+"""... and those that the search begins with, at about a tenth of the work."""
 _COUNTED_PATHS = 96
 """Paths a family with which those that cover are counted: on the sample parts within 0.03 % of as many as one likes."""
-_TRIALS = 30
-"""Trials for an angle; each brings it nearer by a factor of about ten on smooth parts."""
-_SAME_TURNS = 1e-3
-"""Share by which revolutions differ where a search between them ends."""
-_HALVINGS = 10
-"""Halvings that find where the first path slides off: to a thousandth of the revolutions."""
+_FURTHEST = 4.0
+"""Revolutions over those of the angle on a tube as long and as wide, beyond which none are tried.
+
+A fibre that needs more winds on and on at a narrow place, and hardly gets steeper at the widest.
+"""
 _AS_WIDE = 1e-6
 """Share by which level lines may be shorter than the longest and still count as the widest place."""
-_NEAR = np.radians(0.05)
-"""How near an angle is to be met, ..."""
+_NEAR, _ROUGHLY = np.radians(0.05), np.radians(0.2)
+"""How near an angle is to be met in the end and by the search's beginning, ..."""
 _ENOUGH = np.radians(0.5)
 """... and how near without a warning, where paths that come to rest or not make the median leap."""
 
@@ -49,6 +54,12 @@ class Turned:
     def met(self) -> bool:
         """Whether the angle is met."""
         return abs(self.reached - self.asked) <= _ENOUGH
+
+    @property
+    def wish(self) -> Wish | None:
+        """The angle that a filament is to have; none where fibres run along the part."""
+        wanted = self.asked if self.met else self.reached
+        return Wish(self.v, wanted) if self.revolutions > 0.0 and wanted > 0.0 else None
 
     @property
     def shortfall(self) -> str:
@@ -82,22 +93,23 @@ class Turned:
 
 
 class Settled(NamedTuple):
-    """Paths a family, their revolutions, and what is wound instead of an angle that is out of reach, or ""."""
+    """Paths a family, their revolutions, what is wound instead of an angle out of reach, or "", and the angle."""
 
     paths: int
     revolutions: float
     shortfall: str
+    wish: Wish | None
 
 
 @dataclass(frozen=True)
 class Helices:
-    """The helical paths of a layer, with any number of them and any revolutions; paths: of trials, a family."""
+    """The helical paths of a layer, with any number of them and any revolutions; paths: those of the angle."""
 
     surface: Surface
     between: tuple[float, float]
     friction: float | Friction
     lines: Levels
-    paths: int = _TRIAL_PATHS
+    paths: int = _COUNTED_PATHS
 
     def laid(self, paths: int, revolutions: float, particles: int | None) -> Paths:
         """Lay both families."""
@@ -106,9 +118,9 @@ class Helices:
             self.surface, ends.start, ends.end, family=ends.family, particles=particles, friction=self.friction
         )
 
-    def tried(self, revolutions: float, paths: int) -> Paths | None:
+    def tried(self, revolutions: float, paths: int, particles: int = _TRIAL_PARTICLES) -> Paths | None:
         """Trial paths, so many a family, or None where none of them comes to rest."""
-        laid = self.laid(paths, revolutions, _TRIAL_PARTICLES)
+        laid = self.laid(paths, revolutions, particles)
         held = laid.status == Status.CONVERGED
         return laid.subset(held) if held.any() else None
 
@@ -120,7 +132,7 @@ class Helices:
         turns = revolutions if turned is None else turned.revolutions
         assert isinstance(turns, float)
         count = self.circuits(turns, width) if isinstance(paths, str) else paths
-        return Settled(count, turns, "" if turned is None else turned.shortfall)
+        return Settled(count, turns, *(("", None) if turned is None else (turned.shortfall, turned.wish)))
 
     def circuits(self, revolutions: float, width: float) -> int:
         """Paths a family that cover the part with a band of this width."""
@@ -132,59 +144,62 @@ class Helices:
     def turned_to(self, angle: float, place: str | None = None) -> Turned:
         """Revolutions at which the median winding angle is as wanted, in radians, or as near as the part allows.
 
-        place: where, as `station` reads it, or the widest place of the layer: of several the one nearest to its middle.
+        place: where, as `station` reads it, or the widest place of the layer.  A few paths of few particles come first,
+        and then those that tell the angle, most often once or twice.
         Raises BadInputError where no path comes to rest at all.
         """
+        v = self._widest if place is None else station(place, self.lines)
+        tube = self._on_a_tube(angle)
+        most = _FURTHEST * tube
+
+        def measured(turns: float, paths: int, particles: int) -> float | None:
+            trial = self.tried(turns, min(self.paths, paths), particles)
+            return None if trial is None else median_angle(trial, v, self.paths)
+
+        found = hunt(lambda turns: measured(turns, _ROUGH_PATHS, _ROUGH_PARTICLES), angle, tube, _ROUGHLY, most)
+        if abs(found.reached - angle) <= _ENOUGH:
+            start = found.revolutions
+            found = hunt(lambda turns: measured(turns, _TRIAL_PATHS, _TRIAL_PARTICLES), angle, start, _NEAR, most)
+        if not np.isfinite(found.reached):
+            raise BadInputError(f"no path comes to rest at {found.lost:.4g} revolutions and below; give more friction")
+        turned = Turned(found.revolutions, v, angle, found.reached, found.lost)
+        return turned if turned.met else self._steepest(turned)
+
+    @property
+    def _inside(self) -> Bools:
+        """Which of the level lines (k,) the layer passes; at least those about its middle."""
         lines, (low, high) = self.lines, self.between
-        inside = (lines.v >= low) & (lines.v <= high)
-        inside |= np.abs(lines.v - 0.5 * (low + high)) <= 1.0 / len(lines.v)
-        longest = lines.length[inside].max() * (1.0 - _AS_WIDE)
-        wide = lines.v[inside][lines.length[inside] >= longest]
-        widest = wide[int(np.argmin(np.abs(wide - 0.5 * (low + high))))]
-        at = np.array([widest if place is None else station(place, lines)])
-        along = float(np.interp(high, lines.v, lines.mean) - np.interp(low, lines.v, lines.mean))
-        turns = float(np.tan(angle) * along / float(lines.length[inside].mean()))
-        low_turns, high_turns, lost = 0.0, np.inf, np.inf
-        best, reached = 0.0, -np.inf
-        for _ in range(_TRIALS):
-            trial = self.tried(turns, min(self.paths, _TRIAL_PATHS))
-            if trial is None:
-                lost = high_turns = min(lost, turns)
-                turns = 0.5 * (low_turns + lost)
-                if lost - low_turns < _SAME_TURNS * lost:
-                    break
-                continue
-            now = float(np.nanmedian(angles_at(trial, at)))
-            if abs(now - angle) < abs(reached - angle):
-                best, reached = turns, now
-            if abs(now - angle) <= _NEAR:
-                break
-            low_turns, high_turns = (turns, high_turns) if now < angle else (low_turns, turns)
-            turns *= float(np.clip(np.tan(angle) / max(np.tan(now), _NEAR), 0.5, 2.0))
-            if not low_turns < turns < high_turns:
-                turns = 0.5 * (low_turns + high_turns)
-            if high_turns - low_turns < _SAME_TURNS * high_turns:
-                break
-        if not np.isfinite(reached):
-            raise BadInputError(f"no path comes to rest at {lost:.4g} revolutions and below; give more friction")
-        found = Turned(best, float(at[0]), angle, reached, lost)
-        return found if found.met else self._steepest(found)
+        near: Bools = np.abs(lines.v - 0.5 * (low + high)) <= 1.0 / len(lines.v)
+        return near | ((lines.v >= low) & (lines.v <= high))
+
+    @property
+    def _widest(self) -> float:
+        """The v of the widest place of the layer: of several the one nearest to its middle."""
+        v, length = self.lines.v[self._inside], self.lines.length[self._inside]
+        wide = v[length >= length.max() * (1.0 - _AS_WIDE)]
+        return float(wide[int(np.argmin(np.abs(wide - 0.5 * sum(self.between))))])
+
+    def _on_a_tube(self, angle: float) -> float:
+        """Revolutions of an angle in radians on a tube as long as the layer and as wide as it is on average."""
+        low, high = np.interp(self.between, self.lines.v, self.lines.mean)
+        return float(np.tan(angle) * (high - low) / self.lines.length[self._inside].mean())
 
     def _steepest(self, found: Turned) -> Turned:
-        """The most revolutions up to those found at which every trial path is at rest; those found if there are none.
+        """About the most revolutions up to those found at which every path is at rest; those found if there are none.
 
-        An angle that is out of reach is not worth paths that slide off.
+        An angle that is out of reach is not worth paths that slide off.  It is found with a few paths, and made sure of
+        with as many particles as are wound by default.
         """
-        low, high, best = 0.0, found.revolutions, found
-        turns, lost = high, found.lost
-        for _ in range(_HALVINGS):
-            laid = self.laid(_TRIAL_PATHS, turns, _TRIAL_PARTICLES)
-            if (laid.status == Status.CONVERGED).all():
-                low, reached = turns, float(np.nanmedian(angles_at(laid, np.array([found.v]))))
-                best = replace(found, revolutions=turns, reached=reached)
-            else:
-                high = lost = turns
-            if low == high:
-                break
-            turns = 0.5 * (low + high)
-        return replace(best, lost=lost) if low > 0.0 else found
+        sure: list[Paths] = []
+
+        def held(turns: float, paths: int, particles: int) -> bool:
+            laid = self.laid(min(self.paths, paths), turns, particles)
+            sure[:] = [laid]
+            return bool((laid.status == Status.CONVERGED).all())
+
+        most, lost = last_held(lambda turns: held(turns, _ROUGH_PATHS, _ROUGH_PARTICLES), found.revolutions)
+        turns = back_to_held(lambda turns: held(turns, _TRIAL_PATHS, PARTICLES), most)
+        if not turns > 0.0:
+            return found
+        reached = median_angle(sure[0], found.v, self.paths)
+        return replace(found, revolutions=turns, reached=reached, lost=min(found.lost, lost))

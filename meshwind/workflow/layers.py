@@ -123,11 +123,13 @@ def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options) -> LaidLaye
     if not between[0] < between[1]:
         raise BadInputError(f"it starts at v={between[0]:g} and ends at v={between[1]:g}; give its places in order")
     helices = Helices(surface, between, ply.friction, lines)
+    if isinstance(plan.paths, int):
+        helices = replace(helices, paths=plan.paths)
     settled = helices.settled(plan.angle, plan.revolutions, plan.paths, ply.laying.width)
     if options.continuous:
         closing = ClosingPlan(
             settled.paths, settled.revolutions, ply.friction, options.particles, plan.turns(options),
-            0.5 * ply.laying.width, between,
+            0.5 * ply.laying.width, between, plan.paths == AUTO, settled.wish,
         )  # fmt: skip
     else:
         closing = None
@@ -156,7 +158,7 @@ def first_helical(plans: tuple[LayerPlan, ...], surface: Surface, options: Optio
     if plan is None:
         return options
     ply = plan.ply(options, units)
-    paths, turns, _ = Helices(surface, (0.0, 1.0), ply.friction, levels(surface)).settled(
+    paths, turns, *_ = Helices(surface, (0.0, 1.0), ply.friction, levels(surface)).settled(
         plan.angle, plan.revolutions, plan.paths, ply.laying.width
     )
     return replace(options, paths=paths, revolutions=turns, friction=ply.friction, band_width=ply.laying.width)

@@ -107,7 +107,8 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: 
             notes = (*notes, *more)
     with clock.stage("wind"):
         closing = options.continuous and layered is None
-        wound = partial(_wound, surface, options, revolutions, friction, closing)
+        plan = _closing(options, revolutions, friction, turned, given.paths is None) if closing else None
+        wound = partial(_wound, surface, options, revolutions, friction, plan)
         if first is not None:
             laid_ = Laid(first.paths, first)
         elif given.paths is None and options.band_width is not None:
@@ -139,13 +140,17 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: 
 
 
 def _wound(
-    surface: Surface, options: Options, revolutions: float, friction: float | Friction, closing: bool, paths: int
+    surface: Surface,
+    options: Options,
+    revolutions: float,
+    friction: float | Friction,
+    closing: LayerPlan | None,
+    paths: int,
 ) -> Laid:
-    """So many paths a family, as one filament if they are to close."""
-    options = replace(options, paths=paths)
-    if not closing:
-        return Laid(lay(surface, options, revolutions, friction))
-    closed = close(surface, options, revolutions, friction)
+    """So many paths a family, as one filament if they are to close, and then a few more where the plan lets them."""
+    if closing is None:
+        return Laid(lay(surface, replace(options, paths=paths), revolutions, friction))
+    closed = close_layer(surface, replace(closing, paths=paths))
     return Laid(closed.paths, closed)
 
 
@@ -162,8 +167,10 @@ def _planned(
     surface: Surface, options: Options, revolutions: float, friction: float | Friction
 ) -> tuple[Options, Turned | None, tuple[Note, ...]]:
     """The options with the revolutions of their angle, if any, and with as many paths as cover the part."""
-    helices = Helices(surface, (0.0, 1.0), friction, levels(surface), options.paths or PATHS)
+    helices = Helices(surface, (0.0, 1.0), friction, levels(surface))
     turned, notes = None, []
+    if options.paths is not None:
+        helices = replace(helices, paths=options.paths)
     if options.angle is not None:
         turned = helices.turned_to(np.radians(options.angle), options.angle_at)
         revolutions = turned.revolutions
@@ -178,11 +185,16 @@ def _planned(
     return options, turned, tuple(notes)
 
 
-def close(surface: Surface, options: Options, revolutions: float, friction: float | Friction = 0.0) -> ClosedLayer:
-    """Wind the layer as one filament."""
+def _closing(
+    options: Options, revolutions: float, friction: float | Friction, turned: Turned | None, grows: bool
+) -> LayerPlan:
+    """The plan of the layer as one filament."""
     turns = (options.turn_start, options.turn_end)
     clear = 0.0 if options.band_width is None else 0.5 * options.band_width
-    return close_layer(surface, LayerPlan(_count(options), revolutions, friction, options.particles, turns, clear))
+    return LayerPlan(
+        _count(options), revolutions, friction, options.particles, turns, clear,
+        grows=grows, angle=None if turned is None else turned.wish,
+    )  # fmt: skip
 
 
 def _count(options: Options) -> int:

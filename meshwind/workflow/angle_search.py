@@ -1,0 +1,91 @@
+"""The revolutions at which a winding angle is met: a bracketed secant search on its tangent, which grows evenly."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+_TRIALS = 30
+"""Most trials; three or four are usual."""
+_SAME_TURNS = 5e-3
+"""Share by which revolutions differ where a search between them ends."""
+_LEAP = 2.0
+"""Factor by which one trial's revolutions may differ from those of the one before."""
+_HALVED = 3
+"""Every so many trials between two bounds the middle is taken, so that the bracket closes whatever the curve."""
+_LOWER, _DOWN = 0.9, 40
+"""Steps in which revolutions are lowered until all paths are held, as there may be several ranges where they are, ..."""
+_HALVINGS = 4
+"""... and halvings of the last one: to 0.6 % of the revolutions."""
+_BACK = 0.01
+"""Share of the revolutions that is given up first where paths do not rest; it doubles from trial to trial."""
+_BACKWARDS = 8
+"""Trials on the way back: more than all of the revolutions."""
+
+
+class Hunt(NamedTuple):
+    """The best revolutions, the angle there in radians, and the least at which no path came to rest, or infinity."""
+
+    revolutions: float
+    reached: float
+    lost: float
+
+
+def hunt(measure: Callable[[float], float | None], wanted: float, start: float, near: float, most: float) -> Hunt:
+    """Search for the revolutions at which an angle is `wanted`, up to `near`, both in radians.
+
+    measure: gives the angle at some revolutions, or None where no path comes to rest; start: the first trial's; most:
+    revolutions beyond which none are tried.  Reached is -infinity where no path comes to rest at any.
+    """
+    low, high, lost, best, reached = 0.0, np.inf, np.inf, 0.0, -np.inf
+    target, before, turns = float(np.tan(wanted)), (0.0, 0.0), min(start, most)
+    for trial in range(_TRIALS):
+        now = measure(turns)
+        if now is None:
+            lost = high = min(lost, turns)
+            step = 0.5 * (low + high)
+        else:
+            if abs(now - wanted) < abs(reached - wanted):
+                best, reached = turns, now
+            if abs(now - wanted) <= near or (turns >= most and now < wanted):
+                break
+            low, high = (turns, high) if now < wanted else (low, turns)
+            at = turns, float(np.tan(now))
+            rise = (at[1] - before[1]) / (at[0] - before[0]) if at[0] != before[0] else 0.0
+            before = at
+            step = turns + (target - at[1]) / rise if rise > 0.0 else _LEAP * turns if now < wanted else 0.0
+            step = min(max(step, turns / _LEAP), turns * _LEAP, most)
+            if not low < step < high or (np.isfinite(high) and trial % _HALVED == _HALVED - 1 and low > 0.0):
+                step = 0.5 * (low + high)
+        if high - low < _SAME_TURNS * high:
+            break
+        turns = step
+    return Hunt(best, reached, lost)
+
+
+def last_held(held: Callable[[float], bool], high: float) -> tuple[float, float]:
+    """About the most revolutions up to `high` at which all paths are held, 0 if there are none, and the least without.
+
+    The latter is infinite where all are held.
+    """
+    low, lost = high, np.inf
+    for _ in range(_DOWN):
+        if held(low):
+            break
+        low, lost = _LOWER * low, low
+    else:
+        return 0.0, lost
+    for _ in range(_HALVINGS if np.isfinite(lost) else 0):
+        middle = 0.5 * (low + lost)
+        low, lost = (middle, lost) if held(middle) else (low, middle)
+    return low, lost
+
+
+def back_to_held(held: Callable[[float], bool], high: float) -> float:
+    """Revolutions up to `high` at which all paths are held, from there down in growing steps; 0 if there are none."""
+    share = 0.0
+    for trial in range(_BACKWARDS):
+        if held((1.0 - share) * high):
+            return (1.0 - share) * high
+        share = _BACK * 2**trial
+    return 0.0
