@@ -14,7 +14,7 @@ _LEAP = 2.0
 _HALVED = 3
 """Every so many trials between two bounds the middle is taken, so that the bracket closes whatever the curve."""
 _LOWER, _DOWN = 0.9, 40
-"""Steps in which revolutions are lowered until all paths are held, as there may be several ranges where they are, ..."""
+"""Steps that lower revolutions until all paths are held, as there may be several ranges where they are, ..."""
 _HALVINGS = 4
 """... and halvings of the last one: to 0.6 % of the revolutions."""
 _BACK = 0.01
@@ -24,11 +24,16 @@ _BACKWARDS = 8
 
 
 class Hunt(NamedTuple):
-    """The best revolutions, the angle there in radians, and the least at which no path came to rest, or infinity."""
+    """What a search found.
+
+    revolutions: the best ones; reached: the angle there, in radians; lost: the least at which no path came to rest, or
+    infinity; within: whether the angle is met, or is between those of two trials.
+    """
 
     revolutions: float
     reached: float
     lost: float
+    within: bool
 
 
 def hunt(measure: Callable[[float], float | None], wanted: float, start: float, near: float, most: float) -> Hunt:
@@ -37,7 +42,7 @@ def hunt(measure: Callable[[float], float | None], wanted: float, start: float, 
     measure: gives the angle at some revolutions, or None where no path comes to rest; start: the first trial's; most:
     revolutions beyond which none are tried.  Reached is -infinity where no path comes to rest at any.
     """
-    low, high, lost, best, reached = 0.0, np.inf, np.inf, 0.0, -np.inf
+    low, high, lost, best, reached, steepest = 0.0, np.inf, np.inf, 0.0, -np.inf, -np.inf
     target, before, turns = float(np.tan(wanted)), (0.0, 0.0), min(start, most)
     for trial in range(_TRIALS):
         now = measure(turns)
@@ -45,6 +50,7 @@ def hunt(measure: Callable[[float], float | None], wanted: float, start: float, 
             lost = high = min(lost, turns)
             step = 0.5 * (low + high)
         else:
+            steepest = max(steepest, now)
             if abs(now - wanted) < abs(reached - wanted):
                 best, reached = turns, now
             if abs(now - wanted) <= near or (turns >= most and now < wanted):
@@ -60,7 +66,7 @@ def hunt(measure: Callable[[float], float | None], wanted: float, start: float, 
         if high - low < _SAME_TURNS * high:
             break
         turns = step
-    return Hunt(best, reached, lost)
+    return Hunt(best, reached, lost, steepest >= wanted - near)
 
 
 def last_held(held: Callable[[float], bool], high: float) -> tuple[float, float]:

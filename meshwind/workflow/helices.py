@@ -157,7 +157,7 @@ class Helices:
             return None if trial is None else median_angle(trial, v, self.paths)
 
         found = hunt(lambda turns: measured(turns, _ROUGH_PATHS, _ROUGH_PARTICLES), angle, tube, _ROUGHLY, most)
-        if abs(found.reached - angle) <= _ENOUGH:
+        if found.within:
             start = found.revolutions
             found = hunt(lambda turns: measured(turns, _TRIAL_PATHS, _TRIAL_PARTICLES), angle, start, _NEAR, most)
         if not np.isfinite(found.reached):
