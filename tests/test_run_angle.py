@@ -11,11 +11,12 @@ from layup_shapes import drawn
 import meshwind as mw
 from meshwind.core.errors import BadInputError
 from meshwind.filament.levels import levels
-from meshwind.filament.stations import angles_at
+from meshwind.filament.stations import angles_at, median_angle
 from meshwind.layup.direction import directions
 from meshwind.layup.direction import winding_angle as angle_map
 from meshwind.surface import Surface
 from meshwind.surface.interpolate import interpolate
+from meshwind.workflow.angle_search import back_to_held, hunt, last_held
 from meshwind.workflow.helices import Helices
 
 
@@ -102,6 +103,68 @@ def test_the_angle_is_no_other_where_the_chart_is_oblique() -> None:
     tangents, signed = directions(paths, np.array([[0.1, 0.3], [0.7, 0.9]]))
     assert signed == pytest.approx(np.full(2, wanted), abs=1e-5)
     assert tangents[:, 2] == pytest.approx(np.full(2, cos(wanted)), abs=1e-5)
+
+
+@pytest.mark.parametrize("paths", [None, 30])
+def test_a_filament_has_the_angle_that_was_asked_for(paths: int | None) -> None:
+    """With as many paths as cover, and with a number few patterns of which close: then it waits as hoops."""
+    result = mw.wind("data/elbow.obj", paths=paths, band_width=8.0, angle=30.0, continuous=True)
+    assert np.degrees(np.median(angles_at(result.paths, np.array([0.5])))) == pytest.approx(30.0, abs=0.5)
+    assert result.closed is not None and result.closed.pattern.filaments == 1
+    assert paths is None or len(result.paths) == 2 * paths
+    assert not [note for note in result.notes if "closes at" in note.text]
+
+
+def test_a_filament_whose_angle_is_out_of_reach_keeps_all_its_paths() -> None:
+    """The pattern next to the most revolutions that hold is beyond them; it is not wound."""
+    result = mw.wind("data/tank.ply", paths=None, band_width=25.0, angle=30.0, continuous=True)
+    assert result.closed is not None and result.closed.left_out == 0 and result.settled
+    assert any("is out of reach" in note.text for note in result.notes)
+
+
+def test_revolutions_are_found_in_few_trials() -> None:
+    tried: list[float] = []
+
+    def measure(turns: float) -> float | None:
+        """A tangent that grows with the square root, up to where paths slide off."""
+        tried.append(turns)
+        return None if turns > 3.0 else atan(turns**0.5)
+
+    found = hunt(measure, radians(50.0), 0.7, 1e-4, 100.0)
+    assert found.revolutions == pytest.approx(tan(radians(50.0)) ** 2, rel=1e-3) and found.within
+    assert len(tried) <= 6
+    gone = hunt(measure, radians(75.0), 0.7, 1e-4, 100.0)
+    assert gone.revolutions == pytest.approx(3.0, rel=1e-2) and gone.lost == pytest.approx(3.0, rel=1e-2)
+    assert not gone.within
+    leap = hunt(lambda turns: radians(20.0 if turns < 0.83 else 38.0), radians(30.0), 0.5, 1e-4, 100.0)
+    assert leap.within and leap.reached == radians(38.0)
+
+
+def test_the_steepest_that_holds_is_found_past_a_gap() -> None:
+    def held(turns: float) -> bool:
+        return turns < 0.5 or 0.9 < turns < 1.3
+
+    most, lost = last_held(held, 3.0)
+    assert most == pytest.approx(1.3, rel=0.01) and most <= 1.3 <= lost
+    assert back_to_held(held, 1.31) == pytest.approx(1.31 * 0.99)
+    assert last_held(lambda _: False, 3.0)[0] == back_to_held(lambda _: False, 3.0) == 0.0
+
+
+def test_the_median_of_many_paths_follows_from_a_few() -> None:
+    """On a tube whose one side is shorter angles differ round it: 24 paths tell the median of 90."""
+
+    def place(u: np.ndarray, v: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]
+        t = 2 * pi * u
+        return np.stack([80.0 * np.cos(t), 30.0 * np.sin(t), (400.0 + 100.0 * np.cos(t)) * v], axis=-1)
+
+    surface = interpolate(place, (64, 16))
+    few, many = (
+        mw.solve(surface, ends.start, ends.end, family=ends.family, particles=101)
+        for ends in (mw.families(surface, count, 0.6, phase=0.13) for count in (24, 90))
+    )
+    exact = float(np.median(angles_at(many, np.array([0.5]))))
+    assert median_angle(few, 0.5, 90, 0.13) == pytest.approx(exact, abs=radians(0.2))
+    assert median_angle(many, 0.5, 90, 0.13) == pytest.approx(exact, abs=1e-12)
 
 
 @pytest.mark.parametrize(("options", "line"), [

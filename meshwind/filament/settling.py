@@ -59,7 +59,7 @@ class Settled:
 def lay(surface: Surface, settled: Settled) -> tuple[Paths, int]:
     """All paths of a layer in equilibrium, as many of each family, and how many are left out."""
     plan = settled.plan
-    return _at_rest(_solved(surface, plan, plan.paths, settled.revolutions, -settled.dwells[0]))
+    return _some(_solved(surface, plan, plan.paths, settled.revolutions, -settled.dwells[0]))
 
 
 def settle(surface: Surface, plan: LayerPlan) -> Settled:
@@ -69,7 +69,7 @@ def settle(surface: Surface, plan: LayerPlan) -> Settled:
     angle needs them, and the filament waits as hoops until it closes.  Raises BadInputError where no path of a family
     is at rest, or a turnaround cannot be made.
     """
-    scouts, lost = _scouts(surface, plan, plan.revolutions, 0.0)
+    scouts, lost = _some(_scouts(surface, plan, plan.revolutions, 0.0))
     ends, needed = _needed(surface, plan, scouts)
     counted = _counted(plan, 2.0 * plan.revolutions + sum(needed))
     if counted.paths != plan.paths:
@@ -113,7 +113,10 @@ def _nearest(
     for _ in range(_SETTLED_IN):
         if not settled.near:
             break
-        tried, lost = _scouts(surface, plan, settled.revolutions, -settled.dwells[0])
+        rest = _at_rest(_scouts(surface, plan, settled.revolutions, -settled.dwells[0]))
+        if rest is None:
+            break
+        tried, lost = rest
         now = np.array([end.pairs(tried).least_dwell() for end in ends]) - settled.dwells
         if now.max() <= ROOM:
             return settled, tried, lost
@@ -138,18 +141,21 @@ def _at_angle(surface: Surface, settled: Settled, needed: tuple[float, float], l
     plan, ends, best, least = settled.plan, settled.ends, settled, np.inf
     assert plan.angle is not None
     for _ in range(_SETTLED_IN):
-        tried, gone = _scouts(surface, plan, settled.revolutions, -settled.dwells[0])
+        rest = _at_rest(_scouts(surface, plan, settled.revolutions, -settled.dwells[0]))
+        if rest is None or rest[1] > lost:
+            settled = _waiting(replace(plan, revolutions=_BACK * settled.revolutions), ends, needed)
+            continue
+        tried = rest[0]
         first, second = (end.pairs(tried).least_dwell() for end in ends)
         off = _off(settled, tried)
         enough = first <= settled.dwells[0] + ROOM and second <= settled.dwells[1] + ROOM
-        if enough and gone <= lost and abs(off) < least:
+        if enough and abs(off) < least:
             best, least = settled, abs(off)
             if least <= 0.5 * _MET:
                 break
         needed = max(needed[0], first), max(needed[1], second)
         wanted = plan.angle.wanted
         turns = settled.revolutions * float(np.clip(np.tan(wanted) / np.tan(wanted + off), 0.8, 1.25))
-        turns = turns if gone <= lost else _BACK * settled.revolutions
         settled = _waiting(replace(plan, revolutions=turns), ends, needed)
     return best
 
@@ -162,10 +168,10 @@ def _off(settled: Settled, scouts: Paths) -> float:
     return median_angle(scouts, plan.angle.v, plan.paths, -settled.dwells[0]) - plan.angle.wanted
 
 
-def _scouts(surface: Surface, plan: LayerPlan, revolutions: float, phase: float) -> tuple[Paths, int]:
+def _scouts(surface: Surface, plan: LayerPlan, revolutions: float, phase: float) -> Paths:
     few = replace(plan, particles=min(plan.particles or PARTICLES, _PARTICLES))
     count = min(plan.paths, _SCOUTS if plan.angle is None else _ANGLED)
-    return _at_rest(_solved(surface, few, count, revolutions, phase))
+    return _solved(surface, few, count, revolutions, phase)
 
 
 def _solved(surface: Surface, plan: LayerPlan, count: int, revolutions: float, phase: float) -> Paths:
@@ -173,14 +179,23 @@ def _solved(surface: Surface, plan: LayerPlan, count: int, revolutions: float, p
     return solve(surface, ends.start, ends.end, family=ends.family, particles=plan.particles, friction=plan.friction)
 
 
-def _at_rest(paths: Paths) -> tuple[Paths, int]:
-    """The paths in equilibrium, evened to as many of each family, and how many are left out."""
+def _some(paths: Paths) -> tuple[Paths, int]:
+    """As `_at_rest`; raises BadInputError where no path of a family is."""
+    rest = _at_rest(paths)
+    if rest is None:
+        raise BadInputError(
+            "no filament can be wound, as no path of a family is at rest; "
+            + paths.advice(int(np.argmin(paths.status == Status.CONVERGED)))
+        )
+    return rest
+
+
+def _at_rest(paths: Paths) -> tuple[Paths, int] | None:
+    """The paths in equilibrium, evened to as many of each family, and how many are left out; None without."""
     rest: Bools = paths.status == Status.CONVERGED
     counts = [int((rest & (paths.family == family)).sum()) for family in (1, -1)]
     if not min(counts):
-        raise BadInputError(
-            "no filament can be wound, as no path of a family is at rest; " + paths.advice(int(np.argmin(rest)))
-        )
+        return None
     keep = np.flatnonzero(rest)
     richer = 1 if counts[0] > counts[1] else -1
     mine = keep[paths.family[keep] == richer]

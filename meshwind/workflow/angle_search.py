@@ -18,9 +18,9 @@ _LOWER, _DOWN = 0.9, 40
 _HALVINGS = 4
 """... and halvings of the last one: to 0.6 % of the revolutions."""
 _BACK = 0.01
-"""Share of the revolutions that is given up first where paths do not rest; it doubles from trial to trial."""
-_BACKWARDS = 8
-"""Trials on the way back: more than all of the revolutions."""
+"""Share of the revolutions that is given up at a brink, as more particles slide off sooner; it doubles by trial."""
+_BACKWARDS = 7
+"""Trials on the way back: up to most of the revolutions."""
 
 
 class Hunt(NamedTuple):
@@ -88,10 +88,9 @@ def last_held(held: Callable[[float], bool], high: float) -> tuple[float, float]
 
 
 def back_to_held(held: Callable[[float], bool], high: float) -> float:
-    """Revolutions up to `high` at which all paths are held, from there down in growing steps; 0 if there are none."""
-    share = 0.0
+    """Revolutions a little below `high` at which all paths are held, in growing steps down; 0 if there are none."""
     for trial in range(_BACKWARDS):
-        if held((1.0 - share) * high):
-            return (1.0 - share) * high
-        share = _BACK * 2**trial
+        turns = (1.0 - _BACK * 2**trial) * high
+        if held(turns):
+            return turns
     return 0.0

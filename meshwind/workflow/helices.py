@@ -6,7 +6,6 @@ from typing import NamedTuple
 import numpy as np
 
 from meshwind.core.cast import Bools
-from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
 from meshwind.filament.ends import Wish
 from meshwind.filament.levels import Levels, station
@@ -187,8 +186,7 @@ class Helices:
     def _steepest(self, found: Turned) -> Turned:
         """About the most revolutions up to those found at which every path is at rest; those found if there are none.
 
-        An angle that is out of reach is not worth paths that slide off.  It is found with a few paths, and made sure of
-        with as many particles as are wound by default.
+        An angle that is out of reach is not worth paths that slide off.
         """
         sure: list[Paths] = []
 
@@ -198,7 +196,7 @@ class Helices:
             return bool((laid.status == Status.CONVERGED).all())
 
         most, lost = last_held(lambda turns: held(turns, _ROUGH_PATHS, _ROUGH_PARTICLES), found.revolutions)
-        turns = back_to_held(lambda turns: held(turns, _TRIAL_PATHS, PARTICLES), most)
+        turns = back_to_held(lambda turns: held(turns, _TRIAL_PATHS, _TRIAL_PARTICLES), most)
         if not turns > 0.0:
             return found
         reached = median_angle(sure[0], found.v, self.paths)
