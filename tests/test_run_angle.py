@@ -146,7 +146,7 @@ def test_the_steepest_that_holds_is_found_past_a_gap() -> None:
 
     most, lost = last_held(held, 3.0)
     assert most == pytest.approx(1.3, rel=0.01) and most <= 1.3 <= lost
-    assert back_to_held(held, 1.31) == pytest.approx(1.31 * 0.99)
+    assert back_to_held(held, 1.31) == pytest.approx(1.31 * 0.98)
     assert last_held(lambda _: False, 3.0)[0] == back_to_held(lambda _: False, 3.0) == 0.0
 
 

@@ -17,7 +17,7 @@ _LOWER, _DOWN = 0.9, 40
 """Steps that lower revolutions until all paths are held, as there may be several ranges where they are, ..."""
 _HALVINGS = 4
 """... and halvings of the last one: to 0.6 % of the revolutions."""
-_BACK = 0.01
+_BACK = 0.02
 """Share of the revolutions that is given up at a brink, as more particles slide off sooner; it doubles by trial."""
 _BACKWARDS = 7
 """Trials on the way back: up to most of the revolutions."""
