@@ -22,6 +22,8 @@ _FINE = np.radians(1.0)
 """Turn of the fibre between two looks at it."""
 _SHARE = 0.25
 """Length between two looks over the longest step of the eye."""
+_EVEN = 1e-6
+"""Share of a look by which it may come early: round-off must not move it."""
 _TOLD = np.radians(3.0)
 """Turn about a point from which its start and end have blocks of their own."""
 
@@ -53,8 +55,11 @@ def whole(track: Track, steps: Steps) -> Floats:
     ends = np.concatenate([[0], np.flatnonzero(~lays), np.flatnonzero(~lays) + 1, [len(track)]])
     every = np.arange(len(track) + 1.0)
     dense = np.where(lays, track.corner / _FINE + np.diff(track.arc, axis=1)[:, 0] / (_SHARE * steps.x), 0.0)
-    mark = np.floor(np.concatenate([[0.0], np.cumsum(dense)]))
-    chosen = np.append(True, np.diff(mark) > 0.0) | kept(track, every)
+    marks = kept(track, every)
+    total = np.concatenate([[0.0], np.cumsum(dense)])
+    run = np.cumsum(marks) - 1  # counted anew from each place that is kept, so that equal circuits have equal blocks
+    mark = np.floor(total - total[marks][run] + _EVEN)
+    chosen = np.append(True, np.diff(mark) > 0.0) | marks
     chosen[ends] = True
     turns = np.flatnonzero(track.motion == PIVOT)
     parts = np.maximum(np.ceil(track.corner[turns] / _FINE), 1.0).astype(np.int64)
