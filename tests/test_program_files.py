@@ -20,7 +20,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.layup.layup import assess
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.program.axes import limits_of
-from meshwind.program.machine import DEFAULT, FEEDS, MOVES, machine_names, machine_of, read_machine
+from meshwind.program.machine import DEFAULT, FEEDS, MOVES, Eye, machine_names, machine_of, read_machine
 from meshwind.program.posts.dialects import DIALECTS
 from meshwind.program.program import Work, program
 from meshwind.program.robot import APPROACH, robot_poses
@@ -254,7 +254,7 @@ def test_a_program_that_stands_still_takes_no_time() -> None:
 def test_spans_that_meet_the_part_are_told() -> None:
     """An hourglass, wound steeply: lines of the tangent go through its flare, as its formula says."""
     surface = mw.shapes.revolution(lambda z: 20.0 + 0.01 * z**2, -60.0, 60.0, (48, 48))
-    made = program(work(surface, 1, 0.15, 0.2, 201), replace(read_machine("lathe-4"), eye_size=2.0))
+    made = program(work(surface, 1, 0.15, 0.2, 201), replace(read_machine("lathe-4"), eye=Eye(2.0)))
     b = made.blocks
     told = {fault.index for fault in made.faults if fault.kind == "span"}
     share = np.linspace(0.002, 1.0, 500)[:, None]
@@ -273,7 +273,7 @@ def test_spans_that_meet_the_part_are_told() -> None:
     # a convex part is clear, and a shaft on its axis is met where spans come near it
     convex = work(mw.shapes.sphere_band(50.0, 0.3, 2.8, (24, 16)), 1, 0.9, 0.3)
     assert not program(convex, read_machine("lathe-4")).faults
-    big = program(convex, replace(read_machine("lathe-4"), eye_size=1e3))
+    big = program(convex, replace(read_machine("lathe-4"), eye=Eye(1e3)))
     assert {fault.kind for fault in big.faults} == {"eye"}
     assert any(words.startswith("a longer span") for words in big.remedies)
 

@@ -32,10 +32,6 @@ class Obstacle:
         """Whether spans from points along unit vectors (n, 3), of lengths (n,), meet the part."""
         return np.asarray(cast(self.below, frozen(points), frozen(rays), 0.0)[1] < spans)
 
-    def near(self, eyes: Floats, distance: float) -> Bools:
-        """Whether eyes (n, 3) are nearer to the part than a distance."""
-        return np.asarray(self.surface.distances(eyes) < distance)
-
 
 @dataclass(frozen=True)
 class Shaft:
@@ -61,12 +57,12 @@ def obstacle(on: Grid, diagonal: float, mandrel: Mandrel, shaft: Shaft) -> Obsta
 
 
 def _closed(points: Floats, quads: Ints) -> tuple[Floats, Ints]:
-    """Vertices and triangles of a grid (nu, nv, 3) with its quads, closed over its rims."""
+    """Vertices and triangles of a grid (nu, nv, 3) with its quads, closed over its rims, that face outwards."""
     nu, nv = points.shape[:2]
     ring, count = np.arange(nu) * nv, nu * nv
     lids = [
-        np.stack([ring + row, np.roll(ring, -1) + row, np.full(nu, count + k)], axis=1)
-        for k, row in enumerate((0, nv - 1))
+        np.stack([ring + row, np.roll(ring, -1) + row, np.full(nu, count + k)], axis=1)[:, ::way]
+        for k, (row, way) in enumerate(((0, -1), (nv - 1, 1)))
     ]
     vertices = np.concatenate([points.reshape(-1, 3), points[:, [0, -1]].mean(axis=0)])
     return vertices, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]], *lids])

@@ -4,10 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshwind.core.cast import Floats
 from meshwind.filament.course import Kind
 from meshwind.program.axes import moved
 from meshwind.program.blocks import Blocks
 from meshwind.program.clear import Obstacle
+from meshwind.program.head import Head, meets
 from meshwind.program.machine import Machine
 
 SPAN, EYE, TRAVEL = "span", "eye", "travel"
@@ -30,14 +32,16 @@ class Fault:
     words: str
 
 
-def collisions(blocks: Blocks, blocked: Obstacle, size: float) -> list[Fault]:
-    """Blocks at which the free span meets the part, or a ball of a size about the eye does."""
+def collisions(blocks: Blocks, blocked: Obstacle, head: Head | None, turned: Floats) -> list[Fault]:
+    """Blocks at which the free span meets the part, or the eye's body does, turned by frames (n, 3, 3)."""
     place = "in layer {0}, circuit {1}, pass {2}{3}"
     span = blocked.hits(blocks.point, blocks.tangent, blocks.free_length)
-    eye = blocked.near(blocks.eye, size) & ~span if size > 0.0 else np.zeros(len(blocks), dtype=bool)
+    eye = np.zeros(len(blocks), dtype=bool)
+    if head is not None:
+        eye = meets(head, blocked.surface, blocks.eye, turned) & ~span
     words = (
         (span, SPAN, f"the free span meets the part {place}"),
-        (eye, EYE, f"the eye comes nearer to the part than its size {place}"),
+        (eye, EYE, f"the eye meets the part {place}"),
     )
     return [
         Fault(

@@ -61,6 +61,30 @@ class Axis:
 
 
 @dataclass(frozen=True)
+class Eye:
+    """The body of an eye: a ball, a box or a mesh, one of them, or nothing.
+
+    Its frame has the origin where the fibre leaves it, x along the span away from the part, y along the roller over
+    which the fibre runs, and z = x cross y; it is turned by the axes for roll and yaw that the machine has.  At roll
+    and yaw 0 x leads round the mandrel's axis, y along it, and z from it.
+
+    Parameters
+    ----------
+    ball : float, default 0
+        Radius in mm of a ball about the origin.
+    box : tuple of three float or None, default None
+        Lengths in mm along the span, from the origin on, along the roller and across both, with the origin in their
+        middle.
+    mesh : str or None, default None
+        File of a closed mesh in mm, in the eye's frame; its path is relative to the machine's file.
+    """
+
+    ball: float = 0.0
+    box: tuple[float, ...] | None = None
+    mesh: str | None = None
+
+
+@dataclass(frozen=True)
 class Machine:
     """A winding machine.
 
@@ -82,8 +106,8 @@ class Machine:
         Least distance of the eye from part and shaft in mm; None for a share of the part.
     eye_radius : float or None, default None
         Distance of an eye without a cross axis from the mandrel's axis, in mm; None for what the part needs.
-    eye_size : float, default 0
-        Radius of a ball round the eye that must stay clear of the part, in mm.
+    eye : Eye, default nothing
+        The eye's body, which must stay clear of part and shaft.
     shaft : float, default 0
         Radius of the shaft that holds the part at both ends, in mm; 0 if there is none.
     """
@@ -97,7 +121,7 @@ class Machine:
     fibre_speed: float = 500.0
     clearance: float | None = None
     eye_radius: float | None = None
-    eye_size: float = 0.0
+    eye: Eye = Eye()
     shaft: float = 0.0
 
     def axis(self, moves: str) -> Axis | None:
@@ -129,14 +153,38 @@ def machine_of(table: dict[str, Any], source: str) -> Machine:
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise BadInputError(f"machine {source} has no axes; give [[axes]] with moves, letter, speed and acceleration")
     axes = tuple(Axis(**_record(Axis, row, f"axis {k + 1} of machine {source}", {})) for k, row in enumerate(rows))
-    machine = Machine(**{**found, "axes": axes})
+    machine = Machine(**{**found, "axes": axes, "eye": _eye(table.get("eye", {}), source)})
     _check(machine, source)
     return machine
+
+
+def _eye(table: Any, source: str) -> Eye:
+    """The eye's body from its table, checked."""
+    where = f"the eye of machine {source}"
+    if not isinstance(table, dict):
+        raise BadInputError(f"{where} is {table!r}; give a table [eye] with ball, box or mesh")
+    given = _record(Eye, table, where, {})
+    if len(given) > 1:
+        raise BadInputError(f"{where} has {' and '.join(given)}; give one of ball, box and mesh")
+    if not 0.0 <= given.get("ball", 0.0) < float("inf"):
+        raise BadInputError(f"ball of {where} is {given['ball']}; give a radius of at least 0")
+    if "box" in given:
+        lengths = given["box"]
+        right = len(lengths) == 3 and all(isinstance(each, int | float) and each is not True for each in lengths)
+        if not right or not all(0.0 < each < float("inf") for each in lengths):
+            raise BadInputError(f"box of {where} is {lengths}; give 3 lengths above 0: along span, roller, across")
+        given["box"] = tuple(float(each) for each in lengths)
+    if "mesh" in given:
+        given["mesh"] = str(Path(source).parent / given["mesh"])
+        if not Path(given["mesh"]).is_file():
+            raise BadInputError(f"mesh of {where} is {given['mesh']}, where there is no file; give its path from there")
+    return Eye(**given)
 
 
 def _record(kind: type, table: dict[str, Any], source: str, defaults: dict[str, Any]) -> dict[str, Any]:
     """The values of a table, checked to be those of a record."""
     known = {each.name: getattr(each.type, "__name__", str(each.type)) for each in fields(kind)}
+    known |= {name: word for name, word in (("box", "list"), ("eye", "table")) if name in known}
     found = dict(defaults)
     for key, value in table.items():
         if key not in known:
@@ -146,8 +194,11 @@ def _record(kind: type, table: dict[str, Any], source: str, defaults: dict[str, 
             right, wanted = number, "a number"
         elif known[key] == "int":
             right, wanted = number and isinstance(value, int), "a whole number"
+        elif known[key] == "list":
+            right, wanted = isinstance(value, list), "a list of numbers"
         else:
-            right, wanted = isinstance(value, str) or known[key].startswith("tuple"), "text in quotes"
+            right = isinstance(value, str) or known[key] == "table" or known[key].startswith("tuple")
+            wanted = "text in quotes"
         if not right:
             raise BadInputError(f"{key} of {source} is {value!r}; give {wanted}")
         found[key] = float(value) if "float" in known[key] else value
@@ -165,9 +216,8 @@ def _check(machine: Machine, source: str) -> None:
         value = getattr(machine, name)
         if value is not None and not 0.0 < value < float("inf"):
             raise BadInputError(f"machine {source}: {name} is {value}; give a number above 0")
-    for name in ("eye_size", "shaft"):
-        if not 0.0 <= getattr(machine, name) < float("inf"):
-            raise BadInputError(f"machine {source}: {name} is {getattr(machine, name)}; give a number of at least 0")
+    if not 0.0 <= machine.shaft < float("inf"):
+        raise BadInputError(f"machine {source}: shaft is {machine.shaft}; give a number of at least 0")
     for axis in machine.axes:
         _check_axis(axis, source)
     moves, letters = [each.moves for each in machine.axes], [each.letter for each in machine.axes]

@@ -15,6 +15,7 @@ from meshwind.program.body import Body, body_round
 from meshwind.program.clear import Shaft, obstacle
 from meshwind.program.eye import LONGEST, Poses, Spans, at_radius, on_body, poses
 from meshwind.program.faults import EYE, SPAN, Fault, collisions, unreachable
+from meshwind.program.head import frames, head_of
 from meshwind.program.machine import Machine
 from meshwind.program.mandrel import Mandrel, mandrel_of
 from meshwind.program.stepping import Steps, divided, whole
@@ -200,7 +201,7 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
     blocks = replace(blocks, time=frozen(np.concatenate([[0.0], np.cumsum(timing.seconds)])))
     names = limits_of(machine).names
     faults = (
-        *collisions(blocks, blocked, machine.eye_size / scale),
+        *collisions(blocks, blocked, head_of(machine, scale), frames(blocks, mandrel, machine)),
         *unreachable(blocks, machine, scale),
     )
     return Program(
