@@ -214,7 +214,8 @@ def test_all_machines_speak_all_dialects(name: str, machine: str) -> None:
     found = back(name, text_of(name, blocks, used), blocks, used)
     assert found.same
     assert found.rows == len(blocks) - 1
-    assert found.touch < 1e-6
+    # half a thousandth of a degree and of a mm are 2e-6 of this part
+    assert found.touch < (1e-6 if DIALECTS[name].decimals > 3 else 3e-6)
     assert found.seconds < 1e-6
 
 

@@ -86,12 +86,12 @@ _FANUC = Dialect(
     dwell_unit=1e-3,
     dwell_decimals=0,
     turning=ALL_INCREMENTS,
-    decimals=4,
+    decimals=3,
     numbers=1,
     highest=99_999,
     upper=True,
     plain=r"[^A-Z0-9 .,+\-=/*]",
-    notes=("increment system IS-C, 0.0001 mm and degrees",),
+    notes=("increment system IS-B, 0.001 mm and degrees",),
 )
 _SIEMENS = Dialect(
     name="siemens",

@@ -43,7 +43,7 @@ CONTROLLERS = {
     "linuxcnc": Controller(r"\([^()]*\)|;.*", 255, 1e-5, "P", 1.0, _NIST, True, ("M2", "M30")),
     "grbl": Controller(r"\([^()]*\)|;.*", 69, 1e-4, "P", 1.0, _ALL, True, ("M2", "M30")),
     "marlin": Controller(r";.*", 95, 1e-4, "P", 1e-3, _NIST, False, ("M400",)),
-    "fanuc": Controller(r"\([^()]*\)|^%$|^O\d+$|^N\d+ ", 120, 1e-4, "P", 1e-3, _ALL, True, ("M30", "M2")),
+    "fanuc": Controller(r"\([^()]*\)|^%$|^O\d+$|^N\d+ ", 120, 1e-3, "P", 1e-3, _ALL, True, ("M30", "M2")),
     "siemens": Controller(r";.*|^%_N_\w+$|^N\d+ (?:FGROUP\([^()]*\))?", 120, 1e-5, "F", 1.0, _ALL, True, ("M30", "M2")),
     "krl": Controller(r";.*|^&.*", 120, 1e-4, "", 1.0, ("XYZ", "E", "ABC"), False, ("END",)),
 }
