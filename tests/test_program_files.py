@@ -270,6 +270,15 @@ def test_spans_that_meet_the_part_are_told() -> None:
     assert told <= set(np.flatnonzero(depth > 0.7 * skin))
     assert made.remedies
     assert "the other direction of travel" in made.remedies[0]
+    # layers keep their order, each wound from its own end; one filament of two layers cannot be turned
+    one = made.work.filaments[0]
+    two = replace(one, layer=one.layer + 1)
+    both = program(replace(made.work, filaments=(one, two)), made.machine)
+    assert "the other direction of travel" in both.remedies[0]
+    assert (np.diff(both.blocks.layer) >= 0).all()
+    whole = replace(one, layer=(np.arange(len(one.course)) > 200).astype(np.int64))
+    kept = program(replace(made.work, filaments=(whole,)), made.machine)
+    assert not any("direction" in words for words in kept.remedies)
     # a convex part is clear, and a shaft on its axis is met where spans come near it
     convex = work(mw.shapes.sphere_band(50.0, 0.3, 2.8, (24, 16)), 1, 0.9, 0.3)
     assert not program(convex, read_machine("lathe-4")).faults

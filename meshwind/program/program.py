@@ -73,6 +73,11 @@ class Work:
         """Number of layers."""
         return 1 + max(int(each.layer.max()) for each in self.filaments)
 
+    @property
+    def turnable(self) -> bool:
+        """Whether each filament may be wound from its end: none holds several layers, of which one lies on another."""
+        return all(int(each.layer.min()) == int(each.layer.max()) for each in self.filaments)
+
 
 @dataclass(frozen=True)
 class Program:
@@ -127,7 +132,7 @@ class Program:
 
 @dataclass(frozen=True)
 class Way:
-    """How a program is wound: its clearance in the mesh's units, and whether from the filament's end."""
+    """How a program is wound: its clearance in the mesh's units, and whether from each filament's end."""
 
     clearance: float
     backwards: bool = False
@@ -164,7 +169,7 @@ def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
         (EYE, "a longer span", replace(way, clearance=_LONGER * way.clearance)),
     ):
         hits = sum(fault.kind == wanted for fault in best.faults)
-        if not hits or (other.backwards and work.layers > 1):
+        if not hits or (other.backwards and not work.turnable):
             continue
         another = _wound(work, machine, other)
         left = sum(fault.kind == wanted for fault in another.faults)
@@ -177,7 +182,7 @@ def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
 
 def _wound(work: Work, machine: Machine, way: Way) -> Program:
     """The program that winds in one way."""
-    filaments = work.filaments[::-1] if way.backwards else work.filaments
+    filaments = work.filaments
     points = np.concatenate([each.course.points[:: -1 if way.backwards else 1] for each in filaments])
     mandrel = mandrel_of(work.surface, points)
     scale = millimetres(work.units)
