@@ -19,6 +19,12 @@ def quantity(length: float, units: str = "", digits: int = 4) -> str:
     return f"{number} {units}" if units else number
 
 
+def duration(seconds: float) -> str:
+    """A duration, as in "41 s" or "3 min 20 s"."""
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} min {rest} s" if minutes else f"{rest} s"
+
+
 def size(extents: Sequence[float], units: str, units_from: str) -> str:
     """The size of a part, as in "120 mm long, 66.61 x 66.61 mm across; mm as given"; units_from as in `Mesh`."""
     length, *across = sorted(extents, reverse=True)

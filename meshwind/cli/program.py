@@ -4,6 +4,7 @@ from typing import Annotated, Any
 
 import typer
 
+from meshwind.appearance.words import duration
 from meshwind.cli.arguments import OtherFolder, Printed, ResultsFolder
 from meshwind.cli.help import some_of, split_names
 from meshwind.cli.output import print_report
@@ -100,10 +101,10 @@ def program_lines(figures: dict[str, Any]) -> list[str]:
     unit, span, back = figures["units"], figures["fibre"]["free_length"], figures["turned_back"]
     slowest = max(figures["limits"], key=figures["limits"].__getitem__)
     layers = figures["seconds_of_layers"]
-    each = f" (layers {', '.join(_clock(seconds) for seconds in layers)})" if len(layers) > 1 else ""
+    each = f" (layers {', '.join(duration(seconds) for seconds in layers)})" if len(layers) > 1 else ""
     lines = [
         f"machine   {figures['machine']['name']}: {figures['machine']['words']}",
-        f"program   {figures['blocks']} blocks, {figures['turns']:.6g} turns, {_clock(figures['seconds'])}{each}; "
+        f"program   {figures['blocks']} blocks, {figures['turns']:.6g} turns, {duration(figures['seconds'])}{each}; "
         f"fibre {figures['fibre']['laid']:.6g} {unit}, {figures['fibre']['speed']:.3g} {unit}/s; "
         f"mostly limited by {slowest}",
         f"eye       {figures['clearance']:.4g} {unit} clear of the part; free span {span['min']:.4g} to "
@@ -137,9 +138,3 @@ def text_lines(name: str, found: dict[str, Any]) -> list[str]:
         ]
     shown = found["faults"][:_MOST]
     return [f"warning   {name}, line {line}: {words}; please report it" for line, words in shown]
-
-
-def _clock(seconds: float) -> str:
-    """A duration in words."""
-    minutes, rest = divmod(round(seconds), 60)
-    return f"{minutes} min {rest} s" if minutes else f"{rest} s"

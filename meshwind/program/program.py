@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from meshwind.core.cast import Floats, frozen
+from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import millimetres
 from meshwind.filament.filament import Filament
@@ -69,6 +69,11 @@ class Work:
         return grid(self.surface)
 
     @property
+    def scale(self) -> float:
+        """Millimetres in the unit of length."""
+        return millimetres(self.units)
+
+    @property
     def layers(self) -> int:
         """Number of layers."""
         return 1 + max(int(each.layer.max()) for each in self.filaments)
@@ -103,8 +108,12 @@ class Program:
         By what an axis moves that the machine lacks: the largest distance, in mm, or angle, in degrees, that is lost.
     limits : dict of str to float
         Seconds in which each axis, or the fibre's speed, is what limits.
+    limiting : ndarray of int, shape (n - 1,)
+        What limits the way to each of the n blocks but the first: its number among `limits`.
     remedies : tuple of str
         What was tried against faults, and what came of it.
+    backwards : bool
+        Whether the filaments are wound from the end of the last to the start of the first.
     """
 
     work: Work
@@ -116,7 +125,9 @@ class Program:
     faults: tuple[Fault, ...]
     losses: dict[str, float]
     limits: dict[str, float]
+    limiting: Ints
     remedies: tuple[str, ...] = ()
+    backwards: bool = False
 
     @property
     def seconds(self) -> float:
@@ -213,6 +224,7 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
         work, machine, mandrel, body, way.clearance, blocks, tuple(sorted(faults)),
         _losses(blocks, machine, radius, scale),
         {name: float(timing.seconds[timing.limit == k].sum()) for k, name in enumerate(names)},
+        frozen(timing.limit), backwards=way.backwards,
     )  # fmt: skip
 
 

@@ -1,0 +1,16 @@
+"""Words for what a program does and what is wrong with it, for those who watch it."""
+
+from meshwind.program.faults import EYE, SPAN, TRAVEL
+
+AXES = {"mandrel": "mandrel", "carriage": "carriage", "cross": "cross-feed", "roll": "roll", "yaw": "yaw"}
+"""Names of the axes, by what they move."""
+_FAULTS = {
+    SPAN: "the free span meets the part",
+    EYE: "the eye is too near to the part",
+    TRAVEL: "an axis leaves its travel",
+}
+
+
+def fault_words(kind: str) -> str:
+    """A kind of fault in short words."""
+    return _FAULTS.get(kind, kind)
