@@ -75,19 +75,24 @@ def moving(points: Floats, fibres: Floats, view: View, reel: Reel) -> tuple[View
 
     Raises BadInputError if the seconds are out of range.
     """
+    spin, centre, extent = turning(points, fibres, view.up, view.right)
+    motion = motion_of(reel, spin, _TURNS)
+    return replace(view, centre=centre, width=float(extent[0]), height=float(extent[1])), motion
+
+
+def motion_of(reel: Reel, spin: Floats, turns: int) -> Motion:
+    """The motion of a movie in which the part turns about an axis; raises BadInputError if it is too short or long."""
     if not SHORTEST <= reel.seconds <= LONGEST:
         raise BadInputError(f"seconds is {reel.seconds:g}; give a number from {SHORTEST:g} to {LONGEST:g}")
-    spin, centre, extent = turning(points, fibres, view.up, view.right)
-    motion = Motion(
+    return Motion(
         total=reel.total,
         spin=spin,
-        turns=_TURNS,
+        turns=turns,
         frames=round(FRAMES_PER_SECOND * reel.seconds),
         frames_per_second=FRAMES_PER_SECOND,
         movies=tuple(str(movie.absolute()) for movie in reel.movies),
         encoder=reel.encoder,
     )
-    return replace(view, centre=centre, width=float(extent[0]), height=float(extent[1])), motion
 
 
 def laid_before(family: Ints, length: Floats) -> Floats:

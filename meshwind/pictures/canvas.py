@@ -57,10 +57,11 @@ def middle(box: Box) -> tuple[float, float]:
     return box[0] + 0.5 * box[2], box[1] + 0.5 * box[3]
 
 
-def add_smooth(window: Any, mesh: Any, **look: Any) -> None:
+def add_smooth(window: Any, mesh: Any, **look: Any) -> Any:
     """Add a mesh that has normals; `smooth_shading` would compute them again, which takes a third of the time."""
     actor = window.add_mesh(mesh, render=False, **look)
     actor.prop.interpolation = "Phong"
+    return actor
 
 
 def portrait(window: Any, page: Page, view: View, points: Floats) -> Any:

@@ -1,5 +1,6 @@
 """filament.png and bands.png: bands of true width, by their order or over what they leave bare."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -52,22 +53,23 @@ def rows(scene: FilamentScene) -> list[tuple[str, str]]:
     ]
 
 
-def add_stand(window: Any, scene: FilamentScene) -> None:
-    """Add the part, in a signal colour where bands are in groups, and what the turnarounds stand on."""
+def add_stand(window: Any, scene: FilamentScene) -> list[Any]:
+    """Add the part, in a signal colour where bands are in groups, and what the turnarounds stand on; return these."""
     signal = scene.groups is not None
-    canvas.add_smooth(
+    part = canvas.add_smooth(
         window, bodies.body(scene.part), color=SIGNAL if signal else canvas.PART, ambient=0.6 if signal else 0.3,
         diffuse=0.5 if signal else 0.8,
         backface_params={"color": canvas.INSIDE, "ambient": 0.25, "interpolation": "Phong"},
     )  # fmt: skip
-    _add_gear(window, scene.gear)
+    return [part, *_gear(window, scene.gear)]
 
 
-def _add_gear(window: Any, stands: Gear) -> None:
+def _gear(window: Any, stands: Gear) -> Iterator[Any]:
+    """Add what the turnarounds stand on."""
     for quads, colour in ((stands.base, BASE), (stands.held, HELD)):
         if len(quads):
             body = pv.PolyData.from_regular_faces(stands.points, quads)
-            window.add_mesh(body, color=colour, ambient=0.35, diffuse=0.7, render=False)
+            yield window.add_mesh(body, color=colour, ambient=0.35, diffuse=0.7, render=False)
 
 
 def add_bands(window: Any, scene: FilamentScene, page: Page) -> list[Any]:
@@ -79,11 +81,15 @@ def add_bands(window: Any, scene: FilamentScene, page: Page) -> list[Any]:
     return [added, *(window.add_mesh(edge, render=False, **look) for edge in edges)]
 
 
-def bands(scene: FilamentScene, ribbons: Ribbons, view: View, page: Page) -> list[Any]:
-    """The bands of a scene, or the first of them, with their colours, and their two edges, which tell them apart."""
-    size = max(view.width, view.height)
-    # in perspective what is nearer is larger, too
-    seen = ribbons if page.perspective else ribbons.before(view.eye, _DEPTH * size, _WITHIN * size)
+def bands(scene: FilamentScene, ribbons: Ribbons, view: View | None, page: Page) -> list[Any]:
+    """The bands of a scene, or the first of them, with their colours, and their two edges, which tell them apart.
+
+    With a view later bands are seen before earlier ones wherever they cross; without one, where they lie above them.
+    """
+    seen = ribbons
+    if view is not None and not page.perspective:  # in perspective what is nearer is larger, too
+        size = max(view.width, view.height)
+        seen = ribbons.before(view.eye, _DEPTH * size, _WITHIN * size)
     mesh = pv.PolyData.from_regular_faces(seen.points.reshape(-1, 3), seen.quads)
     mesh.point_data["Normals"] = ribbons.normals.reshape(-1, 3)
     mesh.point_data.active_normals_name = "Normals"

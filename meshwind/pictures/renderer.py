@@ -21,6 +21,7 @@ from meshwind.pictures import (
     filament_picture,
     fit_picture,
     laminate_picture,
+    machine_picture,
     map_picture,
     quads_picture,
     redesign_picture,
@@ -47,6 +48,7 @@ DRAWN_BY: dict[type, Callable[..., Any]] = {
 MOVED_BY: dict[type, Callable[..., Any]] = {
     scenes.AnimationScene: animation_picture.frames,
     scenes.ReelScene: reel_picture.frames,
+    scenes.MachineScene: machine_picture.frames,
 }
 FRAME = "frame"
 
@@ -57,7 +59,7 @@ def main() -> None:
     say("ready")
     for file, drawing in drawings.unpack(sys.stdin.buffer.read()):
         window.clear_actors()
-        if isinstance(drawing.scene, scenes.AnimationScene | scenes.ReelScene):
+        if isinstance(drawing.scene, scenes.AnimationScene | scenes.ReelScene | scenes.MachineScene):
             frames = MOVED_BY[type(drawing.scene)](window, drawing.scene, drawing.page)
             animation_picture.draw(frames, drawing.scene.motion, drawing.page, lambda: say(FRAME))
         else:

@@ -253,6 +253,45 @@ class ReelScene:
 
 
 @dataclass(frozen=True)
+class Shots:
+    """What the f frames of a program's movie show.
+
+    mandrel (f,): its angle in radians; x, r (f,): the eye along the axis and from it; roll (f,): of the eye, in
+    radians; touch (f, 3): where the fibre leaves the part, as the part stands at mandrel angle 0; laid (f,): length of
+    fibre; faulty (f,): whether the block has a fault; notes: lines of text.
+    """
+
+    mandrel: Floats
+    x: Floats
+    r: Floats
+    roll: Floats
+    touch: Floats
+    laid: Floats
+    faulty: Bools
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class MachineScene:
+    """A machine that winds a filament: the part turns on an axis, and the eye moves beside it.
+
+    origin (3,) and frame (3, 3), rows along the axis, towards the eye, and square to both: of the axis; rods (k, 2):
+    where shafts start and end along it; thick: their radius; bed: distance of the carriage's bed from the axis; band:
+    width of the eye.
+    """
+
+    filament: FilamentScene
+    origin: Floats
+    frame: Floats
+    rods: Floats
+    thick: float
+    bed: float
+    band: float
+    shots: Shots
+    motion: Motion
+
+
+@dataclass(frozen=True)
 class LaminateScene:
     """The thickness of a laminate on the part, (k,) on a scale, and that of its layers along the part.
 
@@ -290,6 +329,7 @@ Scene: TypeAlias = (
     | AnglesScene
     | AnimationScene
     | ReelScene
+    | MachineScene
     | CrossingsScene
     | MapScene
     | SlipScene
