@@ -16,6 +16,8 @@ _WIDE, _BESIDE = 10.5, 16.0
 """Width in inches of one column, and of two."""
 _ROW, _HEAD = 1.35, 1.9
 """Height in inches of a row, and of what is above and below the rows."""
+_NAME = 0.09
+"""Share of the time that the name of a layer takes."""
 _MINUTES = 600.0
 """Seconds from which the time is in minutes."""
 
@@ -133,14 +135,17 @@ def _limits(axes: Any, chart: AxesChart, span: tuple[float, float], share: float
 
 def _marks(axes: Any, chart: AxesChart, span: tuple[float, float], share: float, *, named: bool) -> None:
     """Mark where layers start and which blocks are at fault; named: whether layers are named above."""
+    before, raised = -np.inf, False
     for name, start in chart.layers:
         if not span[0] <= start < span[1]:
             continue
         if start > span[0]:
             axes.axvline(start / share, color=_INK, linewidth=1.0)
         if named:
+            raised = not raised and start - before < _NAME * (span[1] - span[0])
+            before = start
             axes.annotate(
-                name, (start / share, 1.0), xycoords=("data", "axes fraction"), xytext=(3, 4),
+                name, (start / share, 1.0), xycoords=("data", "axes fraction"), xytext=(3, 15 if raised else 4),
                 textcoords="offset points", fontsize=9, color=_INK,
             )  # fmt: skip
     for _, times in chart.faults:

@@ -17,7 +17,7 @@ from meshwind.pictures.scenes import FilamentScene, Groups
 BASE, HELD, SIGNAL = "#bcc5ce", "#3d4852", "#e0218a"
 _RIM = "#1c1c1c"
 _RIM_OPACITY, _RIM_WIDTH = 0.45, 1.3
-_DEPTH, _WITHIN = 0.3, 0.04
+DEPTH, _WITHIN = 0.3, 0.04
 """Depth by which the last band is seen before the first, and distance from turnarounds within which none is.
 
 Both are over the extent of the picture.
@@ -81,15 +81,11 @@ def add_bands(window: Any, scene: FilamentScene, page: Page) -> list[Any]:
     return [added, *(window.add_mesh(edge, render=False, **look) for edge in edges)]
 
 
-def bands(scene: FilamentScene, ribbons: Ribbons, view: View | None, page: Page) -> list[Any]:
-    """The bands of a scene, or the first of them, with their colours, and their two edges, which tell them apart.
-
-    With a view later bands are seen before earlier ones wherever they cross; without one, where they lie above them.
-    """
-    seen = ribbons
-    if view is not None and not page.perspective:  # in perspective what is nearer is larger, too
-        size = max(view.width, view.height)
-        seen = ribbons.before(view.eye, _DEPTH * size, _WITHIN * size)
+def bands(scene: FilamentScene, ribbons: Ribbons, view: View, page: Page) -> list[Any]:
+    """The bands of a scene, or the first of them, with their colours, and their two edges, which tell them apart."""
+    size = max(view.width, view.height)
+    # in perspective what is nearer is larger, too
+    seen = ribbons if page.perspective else ribbons.before(view.eye, DEPTH * size, _WITHIN * size)
     mesh = pv.PolyData.from_regular_faces(seen.points.reshape(-1, 3), seen.quads)
     mesh.point_data["Normals"] = ribbons.normals.reshape(-1, 3)
     mesh.point_data.active_normals_name = "Normals"

@@ -1,11 +1,13 @@
 """program.gif and program.mp4: a machine winds a filament; the part turns, and the eye moves beside it."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pyvista as pv
 
+from meshwind.appearance.strips import Ribbons
 from meshwind.core.cast import Floats
 from meshwind.pictures import animation_picture, canvas, filament_picture
 from meshwind.pictures.page import Page
@@ -13,7 +15,7 @@ from meshwind.pictures.scenes import MachineScene
 
 _STEEL, _RAIL, _EYE = "#8d99a5", "#c9ced4", "#1f4e79"
 _FIBRE, _FAULTY = canvas.INK, filament_picture.SIGNAL
-_THICK = 2.6
+_THICK = 5.0
 """Width of the free fibre in pixels of the designed page."""
 _CHUCK = 2.4, 1.2
 """Radius and length of the chuck at the outer end of a shaft, over the shaft's radius."""
@@ -31,22 +33,32 @@ def frames(window: Any, scene: MachineScene, page: Page) -> Iterator[Any]:
     _add(window, _bed(scene), _RAIL)
     carriage, arm = _add(window, _carriage(scene), _STEEL), _add(window, pv.Line(), _STEEL)
     eye = _add(window, _roller(scene), _EYE)
+    # bands are drawn nearer than they are, so that order tells which is seen: the eye, which is nearer still, goes along
+    nearer = filament_picture.DEPTH * max(view.width, view.height) * view.eye
     for k in range(last + 1):
-        # without a view, as the span must not vanish behind bands that are drawn nearer than they are
-        laid = whole if k == last else whole.until(float(shots.laid[k]))
-        for actor, mesh in zip(band, filament_picture.bands(filament, laid, None, page), strict=True):
-            actor.mapper.dataset = mesh
         turn = turned(scene.frame, scene.origin, float(shots.mandrel[k]))
+        laid = whole if k == last else whole.until(float(shots.laid[k]))
+        # the part stays in its place, and the camera's direction turns; the whole is turned as a body afterwards
+        meshes = filament_picture.bands(filament, laid, replace(view, eye=view.eye @ turn[:3, :3]), page)
+        for actor, mesh in zip(band, meshes, strict=True):
+            actor.mapper.dataset = mesh
         for actor in (*turning, *band):
             actor.user_matrix = turn
-        foot, tip = places(scene, k)
-        free.mapper.dataset = pv.Line(turn[:3, :3] @ shots.touch[k] + turn[:3, 3], tip)
+        foot, tip = (place + nearer for place in places(scene, k))
+        touch = shots.touch[k] + _lifted(laid, meshes[0])
+        free.mapper.dataset = pv.Line(turn[:3, :3] @ touch + turn[:3, 3], tip)
         free.prop.color = _FAULTY if shots.faulty[k] else _FIBRE
         eye.prop.color = _FAULTY if shots.faulty[k] else _EYE
         carriage.user_matrix = _matrix(np.eye(3), foot)
         arm.mapper.dataset = pv.Line(foot, tip).tube(radius=_ARM * scene.thick, n_sides=12)
         eye.user_matrix = _matrix(_rolled(scene.frame, float(shots.roll[k])), tip)
         yield _lettered(canvas.portrait(window, page, view, filament.part.points), scene, page, k)
+
+
+def _lifted(laid: Ribbons, drawn: Any) -> Floats:
+    """By how much (3,) the last place of a band is drawn nearer than it is."""
+    across = laid.points.shape[1]
+    return np.asarray(drawn.points[-across:] - laid.points[-1])[across // 2]
 
 
 def turned(frame: Floats, origin: Floats, angle: float) -> Floats:
@@ -93,7 +105,9 @@ def _shafts(window: Any, scene: MachineScene) -> Iterator[Any]:
 def _rod(scene: MachineScene, first: float, last: float, radius: float, sides: int) -> Any:
     """A rod on the axis."""
     middle = scene.origin + 0.5 * (first + last) * scene.frame[0]
-    return pv.Cylinder(middle, scene.frame[0], radius, abs(last - first), sides)
+    return pv.Cylinder(
+        center=middle, direction=scene.frame[0], radius=radius, height=abs(last - first), resolution=sides
+    )
 
 
 def _box(scene: MachineScene, sizes: tuple[float, float, float], at: Floats) -> Any:
@@ -118,7 +132,9 @@ def _carriage(scene: MachineScene) -> Any:
 
 def _roller(scene: MachineScene) -> Any:
     """The eye, a roller at the origin, along the axis of the mandrel."""
-    return pv.Cylinder((0.0, 0.0, 0.0), scene.frame[0], _ROLLER * scene.thick, scene.band, 24)
+    return pv.Cylinder(
+        center=(0.0, 0.0, 0.0), direction=scene.frame[0], radius=_ROLLER * scene.thick, height=scene.band, resolution=24
+    )
 
 
 def _lettered(image: Any, scene: MachineScene, page: Page, k: int) -> Any:

@@ -16,6 +16,8 @@ from meshwind.pictures.page import Page
 
 _COLOURS = 255
 """Colours of a GIF's palette, which has room for 256."""
+_SAMPLED = 7
+"""Frames from which the palette is taken."""
 
 
 def encoder() -> str:
@@ -56,10 +58,19 @@ def writers(files: list[Path], page: Page, rate: int, ffmpeg: str) -> Iterator[C
 def _gif(file: Path, rate: int) -> Iterator[Callable[[Any], None]]:
     held: list[Any] = []
     yield held.append
-    # one palette for all frames, so that plain areas do not flicker: that of the last, which has all colours
-    palette = held[-1].convert("RGB").quantize(_COLOURS, dither=Image.Dither.NONE)
+    # one palette for all frames, so that plain areas do not flicker
+    palette = _sampled(held).quantize(_COLOURS, dither=Image.Dither.NONE)
     drawn = [frame.convert("RGB").quantize(palette=palette, dither=Image.Dither.NONE) for frame in held]
     drawn[0].save(file, save_all=True, append_images=drawn[1:], duration=1000 // rate, loop=0, optimize=False)
+
+
+def _sampled(frames: list[Any]) -> Any:
+    """A picture of some of the frames, evenly spaced, in a column: of their colours the last alone may hide some."""
+    chosen = [frames[k] for k in sorted({round(k) for k in np.linspace(0, len(frames) - 1, _SAMPLED)})]
+    column = Image.new("RGB", (chosen[0].width, sum(frame.height for frame in chosen)))
+    for number, frame in enumerate(chosen):
+        column.paste(frame.convert("RGB"), (0, number * frame.height))
+    return column
 
 
 @contextmanager

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshwind.appearance.ribbons import ribbons
+from meshwind.appearance.ribbons import Fineness, ribbons
 from meshwind.appearance.strips import WORDS, Ribbons
 from meshwind.appearance.view import View, framed
 from meshwind.appearance.words import duration, quantity
@@ -29,6 +29,8 @@ _IN_RIM, _THIN = 0.6, 0.022
 """Largest radius of a shaft that is drawn where the machine names none: over that of the smaller rim, and its length."""
 _REACH, _PAST = 0.1, 0.06
 """Lengths of the shafts past part and eye, and distance of the bed past the eye, over what the eye goes along."""
+_FINE = Fineness(across=5, rows=15_000)
+"""Of the bands: every frame draws all of them."""
 _ROUND = 48
 """Points round a ring, and rings along the part, by which the picture is made wide enough."""
 _LINE = 21
@@ -46,7 +48,7 @@ def machine_scene(of: Subject, made: Program, reel: Reel) -> MachineScene:
     rods, thick = _shafts(made, (low - _REACH * (high - low), high + _REACH * (high - low)))
     bed = float(max(blocks.eye_r.max(), np.hypot(skin[:, 1], skin[:, 2]).max())) + _PAST * (high - low) + thick
     scene = MachineScene(
-        replace(seen, ribbons=_backwards(of) if made.backwards else seen.ribbons, scale=seen.scale),
+        replace(seen, ribbons=_bands(of, made.backwards)),
         mandrel.origin, mandrel.frame, rods, thick, bed, max(_ROLLER * thick, max(of.widths)),
         shots_of(made, frame_times(made, motion.frames)), motion,
     )  # fmt: skip
@@ -108,7 +110,7 @@ def _note(made: Program, block: Ints, times: Floats, k: int, fault: str) -> str:
         WORDS[Kind(int(blocks.kind[n]))],
         "",
         f"{duration(seconds)} of {duration(made.seconds)}",
-        f"shown {step * FRAMES_PER_SECOND:.2g} times as fast",
+        f"{quantity(step * FRAMES_PER_SECOND, digits=2)} times as fast",
         "",
         *values,
         "",
@@ -145,7 +147,8 @@ def _view(scene: MachineScene, skin: Floats) -> View:
     along, toward, third = scene.frame
     above = np.cos(_HEIGHT) * toward + np.sin(_HEIGHT) * third
     eye = unit((np.cos(_TILT) * above - np.sin(_TILT) * along)[None])[0]
-    up = unit((third - (third @ eye) * eye)[None])[0]
+    up = unit(np.cross(along, eye)[None])[0]  # the axis is level on the picture
+    up = up if up @ third > 0.0 else -up
     turn = np.linspace(0.0, 2.0 * np.pi, _ROUND, endpoint=False)
     ring = np.stack([0.0 * turn, np.cos(turn), np.sin(turn)], axis=1)
     radius = np.hypot(skin[:, 1], skin[:, 2])
@@ -166,10 +169,8 @@ def _view(scene: MachineScene, skin: Floats) -> View:
     return framed(points, View(np.cross(up, eye), up, eye, scene.origin, 1.0, 1.0))
 
 
-def _backwards(of: Subject) -> Ribbons:
-    """The bands of filaments that are wound from the end of the last to the start of the first."""
-    turned = [
-        Filament(each.course.chosen(slice(None, None, -1)), each.layer[::-1], each.thickness[::-1])
-        for each in of.filaments[::-1]
-    ]
-    return ribbons(turned, of.paths.surface, of.widths, of.turned)
+def _bands(of: Subject, backwards: bool) -> Ribbons:
+    """The bands of the filaments; backwards: wound from the end of the last to the start of the first."""
+    order = slice(None, None, -1) if backwards else slice(None)
+    wound = [Filament(each.course.chosen(order), each.layer[order], each.thickness[order]) for each in of.filaments[order]]
+    return ribbons(wound, of.paths.surface, of.widths, of.turned, _FINE)
