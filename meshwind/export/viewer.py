@@ -17,6 +17,7 @@ from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.export.packing import Packed, Stops, packed, stops
 from meshwind.export.viewer_filament import FilamentData, filament_data, gear_of
+from meshwind.export.viewer_program import ProgramData, Wound
 from meshwind.path.lengths import bridged_share, bridging, lengths
 from meshwind.results.laminate_reading import read_laminate
 from meshwind.results.reading import Results, read_surface_grid
@@ -92,27 +93,29 @@ class PageData(TypedDict):
     max_gap: float
     camera: CameraData
     filament: FilamentData | None
+    program: ProgramData | None
 
 
-def write_viewer(folder: Path, results: Results) -> list[str]:
-    """Write viewer.html into an existing folder; raises BadInputError if plotly is not installed."""
+def write_viewer(folder: Path, results: Results, wound: Wound | None = None) -> list[str]:
+    """Write viewer.html, or the page of a program, into an existing folder; BadInputError if plotly is not installed."""
     if find_spec("plotly") is None:
         raise BadInputError(_NO_PLOTLY)
     from plotly.offline import get_plotlyjs
 
     page = Path(__file__).with_suffix(".html").read_text(encoding="utf-8")
-    data = json.dumps(page_data(results), allow_nan=False).replace("</", "<\\/")
+    data = json.dumps(page_data(results, wound), allow_nan=False).replace("</", "<\\/")
     for mark, content in (("/*PLOTLY*/", get_plotlyjs()), ("/*SCENE*/", data), ("<!--NAME-->", _escaped(results.name))):
         before, after = page.split(mark)
         page = before + content + after
-    (folder / VIEWER).write_text(page, encoding="utf-8")
+    (folder / (VIEWER if wound is None else wound.file)).write_text(page, encoding="utf-8")
     return []
 
 
-def page_data(results: Results) -> PageData:
-    """Contents of the page."""
+def page_data(results: Results, wound: Wound | None = None) -> PageData:
+    """Contents of the page, with the program of a machine if there is one."""
     grid = read_surface_grid(results.folder, results.surface)
     stands = gear_of(results)
+    beside = stands.points if wound is None else np.concatenate([stands.points, wound.eye])
     return {
         "name": results.name,
         "units": results.units,
@@ -121,8 +124,9 @@ def page_data(results: Results) -> PageData:
         "fibres": _fibres(results),
         "colours": {"gap": stops("gap")},
         "max_gap": float(lengths(results.paths).max_gap[results.at_rest].max(initial=0.0)),
-        "camera": _camera(grid, results, stands.points),
-        "filament": filament_data(results, stands),
+        "camera": _camera(grid, results, beside),
+        "filament": filament_data(results, stands, results.filaments if wound is None else wound.filaments),
+        "program": None if wound is None else wound.data,
     }
 
 

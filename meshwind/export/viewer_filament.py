@@ -1,5 +1,6 @@
 """The filament in the page for a browser: its band in the order of winding, and what the turnarounds stand on."""
 
+from collections.abc import Sequence
 from typing import TypedDict
 
 import numpy as np
@@ -11,6 +12,7 @@ from meshwind.appearance.strips import WORDS, Gear
 from meshwind.core.cast import Ints
 from meshwind.export.packing import Packed, Stops, packed, stops
 from meshwind.filament.course import Kind
+from meshwind.filament.filament import Filament
 from meshwind.results.reading import Results
 
 _FINE = Fineness(across=3, rows=9000)
@@ -57,12 +59,12 @@ def gear_of(results: Results) -> Gear:
     return gear(results.surface, results.filaments, turned_by(results.patterns))
 
 
-def filament_data(results: Results, stands: Gear) -> FilamentData | None:
-    """The filament of a run and what its turnarounds stand on; None if it has none."""
-    if not results.filaments:
+def filament_data(results: Results, stands: Gear, filaments: Sequence[Filament]) -> FilamentData | None:
+    """The filaments of a run in order of winding and what their turnarounds stand on; None if there are none."""
+    if not filaments:
         return None
     turned = turned_by(results.patterns)
-    made = ribbons(results.filaments, results.surface, results.band_widths, turned, _FINE)
+    made = ribbons(filaments, results.surface, results.band_widths, turned, _FINE)
     quads = made.quads
     corner = (made.points.shape[1] - 1) * 2
     first = np.cumsum(made.sizes) - made.sizes

@@ -1,5 +1,6 @@
 """One filament in order of winding, over one layer or several."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,6 +18,15 @@ class Filament:
     course: Course
     layer: Ints
     thickness: Floats
+
+
+def backwards(filaments: Sequence[Filament]) -> tuple[Filament, ...]:
+    """The filaments from the end of the last to the start of the first."""
+    order = slice(None, None, -1)
+    return tuple(
+        Filament(each.course.chosen(order), frozen(each.layer[order]), frozen(each.thickness[order]))
+        for each in filaments[order]
+    )
 
 
 def filaments_of(layer: ClosedLayer) -> list[Filament]:

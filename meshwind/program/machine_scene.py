@@ -12,7 +12,7 @@ from meshwind.appearance.words import duration, quantity
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.vectors import unit
 from meshwind.filament.course import Kind
-from meshwind.filament.filament import Filament
+from meshwind.filament.filament import backwards
 from meshwind.pictures.animation_scene import FRAMES_PER_SECOND, Reel, motion_of
 from meshwind.pictures.filament_scene import filament_scene
 from meshwind.pictures.scenes import MachineScene, Shots
@@ -31,6 +31,8 @@ _REACH, _PAST = 0.1, 0.06
 """Lengths of the shafts past part and eye, and distance of the bed past the eye, over what the eye goes along."""
 _FINE = Fineness(across=5, rows=15_000)
 """Of the bands: every frame draws all of them."""
+_RARE = 0.1
+"""Share of the frames that may be moved to blocks at fault: with more they would show nothing else."""
 _ROUND = 48
 """Points round a ring, and rings along the part, by which the picture is made wide enough."""
 _LINE = 21
@@ -48,7 +50,7 @@ def machine_scene(of: Subject, made: Program, reel: Reel) -> MachineScene:
     rods, thick = _shafts(made, (low - _REACH * (high - low), high + _REACH * (high - low)))
     bed = float(max(blocks.eye_r.max(), np.hypot(skin[:, 1], skin[:, 2]).max())) + _PAST * (high - low) + thick
     scene = MachineScene(
-        replace(seen, ribbons=_bands(of, made.backwards)),
+        replace(seen, ribbons=_bands(of, made)),
         mandrel.origin, mandrel.frame, rods, thick, bed, max(_ROLLER * thick, max(of.widths)),
         shots_of(made, frame_times(made, motion.frames)), motion,
     )  # fmt: skip
@@ -60,8 +62,8 @@ def frame_times(made: Program, frames: int) -> Floats:
     """Seconds (f,) of the program at the frames of a movie.
 
     They are even over the program where the part then turns slowly enough for the eye to follow.  Otherwise the first
-    half of the frames shows as much of the program as they can so, and the other half the rest.  Where a block at fault
-    would be passed over, its own time is taken.
+    half of the frames shows as much of the program as they can so, and the other half the rest.  Where a rare block at
+    fault would be passed over, its own time is taken.
     """
     time, first = made.blocks.time, frames // 2
     gone = np.maximum.accumulate(made.blocks.mandrel) - made.blocks.mandrel[0]
@@ -72,7 +74,9 @@ def frame_times(made: Program, frames: int) -> Floats:
     faulty = np.unique(time[[fault.index for fault in made.faults]])
     after = np.searchsorted(faulty, times[:-1], side="right")
     at = np.append(faulty, np.inf)[after]
-    times[1:] = np.where(at < times[1:], at, times[1:])
+    passed = at < times[1:]
+    if passed.mean() < _RARE:
+        times[1:][passed] = at[passed]
     return times
 
 
@@ -109,7 +113,8 @@ def _note(made: Program, block: Ints, times: Floats, k: int, fault: str) -> str:
         f"circuit {blocks.circuit[n] + 1}, pass {'back' if blocks.passed[n] % 2 else 'out'}",
         WORDS[Kind(int(blocks.kind[n]))],
         "",
-        f"{duration(seconds)} of {duration(made.seconds)}",
+        duration(seconds),
+        f"of {duration(made.seconds)}",
         f"{quantity(step * FRAMES_PER_SECOND, digits=2)} times as fast",
         "",
         *values,
@@ -169,8 +174,7 @@ def _view(scene: MachineScene, skin: Floats) -> View:
     return framed(points, View(np.cross(up, eye), up, eye, scene.origin, 1.0, 1.0))
 
 
-def _bands(of: Subject, backwards: bool) -> Ribbons:
-    """The bands of the filaments; backwards: wound from the end of the last to the start of the first."""
-    order = slice(None, None, -1) if backwards else slice(None)
-    wound = [Filament(each.course.chosen(order), each.layer[order], each.thickness[order]) for each in of.filaments[order]]
+def _bands(of: Subject, made: Program) -> Ribbons:
+    """The bands of the filaments as they are wound."""
+    wound = backwards(of.filaments) if made.backwards else of.filaments
     return ribbons(wound, of.paths.surface, of.widths, of.turned, _FINE)
