@@ -24,6 +24,7 @@ from meshwind.program.machine import DEFAULT, FEEDS, MOVES, Eye, machine_names, 
 from meshwind.program.posts.dialects import DIALECTS
 from meshwind.program.program import Work, program
 from meshwind.program.robot import APPROACH, robot_poses
+from meshwind.program.seen import SEEN
 from meshwind.program.targets import COLUMNS, TARGETS, write_program
 from meshwind.program.timing import Limits, timed
 from meshwind.results.filament_file import write_filaments
@@ -135,7 +136,7 @@ def test_the_command_says_what_it_wrote(run: Path, tmp_path: Path) -> None:
     listed = called("--machines")
     assert listed.returncode == 0
     assert [line.split()[0] for line in listed.stdout.splitlines()] == machine_names()
-    assert (*TARGETS, *DIALECTS) == command.TARGETS
+    assert (*TARGETS, *SEEN, *DIALECTS) == command.TARGETS
     assert DEFAULT in machine_names()
     assert len(machine_names()) == 6
 

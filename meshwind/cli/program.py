@@ -17,10 +17,13 @@ EXAMPLES = """
     # for a machine of your own, and as poses for a robot
     meshwind program part-wound --machine mine.toml --to csv,poses
 
+    # a page to go through it block by block, and a movie of the machine
+    meshwind program part-wound --to viewer,gif --seconds 15
+
     # in the words of a controller
     meshwind program part-wound --to linuxcnc
 """
-TARGETS = "csv", "poses", "linuxcnc", "grbl", "marlin", "fanuc", "siemens", "krl"
+TARGETS = "csv", "poses", "axes", "viewer", "gif", "mp4", "linuxcnc", "grbl", "marlin", "fanuc", "siemens", "krl"
 """Names for help and completion: the module that defines them takes long to import."""
 _MACHINE = "Machine and files"
 WITH_FAULTS = 3
@@ -57,10 +60,11 @@ def program(
             autocompletion=some_of(*TARGETS),
             rich_help_panel=_MACHINE,
         ),
-    ] = "csv",
+    ] = "csv,axes",
     tension: Annotated[
         float, typer.Option(help="Tension of the fibre, in N; 0 sets none.", rich_help_panel=_MACHINE)
     ] = 0.0,
+    seconds: Annotated[float, typer.Option(help="How long a movie takes.", rich_help_panel=_MACHINE)] = 10.0,
     machines: Annotated[
         bool,
         typer.Option(
@@ -77,7 +81,9 @@ def program(
     """Write the program of a machine that winds the filament of a run, which was wound with --continuous.
 
     program.csv: every block with the fibre, the eye, the axes and the time.  program.json: the mandrel's axis, the
-    time and what is wrong.  poses.csv (poses): the eye for a robot, the mandrel on an external axis, in mm.
+    time and what is wrong.  axes.png (axes): the axes over time, and what limits them.  poses.csv (poses): the eye for a robot, the mandrel on an
+    external axis, in mm.  program.html (viewer): a page to go through it block by block.  program.gif, program.mp4: the
+    machine at work.
     program.ngc (linuxcnc), program.gcode (grbl, marlin), program.nc (fanuc), program.mpf (siemens), program.src (krl):
     the program in the words of a controller.  Each is read back from its text and compared with the program.
 
@@ -88,7 +94,7 @@ def program(
     del machines
     from meshwind.program.targets import write_program
 
-    done = write_program(folder, machine, split_names(to), out, tension)
+    done = write_program(folder, machine, split_names(to), out, tension, seconds)
     lines = [*program_lines(done.figures), *(f"note      {note}" for note in done.notes)]
     lines += [line for name, found in done.figures["texts"].items() for line in text_lines(name, found)]
     lines += [f"file      {file}" for file in done.files]

@@ -149,8 +149,8 @@ def _marks(axes: Any, chart: AxesChart, span: tuple[float, float], share: float,
                 textcoords="offset points", fontsize=9, color=_INK,
             )  # fmt: skip
     for _, times in chart.faults:
-        before = chart.time[np.maximum(np.searchsorted(chart.time, times) - 1, 0)]
-        bars = np.stack([before, times - before], axis=1) / share
+        begin = chart.time[np.maximum(np.searchsorted(chart.time, times) - 1, 0)]
+        bars = np.stack([begin, times - begin], axis=1) / share
         across = {"transform": axes.get_xaxis_transform(), "color": _SIGNAL}
         axes.broken_barh(bars, (0.0, 1.0), alpha=0.22, linewidth=0, zorder=0, **across)
         inside = times[(times >= span[0]) & (times <= span[1])] / share

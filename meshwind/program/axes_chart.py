@@ -19,7 +19,9 @@ def axes_chart(made: Program) -> AxesChart:
     blocks, machine = made.blocks, made.machine
     laid = quantity(float(blocks.arc_length[-1]), made.work.units)
     turns = float(blocks.mandrel[-1] - blocks.mandrel[0]) / 360.0
-    subtitle = f"{machine.name}: {machine.words}  ·  {len(blocks)} blocks, {duration(made.seconds)}, {turns:.4g} turns  ·  "
+    subtitle = (
+        f"{machine.name}: {machine.words}  ·  {len(blocks)} blocks, {duration(made.seconds)}, {turns:.4g} turns  ·  "
+    )
     faults = _faults(made)
     wrong = "; ".join(f"{words} at {len(times)} blocks" for words, times in faults)
     starts = [int(np.flatnonzero(blocks.layer == layer)[0]) for layer in np.unique(blocks.layer)]

@@ -26,7 +26,7 @@ _TURN = 12.0
 _HEIGHT, _TILT = np.radians(48.0), np.radians(16.0)
 """Angles from which the machine is seen: from above the eye, and from the side of an end."""
 _IN_RIM, _THIN = 0.6, 0.022
-"""Largest radius of a shaft that is drawn where the machine names none: over that of the smaller rim, and its length."""
+"""Largest radius of a shaft that is drawn where the machine names none: over that of the smaller rim, and length."""
 _REACH, _PAST = 0.1, 0.06
 """Lengths of the shafts past part and eye, and distance of the bed past the eye, over what the eye goes along."""
 _FINE = Fineness(across=5, rows=15_000)
@@ -70,7 +70,9 @@ def frame_times(made: Program, frames: int) -> Floats:
     times = np.linspace(0.0, made.seconds, frames)
     if gone[-1] > _TURN * (frames - 1):
         slow = min(float(time[np.searchsorted(gone, _TURN * first)]), 0.5 * made.seconds)
-        times = np.concatenate([np.linspace(0.0, slow, first, endpoint=False), np.linspace(slow, made.seconds, frames - first)])
+        times = np.concatenate(
+            [np.linspace(0.0, slow, first, endpoint=False), np.linspace(slow, made.seconds, frames - first)]
+        )
     faulty = np.unique(time[[fault.index for fault in made.faults]])
     after = np.searchsorted(faulty, times[:-1], side="right")
     at = np.append(faulty, np.inf)[after]
@@ -92,7 +94,8 @@ def shots_of(made: Program, times: Floats) -> Shots:
     faulty = np.isin(block, list(kinds))
     laid = at(blocks.arc_length)
     return Shots(
-        mandrel=np.radians(at(blocks.mandrel)), x=at(blocks.eye_x), r=at(blocks.eye_r), roll=np.radians(at(blocks.roll)),
+        mandrel=np.radians(at(blocks.mandrel)), x=at(blocks.eye_x), r=at(blocks.eye_r),
+        roll=np.radians(at(blocks.roll)),
         touch=np.stack([at(blocks.point[:, k]) for k in range(3)], axis=1), laid=laid, faulty=faulty,
         notes=tuple(_note(made, block, times, k, kinds.get(int(block[k]), "")) for k in range(len(times))),
     )  # fmt: skip
@@ -148,7 +151,7 @@ def _shafts(made: Program, ends: tuple[float, float]) -> tuple[Floats, float]:
 
 
 def _view(scene: MachineScene, skin: Floats) -> View:
-    """The view from above the eye, with all that the part and the machine take up; skin (k, 3): along and off the axis."""
+    """The view from above the eye, wide enough for part and machine; skin (k, 3): in the axis' frame."""
     along, toward, third = scene.frame
     above = np.cos(_HEIGHT) * toward + np.sin(_HEIGHT) * third
     eye = unit((np.cos(_TILT) * above - np.sin(_TILT) * along)[None])[0]

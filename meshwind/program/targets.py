@@ -18,6 +18,7 @@ from meshwind.program.posts.dialects import DIALECTS
 from meshwind.program.program import Program, Work, program
 from meshwind.program.readback.compare import ReadBack
 from meshwind.program.robot import HEADER, LEGEND, rows
+from meshwind.program.seen import SECONDS, SEEN, write_seen
 from meshwind.program.texts import write_texts
 from meshwind.results.folder import beside
 from meshwind.results.reading import read_results
@@ -54,18 +55,21 @@ def write_program(
     to: Sequence[str] = (),
     out: str | PathLike[str] | None = None,
     tension: float = 0.0,
+    seconds: float = SECONDS,
 ) -> Written:
     """Write the program for the filament of a run's folder into `out`, by default the folder itself.
 
     program.csv and program.json are always written, and what `to` names of `TARGETS` beside them.  All files appear,
-    or none.  Raises BadInputError if the folder has no filament, or a machine or a target is not known.
+    or none; seconds: of a movie.  Raises BadInputError if the folder has no filament, or a machine or a target is not
+    known.
     """
-    known = (*TARGETS, *DIALECTS)
+    known = (*TARGETS, *SEEN, *DIALECTS)
     for name in to:
         if name not in known:
             raise BadInputError(f"target {name!r} is not known; {nearest(name, known)}")
     used = read_machine(machine)
-    made = program(Work.of(read_results(folder)), used, tension)
+    results = read_results(folder)
+    made = program(Work.of(results), used, tension)
     target = Path(folder if out is None else out)
     notes: list[str] = []
     with beside(target) as staging:
@@ -73,6 +77,7 @@ def write_program(
         for name in (each for each in wanted if each in TARGETS):
             notes += TARGETS[name](staging, made)
         texts = write_texts(staging, made, [name for name in wanted if name in DIALECTS])
+        write_seen(staging, results, made, [name for name in wanted if name in SEEN], seconds)
         names = sorted(path.relative_to(staging) for path in staging.rglob("*") if path.is_file())
         names = sorted([*names, Path(PROGRAM_JSON)])
         figures = figures_of(made) | {

@@ -1,0 +1,160 @@
+"""A program as it is seen: the chart of its axes, the frames of its movie, and the data of its page."""
+
+import base64
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from layup_shapes import cylinder, helices
+from PIL import Image
+from program_parts import filament
+
+from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
+from meshwind.layup.layup import assess
+from meshwind.mesh.geometry.mesh import Mesh
+from meshwind.pictures.axes_picture import draw_axes
+from meshwind.pictures.machine_picture import turned
+from meshwind.program.axes_chart import axes_chart
+from meshwind.program.faults import SPAN, Fault
+from meshwind.program.machine import read_machine
+from meshwind.program.machine_scene import frame_times, shots_of
+from meshwind.program.page import program_data
+from meshwind.program.program import Program, Work, program
+from meshwind.program.seen import SEEN
+from meshwind.program.targets import write_program
+from meshwind.results.filament_file import write_filaments
+from meshwind.results.reading import read_results
+from meshwind.results.report import RunFacts, report, write_report
+from meshwind.results.write import write_files
+from meshwind.surface.grid import grid
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run's folder with a filament."""
+    out = tmp_path_factory.mktemp("seen")
+    layup = assess(helices(4, 0.6, 61, cylinder()))
+    surface = layup.paths.surface
+    on = grid(surface)
+    mesh = Mesh(on.points, np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]]))
+    write_files(out, layup, mesh)
+    write_filaments(out / "filament.vtp", [filament(surface, 3, 0.6, 0.2)])
+    write_report(out / "report.json", report(layup, mesh, None, RunFacts(0.6)))
+    return out
+
+
+@pytest.fixture(scope="module")
+def made(run: Path) -> Program:
+    found = program(Work.of(read_results(run)), read_machine("lathe-5"))
+    return replace(found, faults=(Fault(7, SPAN, "the free span meets the part"),))
+
+
+def array(packed: Any) -> Floats:
+    return np.frombuffer(base64.b64decode(packed["data"]), dtype=f"<{packed['type']}").astype(float)
+
+
+def test_the_chart_shows_the_blocks(made: Program, tmp_path: Path) -> None:
+    chart, blocks = axes_chart(made), made.blocks
+    assert [curve.name for curve in chart.curves] == ["mandrel A", "carriage X", "cross-feed Y", "roll B", "yaw C"]
+    for curve, values in zip(
+        chart.curves, (blocks.mandrel, blocks.eye_x, blocks.eye_r, blocks.roll, blocks.yaw), strict=True
+    ):
+        assert np.array_equal(curve.values, values)
+    assert chart.circuit is not None
+    assert chart.circuit[1] == blocks.time[np.flatnonzero(blocks.circuit == 0)[-1]]
+    assert np.nansum(chart.speed * np.diff(chart.time)) == pytest.approx(
+        np.abs(np.diff(blocks.arc_length + blocks.free_length)).sum(), rel=1e-9
+    )
+    assert np.nanmax(chart.speed) <= chart.fastest * (1 + 1e-9)
+    spent = [float(np.diff(chart.time)[chart.limiting == k].sum()) for k in range(len(chart.names))]
+    assert spent == pytest.approx(list(made.limits.values()))
+    assert [(words, times.tolist()) for words, times in chart.faults] == [
+        ("the free span meets the part", [blocks.time[7]])
+    ]
+    draw_axes(tmp_path / "axes.png", chart)
+    with Image.open(tmp_path / "axes.png") as drawn:
+        pixels = np.asarray(drawn.convert("RGB"), dtype=int)
+    for colour in ("2f6da8", "e08a1e", "1c7c3c", "8a5fb0", "b3541e", "e0218a"):
+        wanted = [int(colour[k : k + 2], 16) for k in (0, 2, 4)]
+        assert (np.abs(pixels - wanted).max(axis=2) < 40).sum() > 20, colour
+
+
+def test_the_page_has_the_blocks(made: Program) -> None:
+    data, blocks = program_data(made), made.blocks
+    assert json.loads(json.dumps(data)) == data
+    angle = -np.radians(array(data["angle"]))[:, None]
+    along, zero, third = np.array(data["frame"])
+    eye = np.array(data["origin"]) + array(data["x"])[:, None] * along
+    eye = eye + array(data["r"])[:, None] * (np.cos(angle) * zero + np.sin(angle) * third)
+    size = made.work.diagonal
+    assert np.abs(eye - blocks.eye).max() < 2e-6 * size
+    assert np.abs(array(data["point"]).reshape(3, -1).T - blocks.point).max() < 2e-7 * size
+    assert 360.0 * array(data["turns"]) + array(data["angle"]) == pytest.approx(blocks.mandrel, abs=4e-5)
+    first = array(data["first"]).astype(int)
+    run = np.searchsorted(first, np.arange(len(blocks)), side="right") - 1
+    for name in ("kind", "layer", "circuit", "passed"):
+        assert np.array_equal(array(data[name])[run], getattr(blocks, name)), name  # type: ignore[literal-required]
+    assert array(data["faulty"]).tolist() == [7.0]
+    thin = program_data(made, 40)
+    kept = array(thin["index"]).astype(int)
+    assert len(kept) <= 42 and {0, 7, len(blocks) - 1} <= set(kept.tolist())
+    assert kept[array(thin["faulty"]).astype(int)].tolist() == [7]
+    assert array(thin["time"]) == pytest.approx(blocks.time[kept], rel=1e-6)
+
+
+def test_the_machine_stands_where_the_blocks_say(made: Program) -> None:
+    """The part turns so that the eye stays in its plane, and the span is as long as the block's."""
+    blocks, mandrel = made.blocks, made.mandrel
+    shots = shots_of(made, blocks.time)
+    once = np.flatnonzero(np.append(True, np.diff(blocks.time) > 0.0) & np.append(np.diff(blocks.time) > 0.0, True))
+    assert len(once) > 0.9 * len(blocks)
+    for k in once[::9]:
+        turn = turned(mandrel.frame, mandrel.origin, float(shots.mandrel[k]))
+        eye = mandrel.origin + shots.x[k] * mandrel.direction + shots.r[k] * mandrel.zero
+        assert turn[:3, :3] @ blocks.eye[k] + turn[:3, 3] == pytest.approx(eye, abs=1e-9)
+        touch = turn[:3, :3] @ shots.touch[k] + turn[:3, 3]
+        assert np.linalg.norm(eye - touch) == pytest.approx(blocks.free_length[k], abs=1e-9)
+    assert np.flatnonzero(shots.faulty).tolist() == [7]
+    assert f"roll {blocks.roll[once[3]]:,.1f}°" in shots.notes[once[3]]
+
+
+def test_frames_are_even_and_slow_first(made: Program) -> None:
+    sound = replace(made, faults=())
+    even = frame_times(sound, 2000)
+    assert np.diff(even) == pytest.approx(made.seconds / 1999)
+    few = frame_times(sound, 20)
+    assert (len(few), few[0], few[-1]) == (20, 0.0, made.seconds)
+    turns = np.interp(few, made.blocks.time, made.blocks.mandrel)
+    assert turns[10] - turns[0] <= 12.0 * 11 < turns[-1] - turns[10]
+    assert np.isin(made.blocks.time[7], frame_times(made, 20))
+    assert (np.diff(frame_times(made, 20)) >= 0.0).all()
+
+
+@pytest.mark.usefixtures("opengl")
+def test_the_movie_moves(run: Path, tmp_path: Path) -> None:
+    done = write_program(run, to=("axes", "gif", "viewer"), out=tmp_path, seconds=1.0)
+    assert [file.name for file in done.files] == [
+        "axes.png", "program.csv", "program.gif", "program.html", "program.json",
+    ]  # fmt: skip
+    with Image.open(tmp_path / "program.gif") as movie:
+        assert movie.n_frames >= 25  # type: ignore[attr-defined]
+        frames = []
+        for k in range(25):
+            movie.seek(k)
+            frames.append(np.asarray(movie.convert("RGB"), dtype=int)[150:650, :680])
+    assert all(frame.std() > 10.0 for frame in frames)
+    changed = [float((np.abs(a - b).max(axis=2) > 30).mean()) for a, b in zip(frames, frames[1:], strict=False)]
+    assert min(changed) > 1e-3
+    page = (tmp_path / "program.html").read_text(encoding="utf-8")
+    assert '"turns": {"type": "i4"' in page
+
+
+def test_a_movie_of_no_length_is_refused(run: Path, tmp_path: Path) -> None:
+    with pytest.raises(BadInputError, match="seconds is 0"):
+        write_program(run, to=("gif",), out=tmp_path, seconds=0.0)
+    assert not list(tmp_path.iterdir())
+    assert set(SEEN) == {"axes", "viewer", "gif", "mp4"}
