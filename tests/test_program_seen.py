@@ -3,6 +3,7 @@
 import base64
 import json
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -147,7 +148,7 @@ def test_the_movie_moves(run: Path, tmp_path: Path) -> None:
             movie.seek(k)
             frames.append(np.asarray(movie.convert("RGB"), dtype=int)[150:650, :680])
     assert all(frame.std() > 10.0 for frame in frames)
-    changed = [float((np.abs(a - b).max(axis=2) > 30).mean()) for a, b in zip(frames, frames[1:], strict=False)]
+    changed = [float((np.abs(a - b).max(axis=2) > 30).mean()) for a, b in pairwise(frames)]
     assert min(changed) > 1e-3
     page = (tmp_path / "program.html").read_text(encoding="utf-8")
     assert '"turns": {"type": "i4"' in page

@@ -80,12 +80,12 @@ def program(
 ) -> int:
     """Write the program of a machine that winds the filament of a run, which was wound with --continuous.
 
-    program.csv: every block with the fibre, the eye, the axes and the time.  program.json: the mandrel's axis, the
-    time and what is wrong.  axes.png (axes): the axes over time, and what limits them.  poses.csv (poses): the eye for a robot, the mandrel on an
-    external axis, in mm.  program.html (viewer): a page to go through it block by block.  program.gif, program.mp4: the
-    machine at work.
-    program.ngc (linuxcnc), program.gcode (grbl, marlin), program.nc (fanuc), program.mpf (siemens), program.src (krl):
-    the program in the words of a controller.  Each is read back from its text and compared with the program.
+    program.csv: every block with the fibre, the eye, the axes and the time. program.json: the mandrel's axis, the time
+    and what is wrong. axes.png (axes): the axes over time, and what limits them. poses.csv (poses): the eye for a
+    robot, the mandrel on an external axis, in mm. program.html (viewer): a page to go through it block by block.
+    program.gif, program.mp4: the machine at work. program.ngc (linuxcnc), program.gcode (grbl, marlin), program.nc
+    (fanuc), program.mpf (siemens), program.src (krl): the program in the words of a controller. Each is read back from
+    its text and compared with the program.
 
     Exit status: 0 done; 1 the summary could not be printed; 2 bad input or usage; 3 written, but with faults: the free
     span or the eye meets the part, an axis cannot go where it must, or a text was not read back as it was meant

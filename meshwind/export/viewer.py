@@ -97,7 +97,7 @@ class PageData(TypedDict):
 
 
 def write_viewer(folder: Path, results: Results, wound: Wound | None = None) -> list[str]:
-    """Write viewer.html, or the page of a program, into an existing folder; BadInputError if plotly is not installed."""
+    """Write viewer.html, or the page of a program, into a folder; raises BadInputError if plotly is not installed."""
     if find_spec("plotly") is None:
         raise BadInputError(_NO_PLOTLY)
     from plotly.offline import get_plotlyjs

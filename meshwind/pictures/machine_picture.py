@@ -33,7 +33,7 @@ def frames(window: Any, scene: MachineScene, page: Page) -> Iterator[Any]:
     _add(window, _bed(scene), _RAIL)
     carriage, arm = _add(window, _carriage(scene), _STEEL), _add(window, pv.Line(), _STEEL)
     eye = _add(window, _roller(scene), _EYE)
-    # bands are drawn nearer than they are, so that order tells which is seen: the eye, which is nearer still, goes along
+    # bands are drawn nearer than they are, so that order tells which is seen; the eye, nearer still, goes along
     nearer = filament_picture.DEPTH * max(view.width, view.height) * view.eye
     for k in range(last + 1):
         turn = turned(scene.frame, scene.origin, float(shots.mandrel[k]))
