@@ -12,6 +12,10 @@ import pytest
 from layup_shapes import cylinder, helices
 from PIL import Image
 from program_parts import filament
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.ui import WebDriverWait
+from viewer_browser import opened
 
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
@@ -152,6 +156,25 @@ def test_the_movie_moves(run: Path, tmp_path: Path) -> None:
     assert min(changed) > 1e-3
     page = (tmp_path / "program.html").read_text(encoding="utf-8")
     assert '"turns": {"type": "i4"' in page
+
+
+def test_the_page_goes_from_block_to_block(run: Path, tmp_path: Path, chromium: tuple[str, str]) -> None:
+    found = write_program(run, to=("viewer",), out=tmp_path).program.blocks
+    with opened(tmp_path / "program.html", tmp_path / "profile", chromium) as browser:
+
+        def at(block: int) -> str:
+            WebDriverWait(browser, 20).until(
+                lambda seen: seen.execute_script("return document.body.dataset.block") == str(block)
+            )
+            return browser.find_element(By.ID, "here").text
+
+        last = len(found) - 1
+        for keys, block in ((Keys.ARROW_LEFT, last - 1), (Keys.HOME, 0), (3 * Keys.ARROW_RIGHT, 3)):
+            browser.find_element(By.TAG_NAME, "body").send_keys(keys)
+            text = at(block)
+            assert f"mandrel A {found.mandrel[block]:.2f}°" in text
+            assert f"carriage X {found.eye_x[block]:.2f} mm" in text
+        assert [line for line in browser.get_log("browser") if line["level"] == "SEVERE"] == []
 
 
 def test_a_movie_of_no_length_is_refused(run: Path, tmp_path: Path) -> None:
