@@ -65,6 +65,14 @@ def program(
         float, typer.Option(help="Tension of the fibre, in N; 0 sets none.", rich_help_panel=_MACHINE)
     ] = 0.0,
     seconds: Annotated[float, typer.Option(help="How long a movie takes.", rich_help_panel=_MACHINE)] = 10.0,
+    again: Annotated[
+        bool,
+        typer.Option(
+            "--again/--no-again",
+            help="Wind the program again by physics: does the fibre come to lie where it was planned?",
+            rich_help_panel=_MACHINE,
+        ),
+    ] = True,
     machines: Annotated[
         bool,
         typer.Option(
@@ -87,14 +95,17 @@ def program(
     (fanuc), program.mpf (siemens), program.src (krl): the program in the words of a controller. Each is read back from
     its text and compared with the program.
 
+    The program is wound again: the fibre is pulled by the moving eye over the part, with friction and bridges, and
+    where it comes to lie is compared with where it was planned, pass by pass.  Turnarounds are taken as they are.
+
     Exit status: 0 done; 1 the summary could not be printed; 2 bad input or usage; 3 written, but with faults: the free
-    span or the eye meets the part, an axis cannot go where it must, or a text was not read back as it was meant
-    (program.json lists them).
+    span or the eye meets the part, an axis cannot go where it must, the fibre does not come to lie within half of its
+    band's width of where it was planned, or a text was not read back as it was meant (program.json lists them).
     """
     del machines
     from meshwind.program.targets import write_program
 
-    done = write_program(folder, machine, split_names(to), out, tension, seconds)
+    done = write_program(folder, machine, split_names(to), out, tension, seconds, again)
     lines = [*program_lines(done.figures), *(f"note      {note}" for note in done.notes)]
     lines += [line for name, found in done.figures["texts"].items() for line in text_lines(name, found)]
     lines += [f"file      {file}" for file in done.files]
@@ -125,6 +136,8 @@ def program_lines(figures: dict[str, Any]) -> list[str]:
             f"note      the mandrel turns back by up to {back['most']:.3g} degrees, while the eye swings over an edge; "
             f"{back['laying']:.3g} degrees in all while fibre is laid"
         )
+    if figures["rewound"]:
+        lines.append(rewound_line(figures["rewound"], unit))
     lines += [f"tried     {words}" for words in figures["remedies"]]
     kinds = dict.fromkeys(fault["kind"] for fault in figures["faults"])
     for kind in kinds:
@@ -133,6 +146,17 @@ def program_lines(figures: dict[str, Any]) -> list[str]:
         if len(found) > _MOST:
             lines.append(f"warning   and {len(found) - _MOST} more blocks of this kind; program.json has them")
     return lines
+
+
+def rewound_line(found: dict[str, Any], unit: str) -> str:
+    """What is printed of a program that was wound again."""
+    away = found["distance"]
+    near = f", at most {away['max']:.2g} {unit} off (half of them {away['median']:.2g})" if away else ""
+    slid = f"; {found['slid']} slid, as they need more friction" if found["slid"] else ""
+    return (
+        f"rewound   {found['good']} of {found['passes']} passes come to lie where they were planned{near}{slid}; "
+        f"slack up to {found['slack']:.2g} {unit}; {found['seconds']:.2g} s"
+    )
 
 
 def text_lines(name: str, found: dict[str, Any]) -> list[str]:

@@ -43,17 +43,21 @@ class Shaft:
 
 def obstacle(on: Grid, diagonal: float, mandrel: Mandrel, shaft: Shaft) -> Obstacle:
     """The obstacle that a part of a diagonal, sampled on a grid, and the shaft in it are."""
-    normal = unit(np.cross(on.frames[:, SU], on.frames[:, SV])).reshape(*on.shape, 3)
-    skin = on.points.reshape(*on.shape, 3)
     trees = []
     for depth in (_SKIN * diagonal, 0.0):
-        points, faces = _closed(skin - depth * normal, on.quads)
+        points, faces = skin_below(on, depth)
         if shaft.radius > depth:
             rod, sides = _rod(shaft.radius - depth, shaft.ends)
             faces = np.concatenate([faces, sides + len(points)])
             points = np.concatenate([points, mandrel.origin + rod @ mandrel.frame])
         trees.append(FacetTree.of(frozen(points), frozen(faces)))
     return Obstacle(trees[0], trees[1])
+
+
+def skin_below(on: Grid, depth: float) -> tuple[Floats, Ints]:
+    """Vertices and triangles of a surface at a depth below it, closed over its rims."""
+    normal = unit(np.cross(on.frames[:, SU], on.frames[:, SV])).reshape(*on.shape, 3)
+    return _closed(on.points.reshape(*on.shape, 3) - depth * normal, on.quads)
 
 
 def _closed(points: Floats, quads: Ints) -> tuple[Floats, Ints]:

@@ -32,23 +32,24 @@ class Fault:
     words: str
 
 
+def place(blocks: Blocks, k: int) -> str:
+    """Words on where a block is."""
+    end = _WHERE.get(int(blocks.kind[k]), "")
+    return f"in layer {blocks.layer[k]}, circuit {blocks.circuit[k]}, pass {blocks.passed[k]}{end}"
+
+
 def collisions(blocks: Blocks, blocked: Obstacle, head: Head | None, turned: Floats) -> list[Fault]:
     """Blocks at which the free span meets the part, or the eye's body does, turned by frames (n, 3, 3)."""
-    place = "in layer {0}, circuit {1}, pass {2}{3}"
     span = blocked.hits(blocks.point, blocks.tangent, blocks.free_length)
     eye = np.zeros(len(blocks), dtype=bool)
     if head is not None:
         eye = meets(head, blocked.surface, blocks.eye, turned) & ~span
     words = (
-        (span, SPAN, f"the free span meets the part {place}"),
-        (eye, EYE, f"the eye meets the part {place}"),
+        (span, SPAN, "the free span meets the part"),
+        (eye, EYE, "the eye meets the part"),
     )
     return [
-        Fault(
-            int(k),
-            kind,
-            text.format(blocks.layer[k], blocks.circuit[k], blocks.passed[k], _WHERE.get(int(blocks.kind[k]), "")),
-        )
+        Fault(int(k), kind, f"{text} {place(blocks, int(k))}")
         for which, kind, text in words
         for k in np.flatnonzero(which)
     ]

@@ -102,6 +102,10 @@ class Program:
         Distance that the body keeps from part and turnarounds, in the mesh's units.
     blocks : Blocks
         Its blocks.
+    tracks : tuple of Track
+        The fibre that they lay, a track a filament.
+    radius : float or None
+        Where the eye stays from the axis if it has no cross-feed, in the mesh's units.
     faults : tuple of Fault
         What is wrong with it, by block.
     losses : dict of str to float
@@ -122,6 +126,8 @@ class Program:
     body: Body
     clearance: float
     blocks: Blocks
+    tracks: tuple[Track, ...]
+    radius: float | None
     faults: tuple[Fault, ...]
     losses: dict[str, float]
     limits: dict[str, float]
@@ -203,11 +209,11 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
     spans, radius = _spans(machine, body, work)
     steps = Steps(
         np.radians(TURN), np.radians(ROLL), np.radians(ROLL),
-        *(2 * (min(MOVE / scale, _SMALL * work.diagonal),)),
+        *(3 * (min(MOVE / scale, _SMALL * work.diagonal),)),
     )  # fmt: skip
     parts, laid, turned = [], 0.0, -np.inf
-    for filament in filaments:
-        on = track(filament, way.backwards)
+    tracks = tuple(track(filament, way.backwards) for filament in filaments)
+    for on in tracks:
         found = _divided(on, mandrel, spans, steps)
         part = _blocks(on, found, laid, turned)
         laid, turned = float(part.arc_length[-1]), float(part.mandrel[-1])
@@ -221,7 +227,7 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
         *unreachable(blocks, machine, scale),
     )
     return Program(
-        work, machine, mandrel, body, way.clearance, blocks, tuple(sorted(faults)),
+        work, machine, mandrel, body, way.clearance, blocks, tracks, radius, tuple(sorted(faults)),
         _losses(blocks, machine, radius, scale),
         {name: float(timing.seconds[timing.limit == k].sum()) for k, name in enumerate(names)},
         frozen(timing.limit), backwards=way.backwards,

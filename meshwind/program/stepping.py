@@ -30,13 +30,14 @@ _TOLD = np.radians(3.0)
 
 @dataclass(frozen=True)
 class Steps:
-    """Longest steps between blocks: of mandrel, roll, yaw, in radians, and of the eye along the axis and from it."""
+    """Longest steps between blocks: of mandrel, roll, yaw, in radians, of the eye along the axis and from it, laid."""
 
     mandrel: float
     roll: float
     yaw: float
     x: float
     r: float
+    laid: float
 
     def effort(self, poses: Poses) -> Floats:
         """The steps (n - 1,) between poses, in units of the longest."""

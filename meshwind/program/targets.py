@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -17,6 +17,7 @@ from meshwind.program.machine import DEFAULT, read_machine
 from meshwind.program.posts.dialects import DIALECTS
 from meshwind.program.program import Program, Work, program
 from meshwind.program.readback.compare import ReadBack
+from meshwind.program.rewinding.rewind import Ground, rewind
 from meshwind.program.robot import HEADER, LEGEND, rows
 from meshwind.program.seen import SECONDS, SEEN, write_seen
 from meshwind.program.texts import write_texts
@@ -56,12 +57,13 @@ def write_program(
     out: str | PathLike[str] | None = None,
     tension: float = 0.0,
     seconds: float = SECONDS,
+    again: bool = True,
 ) -> Written:
     """Write the program for the filament of a run's folder into `out`, by default the folder itself.
 
     program.csv and program.json are always written, and what `to` names of `TARGETS` beside them.  All files appear,
-    or none; seconds: of a movie.  Raises BadInputError if the folder has no filament, or a machine or a target is not
-    known.
+    or none.  seconds: of a movie; again: whether the program is wound again by physics.  Raises BadInputError if the
+    folder has no filament, or a machine or a target is not known.
     """
     known = (*TARGETS, *SEEN, *DIALECTS)
     for name in to:
@@ -70,6 +72,9 @@ def write_program(
     used = read_machine(machine)
     results = read_results(folder)
     made = program(Work.of(results), used, tension)
+    rewound = rewind(made, Ground.of(results)) if again else None
+    if rewound is not None:
+        made = replace(made, faults=tuple(sorted([*made.faults, *rewound.faults(made.blocks)])))
     target = Path(folder if out is None else out)
     notes: list[str] = []
     with beside(target) as staging:
@@ -81,6 +86,7 @@ def write_program(
         names = sorted(path.relative_to(staging) for path in staging.rglob("*") if path.is_file())
         names = sorted([*names, Path(PROGRAM_JSON)])
         figures = figures_of(made) | {
+            "rewound": None if rewound is None else plain(rewound.figures),
             "texts": plain({name: asdict(found) for name, found in texts.items()}),
             "files": [name.as_posix() for name in names],
         }

@@ -11,6 +11,8 @@ from meshwind.mesh.geometry.facet_tree import LEAF, FacetTree, meets
 
 _BLOCK = 500
 """Fewest rays that are worth a thread."""
+DEEPEST = 64
+"""Most nodes of a tree that are still to be looked at: one a level and one more."""
 _WIDER = 1e-9
 """Share by which triangles count as wider, so that no ray slips through between two of them."""
 
@@ -21,17 +23,21 @@ def cast(tree: FacetTree, start: Floats, ray: Floats, least: float) -> tuple[Int
     Faces nearer than `least` are passed through, as that of the start is; where nothing is met, -1 and infinity.
     """
     met = _Met(np.empty(len(start), np.int64), np.empty(len(start)))
-    boxes = _Boxes(tree.corners, tree.numbers, tree.boxes)
-    parallel_for(_cast, len(start), _BLOCK, boxes, _Rays(frozen(start), frozen(ray), least), met)
+    parallel_for(_cast, len(start), _BLOCK, boxes_of(tree), _Rays(frozen(start), frozen(ray), least), met)
     return met.face, met.distance
 
 
-class _Boxes(NamedTuple):
-    """The arrays of a FacetTree."""
+class Boxes(NamedTuple):
+    """The arrays of a FacetTree, as kernels take them."""
 
     corners: Floats
     numbers: Ints
     boxes: Floats
+
+
+def boxes_of(tree: FacetTree) -> Boxes:
+    """A tree for kernels."""
+    return Boxes(tree.corners, tree.numbers, tree.boxes)
 
 
 class _Rays(NamedTuple):
@@ -71,37 +77,45 @@ def _inverse(d: float) -> float:
 
 
 @njit(nogil=True, cache=True)
-def _cast(first: int, last: int, tree: _Boxes, rays: _Rays, met: _Met) -> None:
+def _cast(first: int, last: int, tree: Boxes, rays: _Rays, met: _Met) -> None:
     """The faces that the rays first to last meet first."""
-    corners, numbers, boxes = tree.corners, tree.numbers, tree.boxes
-    start, ray, least = rays.start, rays.ray, rays.least
-    face, distance = met.face, met.distance
-    leaves = len(boxes) // 2
-    stack, far = np.empty(64, np.int64), np.empty(64)
+    stack, far = np.empty(DEEPEST, np.int64), np.empty(DEEPEST)
     for i in range(first, last):
-        x, y, z, dx, dy, dz = start[i, 0], start[i, 1], start[i, 2], ray[i, 0], ray[i, 1], ray[i, 2]
-        ax, ay, az = _inverse(dx), _inverse(dy), _inverse(dz)
-        found, reach = -1, np.inf
-        stack[0], far[0], size = 1, 0.0, 1
-        while size > 0:
-            size -= 1
-            box = stack[size]
-            if far[size] >= reach:
-                continue
-            if box >= leaves:
-                for m in range((box - leaves) * LEAF, min((box - leaves + 1) * LEAF, len(corners))):
-                    t = meets(corners[m], x, y, z, dx, dy, dz, _WIDER)
-                    if least < t < reach or (found >= 0 and t == reach and numbers[m] < numbers[found]):
-                        reach, found = t, m
-                continue
-            one, two = _enters(boxes, 2 * box, x, y, z, ax, ay, az), _enters(boxes, 2 * box + 1, x, y, z, ax, ay, az)
-            # the nearer half last, so that it is looked at first
-            swap = 1 if one < two else 0
-            if max(one, two) < reach:
-                stack[size], far[size] = 2 * box + swap, max(one, two)
-                size += 1
-            if min(one, two) < reach:
-                stack[size], far[size] = 2 * box + 1 - swap, min(one, two)
-                size += 1
-        face[i] = numbers[found] if found >= 0 else -1
-        distance[i] = reach
+        found, reach = first_met(tree, rays.start[i], rays.ray[i], rays.least, stack, far)
+        met.face[i] = tree.numbers[found] if found >= 0 else -1
+        met.distance[i] = reach
+
+
+@njit(nogil=True, cache=True)
+def first_met(tree: Boxes, start: Floats, ray: Floats, least: float, stack: Ints, far: Floats) -> tuple[int, float]:
+    """The triangle, by its place in the tree, that a ray meets first beyond `least`, and its distance; -1 and infinity.
+
+    stack, far (DEEPEST,) are for the tree's nodes that are still to be looked at.
+    """
+    corners, numbers, boxes = tree.corners, tree.numbers, tree.boxes
+    leaves = len(boxes) // 2
+    x, y, z, dx, dy, dz = start[0], start[1], start[2], ray[0], ray[1], ray[2]
+    ax, ay, az = _inverse(dx), _inverse(dy), _inverse(dz)
+    found, reach = -1, np.inf
+    stack[0], far[0], size = 1, 0.0, 1
+    while size > 0:
+        size -= 1
+        box = stack[size]
+        if far[size] >= reach:
+            continue
+        if box >= leaves:
+            for m in range((box - leaves) * LEAF, min((box - leaves + 1) * LEAF, len(corners))):
+                t = meets(corners[m], x, y, z, dx, dy, dz, _WIDER)
+                if least < t < reach or (found >= 0 and t == reach and numbers[m] < numbers[found]):
+                    reach, found = t, m
+            continue
+        one, two = _enters(boxes, 2 * box, x, y, z, ax, ay, az), _enters(boxes, 2 * box + 1, x, y, z, ax, ay, az)
+        # the nearer half last, so that it is looked at first
+        swap = 1 if one < two else 0
+        if max(one, two) < reach:
+            stack[size], far[size] = 2 * box + swap, max(one, two)
+            size += 1
+        if min(one, two) < reach:
+            stack[size], far[size] = 2 * box + 1 - swap, min(one, two)
+            size += 1
+    return found, reach

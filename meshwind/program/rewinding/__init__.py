@@ -1,0 +1,1 @@
+"""A program wound again: the fibre that its moving eye lays, by physics and not by plan."""
