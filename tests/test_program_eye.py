@@ -194,7 +194,7 @@ def test_the_eye_stands_still_while_a_bridge_lands() -> None:
     assert found.span[0] - found.span[1] == pytest.approx(np.linalg.norm(land - lift), abs=1e-12)
     eyes = found.point + found.span[:, None] * found.tangent
     assert eyes[1] == pytest.approx(eyes[0], abs=1e-12)
-    steps = Steps(radians(5.0), radians(10.0), radians(10.0), 3.0, 3.0)
+    steps = Steps(radians(5.0), radians(10.0), radians(10.0), 3.0, 3.0, 20.0)
     block = stepped(on, lambda at: poses(on, axis_x(), body.spans, at), steps)
     assert place + 1.0 in block.at
     assert not ((block.at >= place) & (block.at < place + 1.0)).any()
@@ -245,7 +245,7 @@ def test_blocks_and_places_grow_with_the_circuits_alone() -> None:
             looked.append(len(at))
             return poses(on, mandrel, at_radius(80.0, 1e3), at)  # type: ignore[arg-type]
 
-        steps = Steps(radians(5.0), radians(10.0), radians(10.0), 10.0, 10.0)
+        steps = Steps(radians(5.0), radians(10.0), radians(10.0), 10.0, 10.0, 10.0)
         counts.append((len(stepped(on, solve, steps)), sum(looked)))  # type: ignore[arg-type]
     (one, a), (two, b), (four, c) = counts
     assert four - two == pytest.approx(2 * (two - one), abs=2)

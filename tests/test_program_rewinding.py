@@ -13,10 +13,10 @@ from meshwind.filament.closing import close_layer
 from meshwind.filament.course import Kind
 from meshwind.filament.ends import LayerPlan
 from meshwind.filament.filament import filaments_of
+from meshwind.program.faults import LIES
 from meshwind.program.machine import read_machine
 from meshwind.program.program import Program, Work, program
 from meshwind.program.rewinding.rewind import Ground, rewind
-from meshwind.program.rewinding.rewound import LIES
 from meshwind.surface import Surface
 
 LATHE = read_machine("lathe-4")
@@ -29,10 +29,10 @@ def tube() -> tuple[Program, Ground]:
     return program(work(surface, turns=TURNS, count=401), LATHE), Ground((surface,), (4.0,), 0.0)
 
 
-def wound(surface: Surface, plan: LayerPlan, diagonal: float) -> tuple[Program, Ground]:
+def wound(surface: Surface, plan: LayerPlan, diagonal: float, friction: float = 0.0) -> tuple[Program, Ground]:
     layer = close_layer(surface, plan)
     made = program(Work(tuple(filaments_of(layer)), surface, diagonal, "mm"), LATHE)
-    return made, Ground((surface,), (4.0,), plan.friction)
+    return made, Ground((surface,), (4.0,), friction)
 
 
 def turned(made: Program, degrees: Floats) -> Program:
@@ -88,7 +88,7 @@ def test_bridges_come_down_where_they_should_and_friction_is_measured() -> None:
     found = rewind(made, ground)
     assert found.good.all() and found.distance.max() < 1e-3 * 250.0
     steered = mw.shapes.cone(60.0, 40.0, 200.0)
-    made, ground = wound(steered, LayerPlan(8, 0.7, 0.2, particles=201), 230.0)
+    made, ground = wound(steered, LayerPlan(8, 0.7, 0.2, particles=201), 230.0, 0.2)
     found = rewind(made, ground)
     assert found.good.all() and found.distance.max() < 1e-3 * 230.0
     laid = made.blocks.kind == Kind.LAID

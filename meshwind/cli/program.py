@@ -41,7 +41,7 @@ def _list_machines(wanted: bool) -> None:
 
 
 @with_records
-def program(
+def program(  # noqa: PLR0913
     *,
     folder: ResultsFolder,
     machine: Annotated[

@@ -12,8 +12,8 @@ from meshwind.program.clear import Obstacle
 from meshwind.program.head import Head, meets
 from meshwind.program.machine import Machine
 
-SPAN, EYE, TRAVEL = "span", "eye", "travel"
-"""Kinds of faults."""
+SPAN, EYE, TRAVEL, LIES = "span", "eye", "travel", "lies"
+"""Kinds of faults; the last where the fibre, wound again, does not come to lie where it was planned."""
 _WHERE: dict[int, str] = {
     Kind.TURN: ", in its turnaround; another turnaround may clear it",
     Kind.DWELL: ", in its turnaround; another turnaround may clear it",

@@ -1,6 +1,6 @@
 """Words for what a program does and what is wrong with it, for those who watch it."""
 
-from meshwind.program.faults import EYE, SPAN, TRAVEL
+from meshwind.program.faults import EYE, LIES, SPAN, TRAVEL
 
 AXES = {"mandrel": "mandrel", "carriage": "carriage", "cross": "cross-feed", "roll": "roll", "yaw": "yaw"}
 """Names of the axes, by what they move."""
@@ -8,6 +8,7 @@ _FAULTS = {
     SPAN: "the free span meets the part",
     EYE: "the eye is too near to the part",
     TRAVEL: "an axis leaves its travel",
+    LIES: "the fibre does not lie where it was planned",
 }
 
 

@@ -9,11 +9,8 @@ import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.program.blocks import Blocks
-from meshwind.program.faults import Fault, place
+from meshwind.program.faults import LIES, Fault, place
 from meshwind.program.rewinding.stretches import Stretches, together
-
-LIES = "lies"
-"""Kind of the faults of passes in which the fibre does not come to lie where it was planned."""
 
 
 @dataclass(frozen=True)
