@@ -42,7 +42,10 @@ WITHIN = {
     ],
     "surface": [OWN, "fitting"],
     "path": ["kernels", OWN],
-    "program": ["blocks", "machine", "timing", "axes", "mandrel", "posts", "readback", OWN],
+    "program": [
+        "blocks", "machine", "timing", "axes", "mandrel", "posts", "readback", "body", "track", "eye", "head", "clear",
+        "faults", "stepping", "program", "rewinding", OWN,
+    ],
 }  # fmt: skip
 """The same for the packages within a package; what the package itself shows, its __init__, comes after all of them."""
 LONGEST = 350

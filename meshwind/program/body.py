@@ -10,6 +10,8 @@ from meshwind.core.vectors import TINY
 
 _OCTAGON = np.linspace(0.0, np.pi, 5)
 """Directions in which points are moved by the clearance: the hull of an octagon takes the place of that of a circle."""
+_THIN = 1e-12
+"""Extent along the axis over the size below which points are a disc."""
 _SETTLED, _STEPS = 1e-13, 100
 """Distance from the body, over its size, at which a ray is said to leave it, and most Newton steps until then."""
 
@@ -70,7 +72,7 @@ def body_round(x: Floats, r: Floats, clearance: float) -> Body:
     turn = np.pi / 8.0 + _OCTAGON[:-1]
     around = np.stack([np.cos(turn), np.sin(turn)], axis=1)
     flat = np.stack([x, r], axis=1)
-    if np.ptp(x) > 0.0:  # only the corners of its hull count
+    if np.ptp(x) > _THIN * max(float(np.abs(x).max()), float(r.max())):  # only the corners of its hull count
         ends = np.array([[x.min(), -1.0], [x.max(), -1.0]])
         corners = ConvexHull(np.concatenate([flat, ends])).vertices
         flat = flat[corners[corners < len(flat)]]

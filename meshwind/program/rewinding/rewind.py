@@ -101,7 +101,9 @@ def _of_layer(program: Program, found: Stretches, on: On) -> Rewound:
     away = _away(fibre, plan)
     distance = np.maximum(np.maximum.reduceat(away, fibre.first[:-1]), _farthest(plan, fibre))
     followed = out.end != LOST
-    blocks = np.insert(block[kept], fibre.first[1:] - np.arange(1, len(found) + 1), found.last)
+    number = np.arange(len(found))
+    places = np.stack([fibre.first[:-1] - 2 * number, fibre.first[1:] - 2 * (number + 1)], axis=1).ravel()
+    blocks = np.insert(block[kept], places, np.stack([found.first, found.last], axis=1).ravel())
     slid = followed & (slip > on.friction + _UNEVEN)
     if slid.any():
         index = np.flatnonzero(slid)
@@ -127,16 +129,20 @@ def pulled(surface: Surface, eyes: Eyes, friction: float) -> Relaid:
 
 
 def _fibres(out: Relaid, eyes: Eyes, plan: Row, kept: Bools) -> Row:
-    """Where the fibre of stretches lies: the places that were kept, and the span as far as to where the plan ends."""
+    """Where the fibre of stretches lies: the start, the places kept, and the span up to where the plan ends."""
     tail = plan.points[plan.first[1:] - 1]
     start, eye = out.point[out.last], eyes.eye[out.last]
     span = eye - start
     share = ((tail - start) * span).sum(axis=1) / np.maximum((span**2).sum(axis=1), TINY)
     more = np.where(out.end == LAYS, np.clip(share, 0.0, 1.0), 0.0)[:, None] * span
-    places = np.cumsum(kept)[eyes.first[1:] - 1]
-    points = np.insert(out.point[kept], places, start + more, axis=0)
-    along = np.insert(out.laid[kept], places, out.laid[out.last] + np.linalg.norm(more, axis=1))
-    return Row(points, along, np.concatenate([[0], places]) + np.arange(len(places) + 1))
+    ends = np.cumsum(kept)[eyes.first[1:] - 1]
+    first = np.concatenate([[0], ends])
+    places = np.stack([first[:-1], ends], axis=1).ravel()
+    extra = np.stack([plan.points[plan.first[:-1]], start + more], axis=1).reshape(-1, 3)
+    length = out.laid[out.last] + np.linalg.norm(more, axis=1)
+    points = np.insert(out.point[kept], places, extra, axis=0)
+    along = np.insert(out.laid[kept], places, np.stack([0.0 * length, length], axis=1).ravel())
+    return Row(points, along, first + 2 * np.arange(len(first)))
 
 
 def _rows(rows: Row, index: Ints) -> Row:

@@ -99,9 +99,15 @@ def planned(program: Program, found: Stretches) -> Row:
         before = float(along[-1][-1])
     every = np.concatenate(along)
     start, stop = program.blocks.arc_length[found.first], program.blocks.arc_length[found.last]
-    slack = 1e-12 * max(before, 1.0)
-    first, last = np.searchsorted(every, start - slack), np.searchsorted(every, stop + slack, side="right")
-    count = np.maximum(last - first, 2)
-    index = runs(first, count)
-    length = every[index] - np.repeat(start, count)
-    return Row(np.concatenate(points)[index], length, np.concatenate([[0], np.cumsum(count)]))
+    inside = np.searchsorted(every, start), np.searchsorted(every, stop, side="right")
+    count = np.maximum(inside[1] - inside[0], 0)
+    index = runs(inside[0], count)
+    places = np.stack([np.cumsum(count) - count, np.cumsum(count)], axis=1).ravel()  # both ends of each stretch
+    ends = np.stack([program.blocks.point[found.first], program.blocks.point[found.last]], axis=1).reshape(-1, 3)
+    return Row(
+        np.insert(np.concatenate(points)[index], places, ends, axis=0),
+        np.insert(
+            every[index] - np.repeat(start, count), places, np.stack([0.0 * start, stop - start], axis=1).ravel()
+        ),
+        np.concatenate([[0], np.cumsum(count + 2)]),
+    )
