@@ -74,7 +74,8 @@ def test_enough_paths_to_cover_as_one_filament(tmp_path: Path) -> None:
                      continuous=True, out=tmp_path, render=False)  # fmt: skip
     figures = result.report()["pattern"][0]
     assert figures["circuits"] == result.report()["winding"]["paths_per_family"] > 12
-    assert 1.0 <= figures["cover"]["min"] < 1.1
+    # a few paths more than it takes, where with them the filament closes at the angle
+    assert 1.0 <= figures["cover"]["min"] < 1.2
     assert 'paths = "auto"' in (tmp_path / "meshwind.toml").read_text()
 
 

@@ -1,7 +1,7 @@
 """Where a program has its blocks: as few as its longest steps allow, on the path itself."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 
 import numpy as np
@@ -44,6 +44,10 @@ class Steps:
         shares = (np.abs(np.diff(getattr(poses, name))) / value for name, value in vars(self).items())
         return reduce(np.maximum, shares)
 
+    def motion(self, poses: Poses) -> Floats:
+        """The same without what is laid: what the machine does."""
+        return replace(self, laid=np.inf).effort(poses)
+
 
 def stepped(track: Track, solve: Callable[[Floats], Poses], steps: Steps) -> Poses:
     """The poses of the blocks of a track, the axes being solved anew at every place that is looked at."""
@@ -82,7 +86,7 @@ def divided(track: Track, solve: Callable[[Floats], Poses], steps: Steps, at: Fl
         if not len(halves):
             break
         wanted = np.union1d(wanted, halves)
-    return _chosen(found, np.flatnonzero(_told(effort)))
+    return _chosen(found, np.flatnonzero(_told(steps.motion(found))))
 
 
 def _told(effort: Floats) -> Bools:
