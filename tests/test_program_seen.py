@@ -19,6 +19,7 @@ from viewer_browser import opened
 
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
+from meshwind.filament.filament import backwards
 from meshwind.layup.layup import assess
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.pictures.axes_picture import draw_axes
@@ -31,6 +32,7 @@ from meshwind.program.page import program_data
 from meshwind.program.program import Program, Work, program
 from meshwind.program.seen import SEEN
 from meshwind.program.targets import write_program
+from meshwind.program.track import track
 from meshwind.results.filament_file import write_filaments
 from meshwind.results.reading import read_results
 from meshwind.results.report import RunFacts, report, write_report
@@ -182,3 +184,11 @@ def test_a_movie_of_no_length_is_refused(run: Path, tmp_path: Path) -> None:
         write_program(run, to=("gif",), out=tmp_path, seconds=0.0)
     assert not list(tmp_path.iterdir())
     assert set(SEEN) == {"axes", "viewer", "gif", "mp4"}
+
+
+def test_filaments_are_seen_in_the_order_of_the_program() -> None:
+    surface = cylinder()
+    both = tuple(filament(surface, count, 0.6, 0.2) for count in (1, 2))
+    for laid, seen in zip((track(each, backwards=True) for each in both), backwards(both), strict=True):
+        assert np.array_equal(laid.points[0, 0], seen.course.points[0])
+        assert np.array_equal(laid.points[-1, 1], seen.course.points[-1])

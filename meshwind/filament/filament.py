@@ -21,11 +21,11 @@ class Filament:
 
 
 def backwards(filaments: Sequence[Filament]) -> tuple[Filament, ...]:
-    """The filaments from the end of the last to the start of the first."""
+    """Each filament from its end to its start; they follow one another as before."""
     order = slice(None, None, -1)
     return tuple(
         Filament(each.course.chosen(order), frozen(each.layer[order]), frozen(each.thickness[order]))
-        for each in filaments[order]
+        for each in filaments
     )
 
 

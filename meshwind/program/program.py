@@ -117,7 +117,7 @@ class Program:
     remedies : tuple of str
         What was tried against faults, and what came of it.
     backwards : bool
-        Whether the filaments are wound from the end of the last to the start of the first.
+        Whether each filament is wound from its end to its start.
     """
 
     work: Work
@@ -199,8 +199,7 @@ def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
 
 def _wound(work: Work, machine: Machine, way: Way) -> Program:
     """The program that winds in one way."""
-    filaments = work.filaments
-    points = np.concatenate([each.course.points[:: -1 if way.backwards else 1] for each in filaments])
+    points = np.concatenate([each.course.points[:: -1 if way.backwards else 1] for each in work.filaments])
     mandrel = mandrel_of(work.surface, points)
     scale = millimetres(work.units)
     shaft = machine.shaft / scale
@@ -212,7 +211,7 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
         *(3 * (min(MOVE / scale, _SMALL * work.diagonal),)),
     )  # fmt: skip
     parts, laid, turned = [], 0.0, -np.inf
-    tracks = tuple(track(filament, way.backwards) for filament in filaments)
+    tracks = tuple(track(filament, way.backwards) for filament in work.filaments)
     for on in tracks:
         found = _divided(on, mandrel, spans, steps)
         part = _blocks(on, found, laid, turned)
