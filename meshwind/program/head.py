@@ -101,8 +101,7 @@ def frames(blocks: Blocks, mandrel: Mandrel, machine: Machine) -> Floats:
 
     At roll and yaw 0 x leads round the axis, y along it, and z from it.  The roll turns x to the axis, the yaw from it.
     """
-    phi = -np.radians(blocks.mandrel)[:, None]
-    out = np.cos(phi) * mandrel.zero + np.sin(phi) * mandrel.third
+    out = mandrel.towards(blocks.mandrel)
     along = np.broadcast_to(mandrel.direction, out.shape)
     round_ = np.cross(along, out)
     roll, yaw = (

@@ -52,6 +52,15 @@ class Mandrel:
         # threads of a matrix product cost more here than they save
         return np.stack([a * x + b * y + c * z for a, b, c in self.frame], axis=1)
 
+    def towards(self, turned: Floats) -> Floats:
+        """Unit vectors (n, 3) from the axis to the eye, as it stands to the part at mandrel angles (n,) in degrees."""
+        angle = -np.radians(turned)[:, None]
+        return np.asarray(np.cos(angle) * self.zero + np.sin(angle) * self.third)
+
+    def eye(self, x: Floats, r: Floats, turned: Floats) -> Floats:
+        """The eye (n, 3) at x (n,) along the axis and r (n,) from it, at mandrel angles (n,) in degrees."""
+        return np.asarray(self.origin + x[:, None] * self.direction + r[:, None] * self.towards(turned))
+
 
 def mandrel_of(surface: Surface, points: Floats) -> Mandrel:
     """The axis through the middles of a part's rims, with the mandrel's angle growing along a fibre of points (n, 3).

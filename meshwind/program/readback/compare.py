@@ -212,10 +212,7 @@ def _of_the_fibre(said: Floats, meant: Blocks, machine: Machine, part: Part) -> 
     x = column["carriage"] / part.millimetres
     # an eye without a cross-feed keeps its distance, of which the text says nothing
     r = column["cross"] / part.millimetres if "cross" in column else meant.eye_r
-    angle = -np.radians(column["mandrel"])
-    on = part.mandrel
-    round_ = np.cos(angle)[:, None] * on.zero + np.sin(angle)[:, None] * on.third
-    eye = on.origin + x[:, None] * on.direction + r[:, None] * round_
+    eye = part.mandrel.eye(x, r, column["mandrel"])
     across = np.cross(meant.point - eye, meant.tangent)
     return np.linalg.norm(eye - meant.eye, axis=1), np.linalg.norm(across, axis=1)
 

@@ -77,15 +77,12 @@ def eyes_of(program: Program, found: Stretches, moves: int) -> tuple[Eyes, Ints]
 
     The axes move evenly between two blocks, as a machine's do.
     """
-    blocks, mandrel = program.blocks, program.mandrel
+    blocks = program.blocks
     count = (found.last - found.first) * moves + 1
     at = np.repeat(found.first, count) + runs(np.zeros_like(count), count) / moves
     number = np.arange(len(blocks))
-    turned = -np.radians(np.interp(at, number, blocks.mandrel))
-    x = np.interp(at, number, blocks.eye_x)
-    r = np.interp(at, number, blocks.eye_r) if program.radius is None else np.full(len(at), program.radius)
-    round_ = np.cos(turned)[:, None] * mandrel.zero + np.sin(turned)[:, None] * mandrel.third
-    eye = mandrel.origin + x[:, None] * mandrel.direction + r[:, None] * round_
+    x, r, turned = (np.interp(at, number, values) for values in (blocks.eye_x, blocks.eye_r, blocks.mandrel))
+    eye = program.mandrel.eye(x, r if program.radius is None else np.full(len(at), program.radius), turned)
     return Eyes(eye, np.concatenate([[0], np.cumsum(count)]), found.start), np.ceil(at).astype(np.int64)
 
 
