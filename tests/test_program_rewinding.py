@@ -110,3 +110,13 @@ def test_where_the_fibre_lies_does_not_depend_on_where_the_part_is() -> None:
     )
     one, other = (rewind(*each) for each in (plain, moved))
     assert other.distance == pytest.approx(one.distance, abs=1e-3)
+
+
+def test_a_program_that_lays_nothing_on_the_part_has_nothing_to_tell() -> None:
+    made, ground = tube()
+    aside = replace(made, blocks=replace(made.blocks, point=made.blocks.point + made.blocks.normal))
+    found = rewind(aside, ground)
+    assert not len(found.distance) and not found.faults(aside.blocks)
+    assert found.figures["passes"] == 0 and found.figures["distance"] is None
+    two = Ground((*ground.surfaces, ground.surfaces[0]), (4.0, 4.0), 0.0)  # no block is of the second layer
+    assert np.array_equal(rewind(made, two).distance, rewind(made, ground).distance)

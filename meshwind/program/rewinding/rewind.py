@@ -20,7 +20,7 @@ from meshwind.mesh.geometry.rays import boxes_of
 from meshwind.program.clear import skin_below
 from meshwind.program.program import Program
 from meshwind.program.rewinding.pull import LAYS, LOST, Eyes, Relaid, Row, apart_all, pull_all
-from meshwind.program.rewinding.rewound import Rewound, joined
+from meshwind.program.rewinding.rewound import Rewound, joined, nothing
 from meshwind.program.rewinding.slide import slide
 from meshwind.program.rewinding.stretches import Stretches, eyes_of, planned, stretches_of
 from meshwind.results.reading import Results
@@ -84,10 +84,10 @@ def rewind(program: Program, ground: Ground) -> Rewound:
     begin = perf_counter()
     found = stretches_of(program.blocks, ground.surfaces)
     layers = [
-        _of_layer(program, found.chosen(np.flatnonzero(found.layer == layer)), on)
-        for layer, on in enumerate(ground.layers)
+        _of_layer(program, found.chosen(np.flatnonzero(found.layer == layer)), ground.layers[layer])
+        for layer in np.unique(found.layer)
     ]
-    return joined(layers, perf_counter() - begin)
+    return joined(layers, perf_counter() - begin) if layers else nothing()
 
 
 def _of_layer(program: Program, found: Stretches, on: On) -> Rewound:

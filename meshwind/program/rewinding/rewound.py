@@ -90,3 +90,9 @@ def joined(parts: Sequence[Rewound], seconds: float) -> Rewound:
         each.name: np.concatenate([getattr(part, each.name) for part in parts])[order] for each in fields(Rewound)[1:-1]
     }
     return Rewound(stretches=stretches.chosen(order), seconds=seconds, **values)
+
+
+def nothing() -> Rewound:
+    """What became of a program whose fibre lies on the part nowhere."""
+    none, no = np.zeros(0), np.zeros(0, dtype=np.int64)
+    return Rewound(Stretches(no, no, no, np.zeros((0, 2))), none, no, none, none > 0.0, none > 0.0, none, none)
