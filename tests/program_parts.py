@@ -1,12 +1,21 @@
 """Filaments of known shape for programs: lines of the parameters, to and fro, with hoops at the rims."""
 
+from pathlib import Path
+
 import numpy as np
+from layup_shapes import cylinder, helices
 
 from meshwind.core.cast import Floats
 from meshwind.filament.course import Course, Kind, in_a_row, joined
 from meshwind.filament.filament import Filament
+from meshwind.layup.layup import assess
+from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.program.program import Work
+from meshwind.results.filament_file import write_filaments
+from meshwind.results.report import RunFacts, report, write_report
+from meshwind.results.write import write_files
 from meshwind.surface import Surface
+from meshwind.surface.grid import grid
 
 
 def along(surface: Surface, start: tuple[float, float], end: tuple[float, float], count: int, kind: Kind) -> Course:
@@ -68,3 +77,15 @@ def pieces(*courses: Course) -> Filament:
     """A filament of courses one after another."""
     course = in_a_row(courses)
     return Filament(course, np.zeros(len(course), dtype=np.int64), np.zeros(len(course)))
+
+
+def write_run(out: Path, circuits: int) -> Path:
+    """Write a run's folder with a filament of so many circuits."""
+    layup = assess(helices(4, 0.6, 61, cylinder()))
+    surface = layup.paths.surface
+    on = grid(surface)
+    mesh = Mesh(on.points, np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]]))
+    write_files(out, layup, mesh)
+    write_filaments(out / "filament.vtp", [filament(surface, circuits, 0.6, 0.2)])
+    write_report(out / "report.json", report(layup, mesh, None, RunFacts(0.6)))
+    return out

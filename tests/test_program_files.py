@@ -11,14 +11,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from layup_shapes import cylinder, helices
-from program_parts import filament, work
+from program_parts import filament, work, write_run
 
 import meshwind as mw
 from meshwind.cli import program as command
 from meshwind.core.errors import BadInputError
-from meshwind.layup.layup import assess
-from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.program.axes import limits_of
 from meshwind.program.machine import DEFAULT, FEEDS, MOVES, Eye, machine_names, machine_of, read_machine
 from meshwind.program.posts.dialects import DIALECTS
@@ -27,10 +24,6 @@ from meshwind.program.robot import APPROACH, robot_poses
 from meshwind.program.seen import SEEN
 from meshwind.program.targets import COLUMNS, TARGETS, write_program
 from meshwind.program.timing import Limits, timed
-from meshwind.results.filament_file import write_filaments
-from meshwind.results.report import RunFacts, report, write_report
-from meshwind.results.write import write_files
-from meshwind.surface.grid import grid
 
 MINE = """
 words = "mine"
@@ -47,15 +40,7 @@ axes = [
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run's folder with a filament."""
-    out = tmp_path_factory.mktemp("program")
-    layup = assess(helices(4, 0.6, 61, cylinder()))
-    surface = layup.paths.surface
-    on = grid(surface)
-    mesh = Mesh(on.points, np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]]))
-    write_files(out, layup, mesh)
-    write_filaments(out / "filament.vtp", [filament(surface, 2, 0.6, 0.2)])
-    write_report(out / "report.json", report(layup, mesh, None, RunFacts(0.6)))
-    return out
+    return write_run(tmp_path_factory.mktemp("program"), 2)
 
 
 def called(*arguments: object) -> subprocess.CompletedProcess[str]:

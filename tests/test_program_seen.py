@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from layup_shapes import cylinder, helices
+from layup_shapes import cylinder
 from PIL import Image
-from program_parts import filament
+from program_parts import filament, write_run
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
@@ -20,8 +20,6 @@ from viewer_browser import opened
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.filament.filament import backwards
-from meshwind.layup.layup import assess
-from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.pictures.axes_picture import draw_axes
 from meshwind.pictures.machine_picture import turned
 from meshwind.program.axes_chart import axes_chart
@@ -33,25 +31,13 @@ from meshwind.program.program import Program, Work, program
 from meshwind.program.seen import SEEN
 from meshwind.program.targets import write_program
 from meshwind.program.track import track
-from meshwind.results.filament_file import write_filaments
 from meshwind.results.reading import read_results
-from meshwind.results.report import RunFacts, report, write_report
-from meshwind.results.write import write_files
-from meshwind.surface.grid import grid
 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run's folder with a filament."""
-    out = tmp_path_factory.mktemp("seen")
-    layup = assess(helices(4, 0.6, 61, cylinder()))
-    surface = layup.paths.surface
-    on = grid(surface)
-    mesh = Mesh(on.points, np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]]))
-    write_files(out, layup, mesh)
-    write_filaments(out / "filament.vtp", [filament(surface, 3, 0.6, 0.2)])
-    write_report(out / "report.json", report(layup, mesh, None, RunFacts(0.6)))
-    return out
+    return write_run(tmp_path_factory.mktemp("seen"), 3)
 
 
 @pytest.fixture(scope="module")
