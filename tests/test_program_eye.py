@@ -18,7 +18,7 @@ from meshwind.filament.ends import LayerPlan
 from meshwind.filament.filament import filaments_of
 from meshwind.mesh import mesh_from
 from meshwind.program.body import Body, body_round, to_radius
-from meshwind.program.eye import at_radius, axes, poses, taut
+from meshwind.program.eye import at_radius, axes, on_body, poses, taut
 from meshwind.program.machine import Machine, read_machine
 from meshwind.program.mandrel import Mandrel, mandrel_of
 from meshwind.program.program import Work, program
@@ -188,16 +188,37 @@ def test_the_eye_stands_still_while_a_bridge_lands() -> None:
     assert not (on.motion == PIVOT).any()
     place = float(np.flatnonzero(on.motion == AIR)[0])
     body = Body(np.array([-60.0, 60.0]), np.array([40.0, 40.0]))
-    found = poses(on, axis_x(), body.spans, np.array([place, place + 1.0]))
+    found = poses(on, axis_x(), on_body(body), np.array([place, place + 1.0]))
     lift, land = found.point
     assert [lift, land] == pytest.approx(np.stack([before.points[-1], after.points[0]]))
     assert found.span[0] - found.span[1] == pytest.approx(np.linalg.norm(land - lift), abs=1e-12)
     eyes = found.point + found.span[:, None] * found.tangent
     assert eyes[1] == pytest.approx(eyes[0], abs=1e-12)
     steps = Steps(radians(5.0), radians(10.0), radians(10.0), 3.0, 3.0, 20.0)
-    block = stepped(on, lambda at: poses(on, axis_x(), body.spans, at), steps)
+    block = stepped(on, lambda at: poses(on, axis_x(), on_body(body), at), steps)
     assert place + 1.0 in block.at
     assert not ((block.at >= place) & (block.at < place + 1.0)).any()
+    # where the span may be at most 8 long up to there, the eye draws near, runs out along the bridge, and moves off
+    most = 8.0
+
+    def near(points: Floats, rays: Floats) -> tuple[Floats, Floats]:
+        before_it = points @ ahead <= lift @ ahead
+        return body.spans(points, rays), np.where(before_it & (points @ ahead > -5.0 + lift @ ahead), most, np.inf)
+
+    block = stepped(on, lambda at: poses(on, axis_x(), near, at), steps)
+    eyes = block.point + block.span[:, None] * block.tangent
+    at = block.at
+    assert (np.diff(block.span + block.laid) >= -1e-9).all()
+    assert block.span[(at > place - 4.0) & (at <= place)] == pytest.approx(most, abs=1e-9)
+    assert place in at
+    out = (at >= place) & (at <= place + 1.0)
+    assert out.sum() > 4
+    along = (eyes[out] - lift) @ ahead
+    assert np.linalg.norm(eyes[out] - lift - along[:, None] * ahead, axis=1) == pytest.approx(0.0, abs=1e-9)
+    assert along[0] == pytest.approx(most, abs=1e-9)
+    assert along[-1] >= np.linalg.norm(land - lift)
+    assert np.abs(np.diff(block.x)).max() <= 3.0
+    assert np.abs(np.diff(block.r)).max() <= 3.0
 
 
 def test_a_corner_is_turned_about_its_point() -> None:

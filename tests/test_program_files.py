@@ -15,8 +15,10 @@ from program_parts import filament, work, write_run
 
 import meshwind as mw
 from meshwind.cli import program as command
+from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.program.axes import limits_of
+from meshwind.program.blocks import Blocks
 from meshwind.program.machine import DEFAULT, FEEDS, MOVES, Eye, machine_names, machine_of, read_machine
 from meshwind.program.posts.dialects import DIALECTS
 from meshwind.program.program import Work, program
@@ -237,12 +239,8 @@ def test_a_program_that_stands_still_takes_no_time() -> None:
     assert (both.seconds[[0, 2]] > 0.0).all()
 
 
-def test_spans_that_meet_the_part_are_told() -> None:
-    """An hourglass, wound steeply: lines of the tangent go through its flare, as its formula says."""
-    surface = mw.shapes.revolution(lambda z: 20.0 + 0.01 * z**2, -60.0, 60.0, (48, 48))
-    made = program(work(surface, 1, 0.15, 0.2, 201), replace(read_machine("lathe-4"), eye=Eye(2.0)))
-    b = made.blocks
-    told = {fault.index for fault in made.faults if fault.kind == "span"}
+def depths(b: Blocks) -> Floats:
+    """How deep (n,) each span of blocks goes below the hourglass r = 20 + z^2/100."""
     share = np.linspace(0.002, 1.0, 500)[:, None]
     depth = np.zeros(len(b))
     for k in range(len(b)):
@@ -250,7 +248,16 @@ def test_spans_that_meet_the_part_are_told() -> None:
         inside = np.abs(at[:, 2]) <= 60.0
         under = 20.0 + 0.01 * at[:, 2] ** 2 - np.hypot(at[:, 0], at[:, 1])
         depth[k] = (under / np.sqrt(1.0 + (0.02 * at[:, 2]) ** 2))[inside].max(initial=0.0)
-    skin = 1e-3 * made.work.diagonal
+    return depth
+
+
+def test_spans_that_meet_the_part_are_told() -> None:
+    """An hourglass, wound steeply: lines of the tangent go through its flare, as its formula says."""
+    surface = mw.shapes.revolution(lambda z: 20.0 + 0.01 * z**2, -60.0, 60.0, (48, 48))
+    made = program(work(surface, 1, 0.15, 0.2, 201), replace(read_machine("lathe-2"), eye=Eye(2.0)))
+    b, skin = made.blocks, 1e-3 * made.work.diagonal
+    told = {fault.index for fault in made.faults if fault.kind == "span"}
+    depth = depths(b)
     assert 10 < len(told) < len(b)
     assert set(np.flatnonzero(depth > 1.3 * skin)) <= told
     assert told <= set(np.flatnonzero(depth > 0.7 * skin))
@@ -265,6 +272,11 @@ def test_spans_that_meet_the_part_are_told() -> None:
     whole = replace(one, layer=(np.arange(len(one.course)) > 200).astype(np.int64))
     kept = program(replace(made.work, filaments=(whole,)), made.machine)
     assert not any("direction" in words for words in kept.remedies)
+    # this fibre is not taut: its line goes into the surface at once, which no shorter span clears
+    near = program(made.work, read_machine("lathe-4"))
+    assert any(words.startswith("shorter spans in hollows") for words in near.remedies)
+    assert near.faults
+    assert near.nearest >= 0.0
     # a convex part is clear, and a shaft on its axis is met where spans come near it
     convex = work(mw.shapes.sphere_band(50.0, 0.3, 2.8, (24, 16)), 1, 0.9, 0.3)
     assert not program(convex, read_machine("lathe-4")).faults

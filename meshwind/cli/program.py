@@ -119,12 +119,13 @@ def program_lines(figures: dict[str, Any]) -> list[str]:
     slowest = max(figures["limits"], key=figures["limits"].__getitem__)
     layers = figures["seconds_of_layers"]
     each = f" (layers {', '.join(duration(seconds) for seconds in layers)})" if len(layers) > 1 else ""
+    near = f"; in hollows {figures['nearest']:.2g} {unit}" if figures["nearest"] < 0.99 * figures["clearance"] else ""
     lines = [
         f"machine   {figures['machine']['name']}: {figures['machine']['words']}",
         f"program   {figures['blocks']} blocks, {figures['turns']:.6g} turns, {duration(figures['seconds'])}{each}; "
         f"fibre {figures['fibre']['laid']:.6g} {unit}, {figures['fibre']['speed']:.3g} {unit}/s; "
         f"mostly limited by {slowest}",
-        f"eye       {figures['clearance']:.4g} {unit} clear of the part; free span {span['min']:.4g} to "
+        f"eye       {figures['clearance']:.4g} {unit} clear of the part{near}; free span {span['min']:.4g} to "
         f"{span['max']:.4g} {unit}",
     ]
     if figures["lost"]:

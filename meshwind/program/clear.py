@@ -12,7 +12,7 @@ from meshwind.program.mandrel import Mandrel
 from meshwind.surface.evaluate import SU, SV
 from meshwind.surface.grid import Grid
 
-_SKIN = 1e-3
+SKIN = 1e-3
 """Depth, over the part's diagonal, to which a span may dip below the surface: it starts along it."""
 _SIDES = 36
 """Sides of the shaft, whose radius it then has to 0.4 %."""
@@ -22,15 +22,20 @@ _SIDES = 36
 class Obstacle:
     """The part as spans may not meet it: just below its surface, closed over its rims; and the surface itself.
 
-    below, surface: trees of their triangles.
+    below, surface: trees of their triangles; skin: how deep it is below.
     """
 
     below: FacetTree
     surface: FacetTree
+    skin: float
+
+    def free(self, points: Floats, rays: Floats) -> Floats:
+        """Lengths (n,) from points along unit vectors (n, 3) to the part; infinity where they miss it."""
+        return cast(self.below, frozen(points), frozen(rays), 0.0)[1]
 
     def hits(self, points: Floats, rays: Floats, spans: Floats) -> Bools:
         """Whether spans from points along unit vectors (n, 3), of lengths (n,), meet the part."""
-        return np.asarray(cast(self.below, frozen(points), frozen(rays), 0.0)[1] < spans)
+        return np.asarray(self.free(points, rays) < spans)
 
 
 @dataclass(frozen=True)
@@ -44,14 +49,14 @@ class Shaft:
 def obstacle(on: Grid, diagonal: float, mandrel: Mandrel, shaft: Shaft) -> Obstacle:
     """The obstacle that a part of a diagonal, sampled on a grid, and the shaft in it are."""
     trees = []
-    for depth in (_SKIN * diagonal, 0.0):
+    for depth in (SKIN * diagonal, 0.0):
         points, faces = skin_below(on, depth)
         if shaft.radius > depth:
             rod, sides = _rod(shaft.radius - depth, shaft.ends)
             faces = np.concatenate([faces, sides + len(points)])
             points = np.concatenate([points, mandrel.origin + rod @ mandrel.frame])
         trees.append(FacetTree.of(frozen(points), frozen(faces)))
-    return Obstacle(trees[0], trees[1])
+    return Obstacle(trees[0], trees[1], SKIN * diagonal)
 
 
 def skin_below(on: Grid, depth: float) -> tuple[Floats, Ints]:

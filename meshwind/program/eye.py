@@ -9,12 +9,15 @@ import numpy as np
 from meshwind.core.cast import Floats
 from meshwind.program.body import Body, to_radius
 from meshwind.program.mandrel import Mandrel
-from meshwind.program.track import Track
+from meshwind.program.track import AIR, Track
 
-Spans: TypeAlias = Callable[[Floats, Floats], Floats]
-"""Lengths (n,) of free spans from points (n, 3) along tangents (n, 3), both in the mandrel's frame."""
+Spans: TypeAlias = Callable[[Floats, Floats], tuple[Floats, Floats]]
+"""Lengths (n,) of free spans from points (n, 3) along tangents (n, 3), both in the mandrel's frame: as wanted, and the
+most that may be."""
 LONGEST = 4.0
 """Longest span of an eye at a fixed distance from the axis, over the size of the body: near the axis it has no end."""
+_GROWS = 1.0
+"""Length by which a span that had to be short grows for each length that is laid, until it is as long as wanted."""
 
 
 @dataclass(frozen=True)
@@ -50,19 +53,22 @@ class Poses:
 
 def on_body(body: Body) -> Spans:
     """Spans that end on a body."""
-    return body.spans
+    return lambda points, rays: (body.spans(points, rays), np.full(len(points), np.inf))
 
 
 def at_radius(radius: float, longest: float) -> Spans:
     """Spans that end at a distance from the axis, at most `longest` long."""
-    return lambda points, rays: np.minimum(to_radius(points, rays, radius), longest)
+    return lambda points, rays: (
+        np.minimum(to_radius(points, rays, radius), longest), np.full(len(points), np.inf)
+    )  # fmt: skip
 
 
 def poses(track: Track, mandrel: Mandrel, spans: Spans, at: Floats) -> Poses:
     """The eye at places (n,) of a track, growing; the fibre is never slack between them."""
     contact, ahead = track.contact(at)
     point, tangent, laid = mandrel.inside(contact), mandrel.turned(ahead), track.laid(at)
-    span = taut(spans(point, tangent), laid)
+    wanted, most = spans(point, tangent)
+    span = limited(wanted, most, track, at) if np.isfinite(most).any() else taut(wanted, laid)
     return Poses(at, laid, point, tangent, span, *axes(point, tangent, span))
 
 
@@ -72,6 +78,26 @@ def taut(span: Floats, laid: Floats) -> Floats:
     l[i+1] = max(l[i+1], l[i] - laid), so that the sum of both is its own greatest value so far.
     """
     return np.asarray(np.maximum.accumulate(span + laid) - laid)
+
+
+def limited(wanted: Floats, most: Floats, track: Track, at: Floats) -> Floats:
+    """Spans (n,) at places (n,) of a track, none slack, and none longer than it may be where the fibre lies.
+
+    The sum of span and laid length is nowhere above the least that is ahead, so that the eye draws near while fibre is
+    laid.  Behind, the span grows as fibre is laid.  A bridge lands at once: where the eye is not yet beyond where it
+    lands, it runs out along it, evenly over the places in the air.
+    """
+    index, share = track.piece(at)
+    air = track.motion[index] == AIR
+    lies = np.flatnonzero(~air | (share == 0.0))
+    laid = track.laid(at)
+    on = laid[lies]
+    total = np.maximum.accumulate(wanted[lies] + on)
+    ahead = np.minimum.accumulate((most[lies] + on)[::-1])[::-1]
+    leap = float(total[-1] - total[0]) + float(wanted.max())  # over a bridge the sum may grow to what it will be
+    clock = np.concatenate([[0.0], np.cumsum(np.where(air[lies][:-1], leap, (1.0 + _GROWS) * np.diff(on)))])
+    total = np.minimum(total, np.minimum.accumulate(ahead - clock) + clock)
+    return np.asarray(np.interp(at, at[lies], total) - laid)
 
 
 def axes(point: Floats, tangent: Floats, span: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats]:

@@ -15,8 +15,8 @@ from meshwind.program.machine import Machine
 SPAN, EYE, TRAVEL, LIES = "span", "eye", "travel", "lies"
 """Kinds of faults; the last where the fibre, wound again, does not come to lie where it was planned."""
 _WHERE: dict[int, str] = {
-    Kind.TURN: ", in its turnaround; another turnaround may clear it",
-    Kind.DWELL: ", in its turnaround; another turnaround may clear it",
+    Kind.TURN: ", in its turnaround",
+    Kind.DWELL: ", in its turnaround",
 }
 """What is added on where a fault is."""
 _ROUND_OFF = 1e-9

@@ -123,7 +123,7 @@ def meets(head: Head, surface: FacetTree, eyes: Floats, turned: Floats) -> Bools
     near = surface.distances(middles) < head.radius
     if head.ball:
         return np.asarray(near)
-    found = _within(surface, eyes + turned @ head.vertices[head.faces[0, 0]], turned[:, :, 2])
+    found = within(surface, eyes + turned @ head.vertices[head.faces[0, 0]], turned[:, :, 2])
     close = np.flatnonzero(near & ~found)
     start, vector = _edges(surface.corners)
     half = 0.5 * np.linalg.norm(vector, axis=1)
@@ -141,7 +141,7 @@ def meets(head: Head, surface: FacetTree, eyes: Floats, turned: Floats) -> Bools
         own = np.einsum("nji,nj->ni", turned[owner], start[which] - eyes[owner])
         ray = np.einsum("nji,nj->ni", turned[owner], vector[which])
         hit = head.tree.first_hits(own, ray) >= 0
-        inside = _within(head.tree, own, np.broadcast_to([0.0, 0.0, 1.0], own.shape))
+        inside = within(head.tree, own, np.broadcast_to([0.0, 0.0, 1.0], own.shape))
         found[owner[hit | inside]] = True
     return found
 
@@ -155,7 +155,7 @@ def _cross(head: Head, surface: FacetTree, eyes: Floats, turned: Floats) -> Bool
     return np.asarray(hit.reshape(len(eyes), -1).any(axis=1))
 
 
-def _within(tree: FacetTree, points: Floats, rays: Floats) -> Bools:
+def within(tree: FacetTree, points: Floats, rays: Floats) -> Bools:
     """Whether points (n, 3) are within a closed surface: the first triangle along a ray is seen from its back."""
     if not len(points):
         return np.zeros(0, dtype=bool)

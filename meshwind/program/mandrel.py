@@ -52,6 +52,10 @@ class Mandrel:
         # threads of a matrix product cost more here than they save
         return np.stack([a * x + b * y + c * z for a, b, c in self.frame], axis=1)
 
+    def outside(self, points: Floats) -> Floats:
+        """Points (n, 3) in the mesh's coordinates, from the frame of the axis."""
+        return np.asarray(self.origin + points @ self.frame)
+
     def towards(self, turned: Floats) -> Floats:
         """Unit vectors (n, 3) from the axis to the eye, as it stands to the part at mandrel angles (n,) in degrees."""
         angle = -np.radians(turned)[:, None]

@@ -15,7 +15,8 @@ from meshwind.program.body import Body, body_round
 from meshwind.program.clear import Shaft, obstacle
 from meshwind.program.eye import LONGEST, Poses, Spans, at_radius, on_body, poses
 from meshwind.program.faults import EYE, SPAN, Fault, collisions, unreachable
-from meshwind.program.head import frames, head_of
+from meshwind.program.head import frames, head_of, within
+from meshwind.program.hollows import Hollows
 from meshwind.program.machine import Machine
 from meshwind.program.mandrel import Mandrel, mandrel_of
 from meshwind.program.stepping import Steps, divided, whole
@@ -100,6 +101,9 @@ class Program:
         What the eye keeps out of, in coordinates along the axis and from it.
     clearance : float
         Distance that the body keeps from part and turnarounds, in the mesh's units.
+    nearest : float
+        Least distance of the eye from the part: less than the clearance only where it goes into hollows.  Below 0 if
+        the eye is inside of it anywhere; such a program is not taken.
     blocks : Blocks
         Its blocks.
     tracks : tuple of Track
@@ -125,6 +129,7 @@ class Program:
     mandrel: Mandrel
     body: Body
     clearance: float
+    nearest: float
     blocks: Blocks
     tracks: tuple[Track, ...]
     radius: float | None
@@ -149,10 +154,14 @@ class Program:
 
 @dataclass(frozen=True)
 class Way:
-    """How a program is wound: its clearance in the mesh's units, and whether from each filament's end."""
+    """How a program is wound: its clearance in the mesh's units, and whether from each filament's end.
+
+    shorter: whether the eye goes into hollows, with a shorter span, where a span would meet the part beyond them.
+    """
 
     clearance: float
     backwards: bool = False
+    shorter: bool = False
 
 
 def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
@@ -181,18 +190,20 @@ def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
     way = Way(share if machine.clearance is None else machine.clearance / millimetres(work.units))
     best = _wound(work, machine, way)
     tried: list[str] = []
-    for wanted, words, other in (
-        (SPAN, "the other direction of travel", replace(way, backwards=True)),
-        (EYE, "a longer span", replace(way, clearance=_LONGER * way.clearance)),
+    for wanted, words, change in (
+        (SPAN, "the other direction of travel", {"backwards": True} if work.turnable else {}),
+        (SPAN, "shorter spans in hollows", {"shorter": True} if machine.axis("cross") is not None else {}),
+        (EYE, "a longer span", {"clearance": _LONGER * way.clearance}),
     ):
         hits = sum(fault.kind == wanted for fault in best.faults)
-        if not hits or (other.backwards and not work.turnable):
+        if not hits or not change:
             continue
+        other = replace(way, **change)  # type: ignore[arg-type]
         another = _wound(work, machine, other)
         left = sum(fault.kind == wanted for fault in another.faults)
-        better = len(another.faults) < len(best.faults)
+        better = len(another.faults) < len(best.faults) and another.nearest >= 0.0
         tried.append(f"{words}: {left} of {hits} blocks still meet the part; {'taken' if better else 'not taken'}")
-        best = another if better else best
+        best, way = (another, other) if better else (best, way)
     blocks = replace(best.blocks, tension=frozen(np.full(len(best.blocks), tension)))
     return replace(best, blocks=blocks, remedies=tuple(tried))
 
@@ -206,6 +217,8 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
     body = _body(work, mandrel, points, (shaft, way.clearance))
     blocked = obstacle(work.skin, work.diagonal, mandrel, Shaft(shaft, (float(body.x[0]), float(body.x[-1]))))
     spans, radius = _spans(machine, body, work)
+    if way.shorter:
+        spans = Hollows(spans, blocked, mandrel, way.clearance)
     steps = Steps(
         np.radians(TURN), np.radians(ROLL), np.radians(ROLL),
         *(3 * (min(MOVE / scale, _SMALL * work.diagonal),)),
@@ -221,12 +234,15 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
     timing = timing_of(blocks, machine, scale)
     blocks = replace(blocks, time=frozen(np.concatenate([[0.0], np.cumsum(timing.seconds)])))
     names = limits_of(machine).names
+    nearest = float(blocked.surface.distances(frozen(blocks.eye)).min())
+    if within(blocked.below, blocks.eye, mandrel.towards(blocks.mandrel)).any():
+        nearest = -nearest
     faults = (
         *collisions(blocks, blocked, head_of(machine, scale), frames(blocks, mandrel, machine)),
         *unreachable(blocks, machine, scale),
     )
     return Program(
-        work, machine, mandrel, body, way.clearance, blocks, tracks, radius, tuple(sorted(faults)),
+        work, machine, mandrel, body, way.clearance, nearest, blocks, tracks, radius, tuple(sorted(faults)),
         _losses(blocks, machine, radius, scale),
         {name: float(timing.seconds[timing.limit == k].sum()) for k, name in enumerate(names)},
         frozen(timing.limit), backwards=way.backwards,

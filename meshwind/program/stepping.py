@@ -44,6 +44,11 @@ class Steps:
         shares = (np.abs(np.diff(getattr(poses, name))) / value for name, value in vars(self).items())
         return reduce(np.maximum, shares)
 
+    def of(self, track: Track, poses: Poses) -> Floats:
+        """The same on a track, where a bridge lands at once, however long it is."""
+        between = track.piece(0.5 * (poses.at[:-1] + poses.at[1:]))[0]
+        return np.where(track.motion[between] == AIR, self.motion(poses), self.effort(poses))
+
     def motion(self, poses: Poses) -> Floats:
         """The same without what is laid: what the machine does."""
         return replace(self, laid=np.inf).effort(poses)
@@ -76,13 +81,11 @@ def divided(track: Track, solve: Callable[[Floats], Poses], steps: Steps, at: Fl
     """See `stepped`; at: places (n,) at which it is looked first."""
     at, effort = _resolved(track, solve, steps, at)
     wanted = _spread(at, effort, kept(track, at))
-    wanted = wanted[_held(track, wanted)]
     for _ in range(_ROUNDS):
         # solved among all places that were looked at, so that no fibre is slack between two blocks
         every = np.union1d(at, wanted)
         found = _chosen(solve(every), np.searchsorted(every, wanted))
-        effort = steps.effort(found)
-        halves = _halves(track, wanted, effort)
+        halves = _halves(wanted, steps.of(track, found))
         if not len(halves):
             break
         wanted = np.union1d(wanted, halves)
@@ -98,20 +101,16 @@ def _told(effort: Floats) -> Bools:
 
 
 def kept(track: Track, at: Floats) -> Bools:
-    """Which places (n,) have a block: the ends, where bridges land, and where the fibre begins to do something else."""
+    """Which places (n,) have a block: the ends, those of bridges, and where the fibre begins to do something else."""
     index, share = track.piece(at)
     before = np.maximum(index - 1, 0)
     new = np.zeros(len(at), dtype=bool)
-    for values in (track.layer, track.passed, track.kind, (track.motion == PIVOT) & (track.corner > _TOLD)):
+    for values in (
+        track.layer, track.passed, track.kind, track.motion == AIR, (track.motion == PIVOT) & (track.corner > _TOLD)
+    ):  # fmt: skip
         new |= values[index] != values[before]
     new &= (share == 0.0) & (index > 0)
-    return np.asarray((new | track.landing(at)) & _held(track, at) | _ends(at))
-
-
-def _held(track: Track, at: Floats) -> Bools:
-    """Which places (n,) may have a block: not where a bridge lifts off, as the eye stands there as where it lands."""
-    index, share = track.piece(at)
-    return np.asarray((track.motion[index] != AIR) | (share >= 1.0) | _ends(at))
+    return np.asarray(new | track.landing(at) | _ends(at))
 
 
 def _ends(at: Floats) -> Bools:
@@ -119,22 +118,21 @@ def _ends(at: Floats) -> Bools:
     return np.asarray((at == at[0]) | (at == at[-1]))
 
 
-def _halves(track: Track, at: Floats, effort: Floats) -> Floats:
-    """Places halfway through steps (n - 1,) that are too long; a bridge lands at once, so that none is within."""
+def _halves(at: Floats, effort: Floats) -> Floats:
+    """Places halfway through steps (n - 1,) that are too long."""
     long = np.flatnonzero(effort > _MOST)
-    half = 0.5 * (at[long] + at[long + 1])
-    return half[track.motion[track.piece(half)[0]] != AIR]
+    return np.asarray(0.5 * (at[long] + at[long + 1]))
 
 
 def _resolved(track: Track, solve: Callable[[Floats], Poses], steps: Steps, at: Floats) -> tuple[Floats, Floats]:
     """Places between which no step is too long, where more places help, and the steps between them."""
-    effort = steps.effort(solve(at))
+    effort = steps.of(track, solve(at))
     for _ in range(_ROUNDS):
-        halves = _halves(track, at, effort)
+        halves = _halves(at, effort)
         if not len(halves):
             break
         at = np.union1d(at, halves)
-        effort = steps.effort(solve(at))
+        effort = steps.of(track, solve(at))
     return at, effort
 
 

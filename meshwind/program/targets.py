@@ -115,6 +115,7 @@ def figures_of(made: Program) -> dict[str, Any]:
             "free_length": {"min": float(blocks.free_length.min()), "max": float(blocks.free_length.max())},
         },
         "clearance": made.clearance,
+        "nearest": made.nearest,
         "turns": float(blocks.mandrel[-1] - blocks.mandrel[0]) / 360.0,
         "turned_back": {
             "laying": float(back[laying].sum()), "standing": float(back[~laying].sum()),

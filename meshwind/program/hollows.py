@@ -1,0 +1,53 @@
+"""Shorter spans in hollows: where a span would meet the part beyond one, the eye goes in between."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshwind.core.cast import Floats
+from meshwind.program.clear import Obstacle
+from meshwind.program.eye import Spans
+from meshwind.program.mandrel import Mandrel
+
+_PLACES = 16
+"""Places on the way to the part at which it is seen how much room the eye has."""
+_ENOUGH = 0.5
+"""Distance from the part, over the clearance, with which the eye goes no deeper into a hollow."""
+
+_SEEN = 2.0
+"""Distance from the part, over the depth of the skin below its surface, from which a place is surely outside of it."""
+
+
+@dataclass(frozen=True)
+class Hollows:
+    """Spans that end before they meet a part.
+
+    spans: as they would be without; blocked, mandrel: the part, and the axis on which it turns; clearance: of the eye.
+    """
+
+    spans: Spans
+    blocked: Obstacle
+    mandrel: Mandrel
+    clearance: float
+
+    def __call__(self, points: Floats, rays: Floats) -> tuple[Floats, Floats]:
+        """Spans wanted, and the longest that are free (n,)."""
+        wanted, most = self.spans(points, rays)
+        start, ahead = self.mandrel.outside(points), rays @ self.mandrel.frame
+        free = self.blocked.free(start, ahead)
+        short = np.flatnonzero(free < np.minimum(wanted, most))
+        most[short] = self._roomy(start[short], ahead[short], free[short])
+        return wanted, most
+
+    def _roomy(self, start: Floats, ahead: Floats, free: Floats) -> Floats:
+        """The longest spans (n,) with room enough for the eye, or those with most, on rays free up to a length (n,).
+
+        Infinity where there is none: the fibre's line goes below the surface.
+        """
+        lengths = free[:, None] * np.arange(1, _PLACES) / _PLACES
+        eyes = start[:, None] + lengths[:, :, None] * ahead[:, None]
+        room = self.blocked.surface.distances(eyes.reshape(-1, 3)).reshape(lengths.shape)
+        best = np.minimum(room, _ENOUGH * self.clearance)
+        number, last = np.arange(len(free)), best.shape[1] - 1 - np.argmax(best[:, ::-1], axis=1)
+        # a ray may run between skin and surface before it meets the skin
+        return np.where(room[number, last] > _SEEN * self.blocked.skin, lengths[number, last], np.inf)
