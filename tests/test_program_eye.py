@@ -18,7 +18,7 @@ from meshwind.filament.ends import LayerPlan
 from meshwind.filament.filament import filaments_of
 from meshwind.mesh import mesh_from
 from meshwind.program.body import Body, body_round, to_radius
-from meshwind.program.eye import at_radius, axes, on_body, poses, taut
+from meshwind.program.eye import Spans, at_radius, axes, on_body, poses, taut
 from meshwind.program.machine import Machine, read_machine
 from meshwind.program.mandrel import Mandrel, mandrel_of
 from meshwind.program.program import Work, program
@@ -198,14 +198,14 @@ def test_the_eye_stands_still_while_a_bridge_lands() -> None:
     block = stepped(on, lambda at: poses(on, axis_x(), on_body(body), at), steps)
     assert place + 1.0 in block.at
     assert not ((block.at >= place) & (block.at < place + 1.0)).any()
-    # where the span may be at most 8 long up to there, the eye draws near, runs out along the bridge, and moves off
-    most = 8.0
+    # where the span may be at most 2 long up to there, the eye draws near, runs out along the bridge, and moves off
+    most = 2.0
 
     def near(points: Floats, rays: Floats) -> tuple[Floats, Floats]:
         before_it = points @ ahead <= lift @ ahead
         return body.spans(points, rays), np.where(before_it & (points @ ahead > -5.0 + lift @ ahead), most, np.inf)
 
-    block = stepped(on, lambda at: poses(on, axis_x(), near, at), steps)
+    block = stepped(on, lambda at: poses(on, axis_x(), Spans(near), at), steps)
     eyes = block.point + block.span[:, None] * block.tangent
     at = block.at
     assert (np.diff(block.span + block.laid) >= -1e-9).all()
@@ -219,6 +219,16 @@ def test_the_eye_stands_still_while_a_bridge_lands() -> None:
     assert along[-1] >= np.linalg.norm(land - lift)
     assert np.abs(np.diff(block.x)).max() <= 3.0
     assert np.abs(np.diff(block.r)).max() <= 3.0
+    # with a lift it keeps off the part past the point where the bridge lands, along the normal there
+    height = 0.15
+    places: Floats = np.concatenate([np.arange(place), place + np.linspace(0.0, 1.0, 401), [place + 2.0]])
+    lifted = poses(on, axis_x(), Spans(near, height), places)
+    eyes = (lifted.point + lifted.span[:, None] * lifted.tangent)[int(place) : int(place) + 401]
+    off = (eyes - eyes[0]) @ up
+    assert off[[0, -1]] == pytest.approx(0.0, abs=1e-9)
+    assert off.max() == pytest.approx(height, rel=0.02)
+    assert (eyes[int(off.argmax())] - height * up) @ ahead == pytest.approx(land @ ahead, abs=0.1)
+    assert (np.diff(lifted.span + lifted.laid) >= -1e-9).all()
 
 
 def test_a_corner_is_turned_about_its_point() -> None:

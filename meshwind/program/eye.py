@@ -2,22 +2,34 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 
 from meshwind.core.cast import Floats
+from meshwind.core.vectors import TINY, unit
 from meshwind.program.body import Body, to_radius
 from meshwind.program.mandrel import Mandrel
 from meshwind.program.track import AIR, Track
 
-Spans: TypeAlias = Callable[[Floats, Floats], tuple[Floats, Floats]]
-"""Lengths (n,) of free spans from points (n, 3) along tangents (n, 3), both in the mandrel's frame: as wanted, and the
-most that may be."""
 LONGEST = 4.0
 """Longest span of an eye at a fixed distance from the axis, over the size of the body: near the axis it has no end."""
 _GROWS = 1.0
 """Length by which a span that had to be short grows for each length that is laid, until it is as long as wanted."""
+_SWING = 0.05
+"""Most that the span swings, in radians, as the eye keeps off the part past the point where a bridge lands."""
+
+
+@dataclass(frozen=True)
+class Spans:
+    """How long free spans are.
+
+    find: from points along tangents (n, 3), both in the mandrel's frame, to their lengths (n,) as wanted, and the most
+    that may be.
+    lift: how far from the part the eye keeps where it runs out along a bridge past the point where that lands.
+    """
+
+    find: Callable[[Floats, Floats], tuple[Floats, Floats]]
+    lift: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -53,22 +65,26 @@ class Poses:
 
 def on_body(body: Body) -> Spans:
     """Spans that end on a body."""
-    return lambda points, rays: (body.spans(points, rays), np.full(len(points), np.inf))
+    return Spans(lambda points, rays: (body.spans(points, rays), np.full(len(points), np.inf)))
 
 
 def at_radius(radius: float, longest: float) -> Spans:
     """Spans that end at a distance from the axis, at most `longest` long."""
-    return lambda points, rays: (
-        np.minimum(to_radius(points, rays, radius), longest), np.full(len(points), np.inf)
-    )  # fmt: skip
+    return Spans(
+        lambda points, rays: (np.minimum(to_radius(points, rays, radius), longest), np.full(len(points), np.inf))
+    )
 
 
 def poses(track: Track, mandrel: Mandrel, spans: Spans, at: Floats) -> Poses:
     """The eye at places (n,) of a track, growing; the fibre is never slack between them."""
     contact, ahead = track.contact(at)
     point, tangent, laid = mandrel.inside(contact), mandrel.turned(ahead), track.laid(at)
-    wanted, most = spans(point, tangent)
-    span = limited(wanted, most, track, at) if np.isfinite(most).any() else taut(wanted, laid)
+    wanted, most = spans.find(point, tangent)
+    if not np.isfinite(most).any():
+        span = taut(wanted, laid)
+    else:
+        span = limited(wanted, most, track, at)
+        tangent, span = _lifted(tangent, span, track, at, mandrel, spans.lift)
     return Poses(at, laid, point, tangent, span, *axes(point, tangent, span))
 
 
@@ -98,6 +114,28 @@ def limited(wanted: Floats, most: Floats, track: Track, at: Floats) -> Floats:
     clock = np.concatenate([[0.0], np.cumsum(np.where(air[lies][:-1], leap, (1.0 + _GROWS) * np.diff(on)))])
     total = np.minimum(total, np.minimum.accumulate(ahead - clock) + clock)
     return np.asarray(np.interp(at, at[lies], total) - laid)
+
+
+def _lifted(
+    tangent: Floats, span: Floats, track: Track, at: Floats, mandrel: Mandrel, lift: float
+) -> tuple[Floats, Floats]:
+    """Tangents (n, 3) and spans (n,) of which those that run out along a bridge keep off the part where it lands.
+
+    The lift is along the normal there; it grows evenly from where the eye begins to run out, and falls as evenly.
+    """
+    index, share = track.piece(at)
+    air = np.flatnonzero((track.motion[index] == AIR) & (share > 0.0))
+    bridge = index[air]
+    begin, end = np.searchsorted(at, bridge), np.searchsorted(at, bridge + 1.0)
+    length = np.linalg.norm(track.points[bridge, 1] - track.points[bridge, 0], axis=1)
+    first, past = length - span[begin], span[end]  # how far it is to where the bridge lands, and on from there
+    on = length - span[air]
+    part = np.where(on > 0.0, 1.0 - on / np.maximum(first, TINY), 1.0 + on / np.maximum(past, TINY))
+    height = np.minimum(lift, _SWING * length) * np.where(first > 0.0, np.clip(part, 0.0, 1.0), 0.0)
+    moved = span[air, None] * tangent[air] + height[:, None] * mandrel.turned(track.normals[bridge, 1])
+    tangent, span = tangent.copy(), span.copy()
+    tangent[air], span[air] = unit(moved), np.linalg.norm(moved, axis=1)
+    return tangent, span
 
 
 def axes(point: Floats, tangent: Floats, span: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats]:

@@ -18,12 +18,14 @@ _SEEN = 2.0
 """Distance from the part, over the depth of the skin below its surface, from which a place is surely outside of it."""
 
 
-@dataclass(frozen=True)
-class Hollows:
-    """Spans that end before they meet a part.
+def in_hollows(spans: Spans, blocked: Obstacle, mandrel: Mandrel, clearance: float, lift: float) -> Spans:
+    """Spans that end before they meet a part that turns on a mandrel; see `Spans` for the lift."""
+    return Spans(_Hollows(spans, blocked, mandrel, clearance), lift)
 
-    spans: as they would be without; blocked, mandrel: the part, and the axis on which it turns; clearance: of the eye.
-    """
+
+@dataclass(frozen=True)
+class _Hollows:
+    """Lengths of spans that end before they meet a part."""
 
     spans: Spans
     blocked: Obstacle
@@ -31,8 +33,8 @@ class Hollows:
     clearance: float
 
     def __call__(self, points: Floats, rays: Floats) -> tuple[Floats, Floats]:
-        """Spans wanted, and the longest that are free (n,)."""
-        wanted, most = self.spans(points, rays)
+        """Lengths (n,) as wanted, and the most that may be."""
+        wanted, most = self.spans.find(points, rays)
         start, ahead = self.mandrel.outside(points), rays @ self.mandrel.frame
         free = self.blocked.free(start, ahead)
         short = np.flatnonzero(free < np.minimum(wanted, most))

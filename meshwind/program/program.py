@@ -16,7 +16,7 @@ from meshwind.program.clear import Shaft, obstacle
 from meshwind.program.eye import LONGEST, Poses, Spans, at_radius, on_body, poses
 from meshwind.program.faults import EYE, SPAN, Fault, collisions, unreachable
 from meshwind.program.head import frames, head_of, within
-from meshwind.program.hollows import Hollows
+from meshwind.program.hollows import in_hollows
 from meshwind.program.machine import Machine
 from meshwind.program.mandrel import Mandrel, mandrel_of
 from meshwind.program.stepping import Steps, divided, whole
@@ -31,6 +31,8 @@ TURN, ROLL, MOVE = 5.0, 10.0, 10.0
 """Longest steps between blocks: degrees of the mandrel, degrees of roll and yaw, mm of the eye."""
 _SMALL = 0.05
 """Longest step of the eye over the part's diagonal, for parts that are smaller than the step in mm is made for."""
+_LIFT, _PAST = 0.1, 1.1
+"""How far the eye keeps off the part where it runs out along a bridge, over the clearance, and over its own radius."""
 _LONGER = 3.0
 """Clearance that is tried where the eye comes too near, over that which is wanted."""
 
@@ -217,8 +219,10 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
     body = _body(work, mandrel, points, (shaft, way.clearance))
     blocked = obstacle(work.skin, work.diagonal, mandrel, Shaft(shaft, (float(body.x[0]), float(body.x[-1]))))
     spans, radius = _spans(machine, body, work)
+    head = head_of(machine, scale)
     if way.shorter:
-        spans = Hollows(spans, blocked, mandrel, way.clearance)
+        lift = max(_LIFT * way.clearance, 0.0 if head is None else _PAST * head.radius)
+        spans = in_hollows(spans, blocked, mandrel, way.clearance, lift)
     steps = Steps(
         np.radians(TURN), np.radians(ROLL), np.radians(ROLL),
         *(3 * (min(MOVE / scale, _SMALL * work.diagonal),)),
@@ -227,7 +231,7 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
     tracks = tuple(track(filament, way.backwards) for filament in work.filaments)
     for on in tracks:
         found = _divided(on, mandrel, spans, steps)
-        part = _blocks(on, found, laid, turned)
+        part = _blocks(on, found, mandrel, laid, turned)
         laid, turned = float(part.arc_length[-1]), float(part.mandrel[-1])
         parts.append(part)
     blocks = _joined(parts)
@@ -238,7 +242,7 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
     if within(blocked.below, blocks.eye, mandrel.towards(blocks.mandrel)).any():
         nearest = -nearest
     faults = (
-        *collisions(blocks, blocked, head_of(machine, scale), frames(blocks, mandrel, machine)),
+        *collisions(blocks, blocked, head, frames(blocks, mandrel, machine)),
         *unreachable(blocks, machine, scale),
     )
     return Program(
@@ -273,7 +277,7 @@ def _divided(on: Track, mandrel: Mandrel, spans: Spans, steps: Steps) -> Poses:
     return divided(on, lambda at: poses(on, mandrel, spans, at), steps, whole(on, steps))
 
 
-def _blocks(on: Track, found: Poses, laid: float, turned: float) -> Blocks:
+def _blocks(on: Track, found: Poses, mandrel: Mandrel, laid: float, turned: float) -> Blocks:
     """Blocks at poses on a track, not timed yet; they go on from a length laid and an angle of the mandrel."""
     index, share = on.piece(found.at)
     told = np.where(share == 0.0, np.maximum(index - 1, 0), index)  # what a block has done, not what the next will
@@ -285,7 +289,7 @@ def _blocks(on: Track, found: Poses, laid: float, turned: float) -> Blocks:
     first = float(np.mod(angle[0], 360.0)) if turned == -np.inf else float(angle[0])
     whole_turns = 0.0 if turned == -np.inf else 360.0 * np.ceil((turned - first) / 360.0)
     angle = angle - angle[0] + first + whole_turns
-    contact, tangent = on.contact(found.at)
+    contact, tangent = on.contact(found.at)[0], found.tangent @ mandrel.frame
     n = len(found)
     return Blocks(
         layer=frozen(on.layer[told]), circuit=frozen(on.circuit[told]), passed=frozen(on.passed[told]),
