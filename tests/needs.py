@@ -1,6 +1,7 @@
 """What some tests need that pip does not install: how it is found, and the Debian packages that hold it.
 
-`python tests/needs.py` prints the packages that the whole check installs.
+`python tests/needs.py` prints the packages that the whole check installs, and `python tests/needs.py unpacked` those
+that it unpacks.
 """
 
 import sys
@@ -10,7 +11,7 @@ from shutil import which
 from typing import NamedTuple
 
 STRICT = "MESHWIND_TEST_ALL"
-"""Environment variable: where it is set, a test whose strict need is missing fails; otherwise it is skipped."""
+"""Environment variable: where it is set, a test whose need is missing fails; otherwise it is skipped."""
 
 
 CHROMIUM = "chromium", "chromedriver"
@@ -19,13 +20,13 @@ CHROMIUM = "chromium", "chromedriver"
 class Need(NamedTuple):
     """A name to print, whether this machine has it, and the Debian packages that install it.
 
-    strict: whether the whole check installs it, and fails without it.
+    unpacked: whether the whole check only unpacks it, as it brings much that no test needs.
     """
 
     name: str
     is_there: Callable[[], bool]
     packages: str
-    strict: bool = True
+    unpacked: bool = False
 
     @property
     def advice(self) -> str:
@@ -49,11 +50,12 @@ NEEDS = {
     "opengl": Need("an OpenGL driver", _can_draw, "libegl1 libgl1-mesa-dri"),
     "chromium": Need("Chromium with its driver", lambda: _has(*CHROMIUM), "chromium chromium-driver"),
     "calculix": Need("CalculiX", lambda: _has("ccx"), "calculix-ccx"),
-    # with what it brings it is as large as all the others, so that it is tested where it is there
-    "linuxcnc": Need("LinuxCNC's interpreter", lambda: _has("rs274"), "linuxcnc-uspace", strict=False),
+    # with the desktop that it brings it is as large as all the others
+    "linuxcnc": Need("LinuxCNC's interpreter", lambda: _has("rs274"), "linuxcnc-uspace", unpacked=True),
 }
 """By the name of the fixture (in conftest.py) that a test asks for."""
 
 
 if __name__ == "__main__":
-    sys.stdout.write(" ".join(need.packages for need in NEEDS.values() if need.strict) + "\n")
+    unpacked = sys.argv[1:] == ["unpacked"]
+    sys.stdout.write(" ".join(need.packages for need in NEEDS.values() if need.unpacked == unpacked) + "\n")
