@@ -105,7 +105,7 @@ class Program:
         Distance that the body keeps from part and turnarounds, in the mesh's units.
     nearest : float
         Least distance of the eye from the part: less than the clearance only where it goes into hollows.  Below 0 if
-        the eye is inside of it anywhere; such a program is not taken.
+        the eye is inside of it, or of the shaft, anywhere; no remedy is taken that leads there.
     blocks : Blocks
         Its blocks.
     tracks : tuple of Track
@@ -203,7 +203,7 @@ def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
         other = replace(way, **change)  # type: ignore[arg-type]
         another = _wound(work, machine, other)
         left = sum(fault.kind == wanted for fault in another.faults)
-        better = len(another.faults) < len(best.faults) and another.nearest >= 0.0
+        better = len(another.faults) < len(best.faults) and another.nearest >= min(best.nearest, 0.0)
         tried.append(f"{words}: {left} of {hits} blocks still meet the part; {'taken' if better else 'not taken'}")
         best, way = (another, other) if better else (best, way)
     blocks = replace(best.blocks, tension=frozen(np.full(len(best.blocks), tension)))
