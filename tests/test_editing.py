@@ -45,7 +45,7 @@ def real_program(surface: Surface) -> Program:
     return assembled(*whole, whole[0].chosen, energy(surface, 0.2), moves, moved, None, 1e-3)
 
 
-def by_osqp(program: Program) -> Solution:
+def by_piqp(program: Program) -> Solution:
     return minimise(program.P, program.A, program.low, program.high)
 
 
@@ -58,9 +58,9 @@ def by_clarabel(program: Program) -> float:
     return float(solver.solve().obj_val)
 
 
-def test_osqp_and_clarabel_agree_and_the_certificate_holds() -> None:
+def test_piqp_and_clarabel_agree_and_the_certificate_holds() -> None:
     program = real_program(hyperboloid())
-    found = by_osqp(program)
+    found = by_piqp(program)
     assert program.A.shape[0] > 100
     assert found.primal <= ACCURACY and found.dual <= ACCURACY
     assert found.objective == pytest.approx(by_clarabel(program), rel=1e-4)
@@ -95,7 +95,7 @@ def test_one_row_has_the_answer_in_closed_form() -> None:
     moves = free_moves(surface, frozen_mask(surface, None))
     moved = np.zeros((surface.control_points.size // 3, 3))
     program = assembled(one, none, one.chosen, energy(surface, 0.0), moves, moved, None, 0.0)
-    change = by_osqp(program).x[: moved.size] * program.unit
+    change = by_piqp(program).x[: moved.size] * program.unit
     weight = one.matrix.toarray()[0]
     size = float(np.linalg.norm(weight))
     assert change == pytest.approx(weight / size**2 * one.least[0] / (1 + ELASTICITY), abs=1e-9)

@@ -1,8 +1,8 @@
 """One round of the redesign: the least change of the control net that meets the demands of the paths, (6.12).
 
 The inequalities are elastic: min dC^T (1 + f B) dC + |t|^2 / d subject to M dC + t >= b.  Paths lie closer together
-than control points, so that the rows of (6.10) nearly repeat each other; their multipliers are then not unique, and
-OSQP converges slowly (10,000 iterations and more where the elastic form takes 500).  A row is violated by one or two
+than control points, so that the rows of (6.10) nearly repeat each other; their multipliers are then not unique, unless
+the form is elastic.  A row is violated by one or two
 hundredths of the largest demand, which the margin compensates; without a solution a row is violated by much more.
 """
 
