@@ -202,8 +202,10 @@ def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
             continue
         other = replace(way, **change)  # type: ignore[arg-type]
         another = _wound(work, machine, other)
+        # a shaft that is thicker than the part at its ends may hold the eye in any case
+        lowest = 0.0 if "shorter" in change else min(best.nearest, 0.0)
         left = sum(fault.kind == wanted for fault in another.faults)
-        better = len(another.faults) < len(best.faults) and another.nearest >= min(best.nearest, 0.0)
+        better = len(another.faults) < len(best.faults) and another.nearest >= lowest
         tried.append(f"{words}: {left} of {hits} blocks still meet the part; {'taken' if better else 'not taken'}")
         best, way = (another, other) if better else (best, way)
     blocks = replace(best.blocks, tension=frozen(np.full(len(best.blocks), tension)))
