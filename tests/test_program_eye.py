@@ -119,6 +119,16 @@ def rotated(course: Course, angle: float) -> Course:
     return replace(course, points=course.points @ by, normal=course.normal @ by)
 
 
+def test_the_flat_end_of_a_body_is_as_wide_as_its_outermost_corner() -> None:
+    """A rim that is not round: points of an end lie in one plane up to round-off, at several distances from the axis."""
+    x, r = np.array([-1e-10, 0.0, 1e-11, 200.0]), np.array([24.0, 44.0, 30.0, 70.0])
+    body = body_round(x, r, 15.0)
+    assert body.r[0] == pytest.approx(44.0 + 15.0 * np.tan(pi / 8.0), abs=1e-6)
+    dense = np.linspace(body.x[0], body.x[-1], 4001)
+    outline = np.stack([dense, np.interp(dense, body.x, body.r)], axis=1)
+    assert np.linalg.norm(outline[:, None] - np.stack([x, r], axis=1), axis=2).min() >= 15.0 * (1.0 - 1e-3)
+
+
 profiles = st.lists(st.tuples(st.floats(-100.0, 100.0), st.floats(1.0, 80.0)), min_size=3, max_size=12)
 
 

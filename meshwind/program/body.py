@@ -12,6 +12,8 @@ _OCTAGON = np.linspace(0.0, np.pi, 5)
 """Directions in which points are moved by the clearance: the hull of an octagon takes the place of that of a circle."""
 _THIN = 1e-12
 """Extent along the axis over the size below which points are a disc."""
+_PLANE = 1e-9
+"""Distance along the axis over the body's length up to which corners lie in one plane."""
 _SETTLED, _STEPS = 1e-13, 100
 """Distance from the body, over its size, at which a ray is said to leave it, and most Newton steps until then."""
 
@@ -81,8 +83,9 @@ def body_round(x: Floats, r: Floats, clearance: float) -> Body:
     corners = mirrored[ConvexHull(mirrored).vertices]
     corners = corners[corners[:, 1] > 0.0]
     corners = corners[np.argsort(corners[:, 0], kind="stable")]
-    keep = np.append(True, np.diff(corners[:, 0]) > 1e-12 * np.ptp(corners[:, 0]))
-    return Body(frozen(corners[keep, 0]), frozen(corners[keep, 1]))
+    # of corners in one plane, up to round-off, the outermost counts: the other is within the flat end
+    first = np.flatnonzero(np.append(True, np.diff(corners[:, 0]) > _PLANE * np.ptp(corners[:, 0])))
+    return Body(frozen(corners[first, 0]), frozen(np.maximum.reduceat(corners[:, 1], first)))
 
 
 def to_radius(points: Floats, rays: Floats, radius: float) -> Floats:
