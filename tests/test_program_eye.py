@@ -120,7 +120,7 @@ def rotated(course: Course, angle: float) -> Course:
 
 
 def test_the_flat_end_of_a_body_is_as_wide_as_its_outermost_corner() -> None:
-    """A rim that is not round: points of an end lie in one plane up to round-off, at several distances from the axis."""
+    """A rim that is not round: points of an end lie in one plane up to round-off, some nearer to the axis."""
     x, r = np.array([-1e-10, 0.0, 1e-11, 200.0]), np.array([24.0, 44.0, 30.0, 70.0])
     body = body_round(x, r, 15.0)
     assert body.r[0] == pytest.approx(44.0 + 15.0 * np.tan(pi / 8.0), abs=1e-6)
