@@ -20,10 +20,10 @@ from viewer_browser import opened
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.filament.filament import backwards
-from meshwind.pictures.axes_picture import draw_axes
+from meshwind.pictures.axes_picture import draw_axes, lines_of
 from meshwind.pictures.machine_picture import turned
 from meshwind.program.axes_chart import axes_chart
-from meshwind.program.faults import SPAN, Fault
+from meshwind.program.faults import EYE, LIES, SPAN, TRAVEL, Fault
 from meshwind.program.machine import read_machine
 from meshwind.program.machine_scene import frame_times, shots_of
 from meshwind.program.page import program_data
@@ -74,6 +74,29 @@ def test_the_chart_shows_the_blocks(made: Program, tmp_path: Path) -> None:
     for colour in ("2f6da8", "e08a1e", "1c7c3c", "8a5fb0", "b3541e", "e0218a"):
         wanted = [int(colour[k : k + 2], 16) for k in (0, 2, 4)]
         assert (np.abs(pixels - wanted).max(axis=2) < 40).sum() > 20, colour
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_chart_with_much_to_say_keeps_its_rows(made: Program, tmp_path: Path) -> None:
+    few, late = (tmp_path / name for name in ("few.png", "late.png"))
+    draw_axes(few, axes_chart(made))
+    # after the first circuit: its column has no mark, and the line below the title breaks
+    kinds = [Fault(len(made.blocks) - 2, kind, "") for kind in (SPAN, EYE, TRAVEL, LIES)]
+    chart = axes_chart(replace(made, faults=tuple(kinds)))
+    assert chart.subtitle.endswith(
+        "an axis leaves its travel at 1 block; the fibre does not lie where it was planned at 1 block (marked)"
+    )
+    draw_axes(late, chart)
+    lines = lines_of(chart.subtitle, 100)
+    assert max(map(len, lines)) <= 100
+    assert " ".join(lines).replace("·", "").split() == chart.subtitle.replace("·", "").split()
+    with Image.open(few) as drawn:
+        height = drawn.height
+    with Image.open(late) as drawn:
+        mandrel = np.abs(np.asarray(drawn.convert("RGB"), dtype=int) - [0x2F, 0x6D, 0xA8]).max(axis=2) < 40
+    rows, columns = np.flatnonzero(mandrel.any(axis=1)), np.flatnonzero(mandrel.any(axis=0))
+    assert drawn.height > height
+    assert np.ptp(rows) > 0.6 * drawn.height and np.ptp(columns) > 0.8 * drawn.width
 
 
 def test_the_page_has_the_blocks(made: Program) -> None:
@@ -129,7 +152,10 @@ def test_frames_are_even_and_slow_first(made: Program) -> None:
 
 @pytest.mark.usefixtures("opengl")
 def test_the_movie_moves(run: Path, tmp_path: Path) -> None:
-    done = write_program(run, to=("axes", "gif", "viewer"), out=tmp_path, seconds=1.0)
+    told: list[str] = []
+    done = write_program(run, to=("axes", "gif", "viewer"), out=tmp_path, seconds=1.0, progress=told.append)
+    assert told[:7] == ["read", "program", "wind again", "write", "axes", "viewer", "movie"]
+    assert [int(line.split()[1]) for line in told[7:]] == [3, 5, 8, 10, 13, 15, 18, 20, 23, 25]
     assert [file.name for file in done.files] == [
         "axes.png", "program.csv", "program.gif", "program.html", "program.json",
     ]  # fmt: skip
@@ -166,9 +192,23 @@ def test_the_page_goes_from_block_to_block(run: Path, tmp_path: Path, chromium: 
 
 
 def test_a_movie_of_no_length_is_refused(run: Path, tmp_path: Path) -> None:
+    told: list[str] = []
     with pytest.raises(BadInputError, match="seconds is 0"):
-        write_program(run, to=("gif",), out=tmp_path, seconds=0.0)
+        write_program(run, to=("gif",), out=tmp_path, seconds=0.0, progress=told.append)
     assert not list(tmp_path.iterdir())
+    assert told == []  # before anything is computed
+
+
+def test_a_movie_without_its_encoder_is_refused_at_once(run: Path, tmp_path: Path, monkeypatch: Any) -> None:
+    monkeypatch.setattr("shutil.which", lambda _name: None)
+    monkeypatch.setattr("meshwind.pictures.movie.find_spec", lambda _name: None)
+    told: list[str] = []
+    with pytest.raises(BadInputError, match=r"mp4 needs FFmpeg, .* or give gif instead"):
+        write_program(run, to=("mp4",), out=tmp_path, progress=told.append)
+    assert told == []
+
+
+def test_what_can_be_made_is_named() -> None:
     assert set(SEEN) == {"axes", "viewer", "gif", "mp4"}
 
 

@@ -5,10 +5,14 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from time import perf_counter
 
 import typer
 
 from meshwind.cli.arguments import Printed
+
+_QUIET = 10.0
+"""Seconds after which a command that counts says how far it is, where there is no terminal to show a bar."""
 
 
 def print_report(lines: Sequence[str], figures: Mapping[str, object], printed: Printed) -> None:
@@ -44,7 +48,7 @@ def _shortened(files: Sequence[Path]) -> list[str]:
 
 @contextmanager
 def stages(printed: Printed) -> Iterator[Callable[[str], None]]:
-    """Yield a function to call with the name of each stage as it starts.
+    """Yield a function to call with the name of each stage as it starts, or as it goes on: "movie, 25 of 250 frames".
 
     Progress goes to standard error: a live line on a terminal, plain lines otherwise.
     """
@@ -59,25 +63,42 @@ def stages(printed: Printed) -> Iterator[Callable[[str], None]]:
 
     columns = SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn()
     with Progress(*columns, console=Console(stderr=True)) as bars:
-        running: list[TaskID] = []
+        running: dict[str, TaskID] = {}
 
         def show(stage: str) -> None:
-            for task in running:
+            name = stage.split(",")[0]
+            if name in running:
+                bars.update(running[name], description=stage)
+                return
+            end()
+            running[name] = bars.add_task(stage, total=None)
+
+        def end() -> None:
+            for task in running.values():
                 bars.update(task, total=1, completed=1)
-            running[:] = [bars.add_task(stage, total=None)]
+            running.clear()
 
         yield show
-        for task in running:
-            bars.update(task, total=1, completed=1)
+        end()
 
 
 @contextmanager
 def counter(stage: str, printed: Printed) -> Iterator[Callable[[str, int, int], None]]:
     """Yield a function to call with the name of each item that is done, their number and the total: a progress bar."""
-    if printed.no_progress or sys.stderr is None or not sys.stderr.isatty():
-        if not printed.no_progress:
-            _print_stage(stage)
+    if printed.no_progress:
         yield lambda _name, _done, _total: None
+        return
+    if sys.stderr is None or not sys.stderr.isatty():
+        _print_stage(stage)
+        told = perf_counter()
+
+        def tell(_name: str, done: int, total: int) -> None:
+            nonlocal told
+            if perf_counter() - told > _QUIET and done < total:
+                told = perf_counter()
+                _print_stage(f"{stage}, {done} of {total}")
+
+        yield tell
         return
     from rich.console import Console
     from rich.progress import Progress

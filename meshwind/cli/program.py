@@ -7,7 +7,7 @@ import typer
 from meshwind.appearance.words import duration
 from meshwind.cli.arguments import OtherFolder, Printed, ResultsFolder
 from meshwind.cli.help import some_of, split_names
-from meshwind.cli.output import print_report
+from meshwind.cli.output import print_report, stages
 from meshwind.cli.signature import with_records
 
 EXAMPLES = """
@@ -105,7 +105,8 @@ def program(  # noqa: PLR0913
     del machines
     from meshwind.program.targets import write_program
 
-    done = write_program(folder, machine, split_names(to), out, tension, seconds, again)
+    with stages(printed) as progress:
+        done = write_program(folder, machine, split_names(to), out, tension, seconds, again, progress)
     lines = [*program_lines(done.figures), *(f"note      {note}" for note in done.notes)]
     lines += [line for name, found in done.figures["texts"].items() for line in text_lines(name, found)]
     lines += [f"file      {file}" for file in done.files]

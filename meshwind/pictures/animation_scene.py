@@ -82,8 +82,7 @@ def moving(points: Floats, fibres: Floats, view: View, reel: Reel) -> tuple[View
 
 def motion_of(reel: Reel, spin: Floats, turns: int) -> Motion:
     """The motion of a movie in which the part turns about an axis; raises BadInputError if it is too short or long."""
-    if not SHORTEST <= reel.seconds <= LONGEST:
-        raise BadInputError(f"seconds is {reel.seconds:g}; give a number from {SHORTEST:g} to {LONGEST:g}")
+    check_seconds(reel.seconds)
     return Motion(
         total=reel.total,
         spin=spin,
@@ -93,6 +92,12 @@ def motion_of(reel: Reel, spin: Floats, turns: int) -> Motion:
         movies=tuple(str(movie.absolute()) for movie in reel.movies),
         encoder=reel.encoder,
     )
+
+
+def check_seconds(seconds: float) -> None:
+    """Raise BadInputError if a movie of so many seconds is too short or too long."""
+    if not SHORTEST <= seconds <= LONGEST:
+        raise BadInputError(f"seconds is {seconds:g}; give a number from {SHORTEST:g} to {LONGEST:g}")
 
 
 def laid_before(family: Ints, length: Floats) -> Floats:

@@ -1,5 +1,6 @@
 """axes.png: the axes of a program over time, the speed of the fibre, and what limits it."""
 
+import textwrap
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,8 @@ _WIDE, _BESIDE = 10.5, 16.0
 """Width in inches of one column, and of two."""
 _ROW, _HEAD = 1.35, 1.9
 """Height in inches of a row, and of what is above and below the rows."""
+_LETTER, _LINE = 0.079, 0.2
+"""Width in inches of a letter of the line below the title, on average, and height of such a line."""
 _NAME = 0.09
 """Share of the time that the name of a layer takes."""
 _MINUTES = 600.0
@@ -65,17 +68,31 @@ def draw_axes(picture: Path, chart: AxesChart) -> None:
     if chart.circuit is not None:
         spans.append(("first circuit", chart.circuit))
     rows = len(chart.curves) + 2
-    figure = Figure(
-        figsize=(_WIDE if len(spans) == 1 else _BESIDE, _HEAD + _ROW * rows), facecolor="white", layout="constrained"
-    )
+    width = _WIDE if len(spans) == 1 else _BESIDE
+    below = lines_of(chart.subtitle, int(width / _LETTER))
+    height = _HEAD + _ROW * rows + _LINE * (len(below) - 1)
+    figure = Figure(figsize=(width, height), facecolor="white", layout="constrained")
     FigureCanvasAgg(figure)
     every = figure.subplots(rows, len(spans), sharex="col", squeeze=False)
     for column, (words, span) in zip(every.T, spans, strict=True):
         _column(column, chart, span, words if len(spans) > 1 else "")
     figure.align_ylabels(every[:, 0])
-    figure.suptitle(f"{chart.title}\n", x=0.008, ha="left", fontsize=15, color=_INK)
-    figure.text(0.008, 1.0 - 0.5 / figure.get_figheight(), chart.subtitle, fontsize=10.5, color=_FAINT)
+    figure.suptitle(chart.title + "\n" * len(below), x=0.008, ha="left", fontsize=15, color=_INK)
+    figure.text(0.008, 1.0 - 0.36 / height, "\n".join(below), fontsize=10.5, color=_FAINT, va="top")
     figure.savefig(picture, dpi=_DPI)
+
+
+def lines_of(text: str, most: int) -> list[str]:
+    """Phrases, which dots part, in lines of at most so many letters: one that is too long is broken at its words."""
+    dot = "  \N{MIDDLE DOT}  "
+    lines = [""]
+    for phrase in text.split(dot):
+        for part in textwrap.wrap(phrase, most) or [""]:
+            if lines[-1] and len(lines[-1] + dot + part) <= most:
+                lines[-1] += dot + part
+            else:
+                lines.append(part)
+    return lines[1:]
 
 
 def _column(column: Any, chart: AxesChart, span: tuple[float, float], words: str) -> None:
@@ -154,5 +171,5 @@ def _marks(axes: Any, chart: AxesChart, span: tuple[float, float], share: float,
         across = {"transform": axes.get_xaxis_transform(), "color": _SIGNAL}
         axes.broken_barh(bars, (0.0, 1.0), alpha=0.22, linewidth=0, zorder=0, **across)
         inside = times[(times >= span[0]) & (times <= span[1])] / share
-        if named:
+        if named and len(inside):  # an empty one would count as far off in the layout
             axes.plot(inside, np.ones(len(inside)), "|", markersize=9, clip_on=False, zorder=5, **across)

@@ -23,7 +23,7 @@ def axes_chart(made: Program) -> AxesChart:
         f"{machine.name}: {machine.words}  ·  {len(blocks)} blocks, {duration(made.seconds)}, {turns:.4g} turns  ·  "
     )
     faults = _faults(made)
-    wrong = "; ".join(f"{words} at {len(times)} blocks" for words, times in faults)
+    wrong = "; ".join(f"{words} at {len(times)} block{'s' * (len(times) > 1)}" for words, times in faults)
     starts = [int(np.flatnonzero(blocks.layer == layer)[0]) for layer in np.unique(blocks.layer)]
     return AxesChart(
         title=f"{made.work.name}: axes of the program".removeprefix(": "),

@@ -1,11 +1,12 @@
 """A program for the eye: the chart of its axes, the movie of the machine, and the page for a browser."""
 
 from collections.abc import Callable, Sequence
+from itertools import count
 from pathlib import Path
 
 from meshwind.core.errors import BadInputError
 from meshwind.pictures import driver
-from meshwind.pictures.animation_scene import Reel
+from meshwind.pictures.animation_scene import Reel, check_seconds
 from meshwind.pictures.axes_picture import draw_axes
 from meshwind.pictures.drawings import Drawing
 from meshwind.pictures.movie import encoder
@@ -25,6 +26,16 @@ _SIZE = 960, 720
 AXES, VIEWER = "axes", "viewer"
 SEEN = AXES, VIEWER, *MOVIES
 """Names of what can be made."""
+_TOLD = 10
+"""Times that the progress of a movie is told: each takes up to a minute."""
+
+
+def check(names: Sequence[str], seconds: float) -> None:
+    """Raise BadInputError if a movie among names is too short or long, or this machine cannot encode it."""
+    if any(kind in names for kind in MOVIES):
+        check_seconds(seconds)
+    if "mp4" in names:
+        encoder()
 
 
 def write_seen(
@@ -35,18 +46,29 @@ def write_seen(
     seconds: float = SECONDS,
     progress: Callable[[str], None] | None = None,
 ) -> None:
-    """Write some of `SEEN` into an existing folder; progress: called for each frame of a movie.
+    """Write some of `SEEN` into an existing folder; progress: called as each starts, and while a movie is drawn.
 
     Raises BadInputError if this machine cannot draw or encode a movie, or the seconds are out of range.
     """
+    say: Callable[[str], None] = progress or (lambda _stage: None)
     movies = [folder / program_movie(kind) for kind in MOVIES if kind in names]
     if AXES in names:
+        say(AXES)
         draw_axes(folder / AXES_PICTURE, axes_chart(made))
     if VIEWER in names:
+        say(VIEWER)
         write_page(folder, results, made)
     if movies:
+        say("movie")
         reel = Reel(float(made.blocks.arc_length[-1]), seconds, movies, encoder() if "mp4" in names else "")
         scene = machine_scene(subject_of(results), made, reel)
-        missing = driver.paint({movies[0]: Drawing(scene, Page(*_SIZE))}, progress)
+        done, total = count(1), scene.motion.frames
+
+        def drawn(_word: str) -> None:
+            frame = next(done)
+            if frame * _TOLD // total > (frame - 1) * _TOLD // total and frame <= total:
+                say(f"movie, {frame} of {total} frames")
+
+        missing = driver.paint({movies[0]: Drawing(scene, Page(*_SIZE))}, drawn)
         if missing:
             raise BadInputError(missing)

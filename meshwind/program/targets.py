@@ -19,7 +19,7 @@ from meshwind.program.program import Program, Work, program
 from meshwind.program.readback.compare import ReadBack
 from meshwind.program.rewinding.rewind import Ground, rewind
 from meshwind.program.robot import HEADER, LEGEND, rows
-from meshwind.program.seen import SECONDS, SEEN, write_seen
+from meshwind.program.seen import SECONDS, SEEN, check, write_seen
 from meshwind.program.texts import write_texts
 from meshwind.results.folder import beside
 from meshwind.results.reading import read_results
@@ -58,31 +58,41 @@ def write_program(
     tension: float = 0.0,
     seconds: float = SECONDS,
     again: bool = True,
+    progress: Callable[[str], None] | None = None,
 ) -> Written:
     """Write the program for the filament of a run's folder into `out`, by default the folder itself.
 
     program.csv and program.json are always written, and what `to` names of `TARGETS` beside them.  All files appear,
-    or none.  seconds: of a movie; again: whether the program is wound again by physics.  Raises BadInputError if the
-    folder has no filament, or a machine or a target is not known.
+    or none.  seconds: of a movie; again: whether the program is wound again by physics; progress: called with the name
+    of each stage as it starts.  Raises BadInputError if the folder has no filament, or a machine or a target is not
+    known.
     """
     known = (*TARGETS, *SEEN, *DIALECTS)
     for name in to:
         if name not in known:
             raise BadInputError(f"target {name!r} is not known; {nearest(name, known)}")
+    check(to, seconds)
+    say: Callable[[str], None] = progress or (lambda _stage: None)
     used = read_machine(machine)
+    say("read")
     results = read_results(folder)
-    made = program(Work.of(results), used, tension)
+    work = Work.of(results)
+    say("program")
+    made = program(work, used, tension)
+    if again:
+        say("wind again")
     rewound = rewind(made, Ground.of(results)) if again else None
     if rewound is not None:
         made = replace(made, faults=tuple(sorted([*made.faults, *rewound.faults(made.blocks)])))
     target = Path(folder if out is None else out)
     notes: list[str] = []
     with beside(target) as staging:
+        say("write")
         wanted = dict.fromkeys(("csv", *to))
         for name in (each for each in wanted if each in TARGETS):
             notes += TARGETS[name](staging, made)
         texts = write_texts(staging, made, [name for name in wanted if name in DIALECTS])
-        write_seen(staging, results, made, [name for name in wanted if name in SEEN], seconds)
+        write_seen(staging, results, made, [name for name in wanted if name in SEEN], seconds, progress)
         names = sorted(path.relative_to(staging) for path in staging.rglob("*") if path.is_file())
         names = sorted([*names, Path(PROGRAM_JSON)])
         figures = figures_of(made) | {
