@@ -133,6 +133,13 @@ def program_lines(figures: dict[str, Any]) -> list[str]:
         units = {"cross": "mm", "roll": "degrees", "yaw": "degrees"}
         lost = ", ".join(f"{value:.3g} {units[name]} of {name}" for name, value in figures["lost"].items())
         lines.append(f"lost      up to {lost}, for want of these axes")
+    if figures["cuts"]:
+        many, first = len(figures["cuts"]), figures["cuts"][0]
+        lines.append(
+            f"cut       {many} time{'s' * (many > 1)}, first after block {first['index']}: the program stops for the "
+            "fibre to be cut, goes on clear of the part, and stops for the next filament to be tied on; the time of "
+            "that is not in it"
+        )
     if back["most"] > 0.1:
         lines.append(
             f"note      the mandrel turns back by up to {back['most']:.3g} degrees, while the eye swings over an edge; "

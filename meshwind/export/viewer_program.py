@@ -23,9 +23,9 @@ class ProgramData(TypedDict):
     index (n,): numbers of the blocks, `blocks` in all; turns, angle (n,): of the mandrel, whole turns and the degrees
     beyond them; x, r (n,): the eye along the axis and from it; roll, yaw (n,) in degrees; point (3, n): where the fibre
     leaves the part; laid (n,): length of fibre; time (n,) in seconds.  first (k,): places in these of the first block
-    of each run of one kind, layer, circuit and pass (k,).  faulty, fault (f,): places of blocks at fault, and which of
-    `words` says it.  origin, frame: of the mandrel's axis, with rows along it, towards the eye at angle 0, and square
-    to both; scale: millimetres in the unit of length.
+    of each run of one kind, layer, circuit and pass (k,); does: what the fibre does, by its kind.  faulty, fault (f,):
+    places of blocks at fault, and which of `words` says it.  origin, frame: of the mandrel's axis, with rows along it,
+    towards the eye at angle 0, and square to both; scale: millimetres in the unit of length.
     """
 
     machine: str
@@ -49,6 +49,7 @@ class ProgramData(TypedDict):
     faulty: Packed
     fault: Packed
     words: list[str]
+    does: list[str]
     origin: list[float]
     frame: list[list[float]]
     scale: float

@@ -1,5 +1,7 @@
 """What each axis of a machine has to do in the blocks of a program, and the time that it needs for it."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from meshwind.core.cast import Floats
@@ -18,10 +20,17 @@ def limits_of(machine: Machine) -> Limits:
 
 
 def timing_of(blocks: Blocks, machine: Machine, scale: float) -> Timing:
-    """The timing of blocks; scale: mm in the mesh's unit."""
-    moves = [scale * np.diff(blocks.arc_length + blocks.free_length)]
-    moves += [np.diff(moved(blocks, axis.moves, scale)) for axis in machine.axes]
-    return timed(np.stack(moves, axis=1), limits_of(machine))
+    """The timing of blocks, at rest where the fibre is cut and tied on; scale: mm in the mesh's unit."""
+    columns = [scale * blocks.drawn]
+    columns += [np.diff(moved(blocks, axis.moves, scale)) for axis in machine.axes]
+    moves, limits = np.stack(columns, axis=1), limits_of(machine)
+    rests = [0, *blocks.travels.ravel().tolist(), len(moves)]
+    parts = [timed(moves[first:last], limits) for first, last in pairwise(rests)]
+    return Timing(
+        np.concatenate([each.seconds for each in parts]),
+        np.concatenate([each.limit for each in parts]),
+        max(each.over for each in parts),
+    )
 
 
 def moved(blocks: Blocks, moves: str, scale: float) -> Floats:

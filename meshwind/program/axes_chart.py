@@ -12,6 +12,8 @@ from meshwind.program.words import AXES, fault_words
 
 _MOST = 0.6
 """Share of the program above which its first circuit is not shown beside it."""
+_CUTS = 12
+"""Cuts that are marked: more have no room."""
 
 
 def axes_chart(made: Program) -> AxesChart:
@@ -38,7 +40,21 @@ def axes_chart(made: Program) -> AxesChart:
         names=tuple(AXES.get(name, name) for name in made.limits),
         limiting=made.limiting,
         layers=tuple(
-            (f"layer {blocks.layer[k] + 1}", float(blocks.time[max(k - 1, 0)])) for k in starts if made.work.layers > 1
+            sorted(
+                (
+                    *(
+                        (f"layer {blocks.layer[k] + 1}", blocks.time[max(k - 1, 0)])
+                        for k in starts
+                        if made.work.layers > 1
+                    ),
+                    *(
+                        (f"cut {number}", blocks.time[k])
+                        for number, (k, _) in enumerate(blocks.travels, 1)
+                        if number <= _CUTS
+                    ),
+                ),
+                key=lambda mark: mark[1],
+            )
         ),
         faults=faults,
         circuit=_first_circuit(blocks),
@@ -48,7 +64,7 @@ def axes_chart(made: Program) -> AxesChart:
 def _speed(blocks: Blocks, scale: float) -> Floats:
     """Speed (n - 1,) of the fibre through the eye on the way to each block, in mm/s; NaN where it takes no time."""
     step = np.diff(blocks.time)
-    drawn = np.abs(np.diff(blocks.arc_length + blocks.free_length))
+    drawn = np.abs(blocks.drawn)
     return scale * np.divide(drawn, step, out=np.full(len(step), np.nan), where=step > 0.0)
 
 

@@ -2,7 +2,12 @@
 
 from dataclasses import dataclass, fields
 
+import numpy as np
+
 from meshwind.core.cast import Floats, Ints
+
+TRAVEL = 5
+"""Kind of a block in which the fibre is cut, and the eye goes to where the next filament is tied on."""
 
 
 @dataclass(frozen=True)
@@ -12,13 +17,13 @@ class Blocks:
     Attributes
     ----------
     layer, circuit, passed, path, kind : ndarray of int, shape (n,)
-        As in a filament: what the fibre is doing at the point, with `Kind`.
+        As in a filament: what the fibre is doing at the point, with `Kind`; or `TRAVEL`.
     arc_length : ndarray of float, shape (n,)
         Length laid since the program's start.
     point, tangent, normal : ndarray of float, shape (n, 3)
         Where the fibre leaves the part, its unit tangent in the direction of laying, and the outward unit normal.
     free_length : ndarray of float, shape (n,)
-        Length of the free span: the eye is at point + free_length * tangent.
+        Length of the free span: the eye is at point + free_length * tangent.  While the eye travels there is none.
     eye_x, eye_r : ndarray of float, shape (n,)
         The eye along the mandrel's axis, and its distance from it.
     mandrel, roll, yaw : ndarray of float, shape (n,)
@@ -58,6 +63,18 @@ class Blocks:
     def eye(self) -> Floats:
         """The eye (n, 3) in the mesh's coordinates, as it stands to the part."""
         return self.point + self.free_length[:, None] * self.tangent
+
+    @property
+    def travels(self) -> Ints:
+        """Blocks (k, 2) after which the fibre is cut, and at which the next filament is tied on."""
+        change = np.flatnonzero(np.diff(self.kind == TRAVEL))
+        return np.stack([change[::2], change[1::2] + 1], axis=1)
+
+    @property
+    def drawn(self) -> Floats:
+        """Length (n - 1,) of fibre that the eye gives on the way to each block but the first; none where it is cut."""
+        cut = self.kind == TRAVEL
+        return np.where(cut[1:] | cut[:-1], 0.0, np.diff(self.arc_length + self.free_length))
 
     def chosen(self, which: slice | Ints) -> "Blocks":
         """Some of the blocks."""

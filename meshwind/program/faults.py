@@ -7,6 +7,7 @@ import numpy as np
 from meshwind.core.cast import Floats
 from meshwind.filament.course import Kind
 from meshwind.program.axes import moved
+from meshwind.program.blocks import TRAVEL as CUT
 from meshwind.program.blocks import Blocks
 from meshwind.program.clear import Obstacle
 from meshwind.program.head import Head, meets
@@ -17,6 +18,7 @@ SPAN, EYE, TRAVEL, LIES = "span", "eye", "travel", "lies"
 _WHERE: dict[int, str] = {
     Kind.TURN: ", in its turnaround",
     Kind.DWELL: ", in its turnaround",
+    CUT: ", on the way to it from the filament before",
 }
 """What is added on where a fault is."""
 _ROUND_OFF = 1e-9

@@ -6,12 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from meshwind.appearance.ribbons import Fineness, ribbons
-from meshwind.appearance.strips import WORDS, Ribbons
+from meshwind.appearance.strips import Ribbons
 from meshwind.appearance.view import View, framed
 from meshwind.appearance.words import duration, quantity
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.vectors import unit
-from meshwind.filament.course import Kind
 from meshwind.filament.filament import backwards
 from meshwind.pictures.animation_scene import FRAMES_PER_SECOND, Reel, motion_of
 from meshwind.pictures.filament_scene import filament_scene
@@ -19,7 +18,7 @@ from meshwind.pictures.scenes import MachineScene, Shots
 from meshwind.pictures.subject import Subject
 from meshwind.program.axes import moved
 from meshwind.program.program import Program
-from meshwind.program.words import AXES, fault_words
+from meshwind.program.words import AXES, DOES, fault_words
 
 _TURN = 12.0
 """Degrees of the mandrel from frame to frame up to which the eye follows the part."""
@@ -114,7 +113,7 @@ def _note(made: Program, block: Ints, times: Floats, k: int, fault: str) -> str:
     return "\n".join([
         *layer,
         f"circuit {blocks.circuit[n] + 1}, pass {'back' if blocks.passed[n] % 2 else 'out'}",
-        WORDS[Kind(int(blocks.kind[n]))],
+        DOES[int(blocks.kind[n])],
         "",
         duration(seconds),
         f"of {duration(made.seconds)}",

@@ -11,7 +11,7 @@ from meshwind.export.viewer_program import ProgramData, Wound
 from meshwind.filament.filament import backwards
 from meshwind.program.faults import TRAVEL
 from meshwind.program.program import Program
-from meshwind.program.words import AXES, fault_words
+from meshwind.program.words import AXES, DOES, fault_words
 from meshwind.results.reading import Results
 from meshwind.results.schema import PROGRAM_PAGE
 
@@ -29,7 +29,7 @@ def program_data(made: Program, most: int = _MOST) -> ProgramData:
     """The blocks of a program for the page, thinned to about `most` of them; none at fault is left out."""
     blocks, mandrel = made.blocks, made.mandrel
     said = {fault.index: _said(fault.kind, fault.words) for fault in made.faults}
-    kept = _kept(len(blocks), list(said), most)
+    kept = _kept(len(blocks), [*said, *blocks.travels.ravel().tolist()], most)
     words = list(dict.fromkeys(said.values()))
     faulty = np.flatnonzero(np.isin(kept, list(said)))
     turns = np.floor(blocks.mandrel[kept] / 360.0)
@@ -65,6 +65,7 @@ def program_data(made: Program, most: int = _MOST) -> ProgramData:
         "faulty": packed(faulty),
         "fault": packed(np.array([words.index(said[index]) for index in kept[faulty].tolist()], dtype=np.int64)),
         "words": words,
+        "does": list(DOES),
         "origin": mandrel.origin.tolist(),
         "frame": mandrel.frame.tolist(),
         "scale": made.work.scale,
@@ -77,7 +78,7 @@ def _said(kind: str, words: str) -> str:
     return words if kind == TRAVEL else short
 
 
-def _kept(count: int, faulty: list[int], most: int) -> Ints:
-    """About `most` of `count` blocks, evenly spaced, with the first, the last and those at fault."""
+def _kept(count: int, marked: list[int], most: int) -> Ints:
+    """About `most` of `count` blocks, evenly spaced, with the first, the last and those that are marked."""
     step = -(-count // most)
-    return np.unique(np.concatenate([np.arange(0, count, step), [count - 1], np.array(faulty, dtype=np.int64)]))
+    return np.unique(np.concatenate([np.arange(0, count, step), [count - 1], np.array(marked, dtype=np.int64)]))

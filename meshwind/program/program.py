@@ -10,7 +10,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.core.units import millimetres
 from meshwind.filament.filament import Filament
 from meshwind.program.axes import limits_of, timing_of
-from meshwind.program.blocks import Blocks
+from meshwind.program.blocks import TRAVEL, Blocks
 from meshwind.program.body import Body, body_round
 from meshwind.program.clear import Shaft, obstacle
 from meshwind.program.eye import LONGEST, Poses, Spans, at_radius, on_body, poses
@@ -21,6 +21,7 @@ from meshwind.program.machine import Machine
 from meshwind.program.mandrel import Mandrel, mandrel_of
 from meshwind.program.stepping import Steps, divided, whole
 from meshwind.program.track import Track, track
+from meshwind.program.travel import in_a_row
 from meshwind.results.reading import Results
 from meshwind.surface.grid import Grid, grid
 from meshwind.surface.surface import Surface
@@ -208,7 +209,7 @@ def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
         better = len(another.faults) < len(best.faults) and another.nearest >= lowest
         tried.append(f"{words}: {left} of {hits} blocks still meet the part; {'taken' if better else 'not taken'}")
         best, way = (another, other) if better else (best, way)
-    blocks = replace(best.blocks, tension=frozen(np.full(len(best.blocks), tension)))
+    blocks = replace(best.blocks, tension=frozen(np.where(best.blocks.kind == TRAVEL, 0.0, tension)))
     return replace(best, blocks=blocks, remedies=tuple(tried))
 
 
@@ -236,7 +237,7 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
         part = _blocks(on, found, mandrel, laid, turned)
         laid, turned = float(part.arc_length[-1]), float(part.mandrel[-1])
         parts.append(part)
-    blocks = _joined(parts)
+    blocks = in_a_row(parts, mandrel, body if radius is None else None, steps)
     timing = timing_of(blocks, machine, scale)
     blocks = replace(blocks, time=frozen(np.concatenate([[0.0], np.cumsum(timing.seconds)])))
     names = limits_of(machine).names
@@ -300,13 +301,6 @@ def _blocks(on: Track, found: Poses, mandrel: Mandrel, laid: float, turned: floa
         eye_x=frozen(found.x), eye_r=frozen(found.r), mandrel=frozen(angle), roll=frozen(np.degrees(found.roll)),
         yaw=frozen(np.degrees(found.yaw)), time=frozen(np.zeros(n)), tension=frozen(np.zeros(n)), slip=frozen(slip),
     )  # fmt: skip
-
-
-def _joined(parts: list[Blocks]) -> Blocks:
-    """Blocks in a row."""
-    return Blocks(
-        *(frozen(np.concatenate(values)) for values in zip(*(vars(each).values() for each in parts), strict=True))
-    )
 
 
 def _losses(blocks: Blocks, machine: Machine, radius: float | None, scale: float) -> dict[str, float]:

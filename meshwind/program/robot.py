@@ -6,15 +6,15 @@ import numpy as np
 
 from meshwind.core.cast import Floats
 from meshwind.core.vectors import unit
-from meshwind.program.blocks import Blocks
+from meshwind.program.blocks import TRAVEL, Blocks
 from meshwind.program.mandrel import Mandrel
 
 HEADER = "index,role,layer,circuit,pass,path,kind,time,speed,mandrel_deg,x,y,z,qw,qx,qy,qz,free_length"
 LEGEND = {
     "frame": "x along the mandrel's axis, y from it to the eye, z = x cross y; lengths in mm",
     "pose": "z from the eye along the free span to the part, y = normal cross tangent, x = y cross z",
-    "role": "0 approach, 1 wind, 2 retract",
-    "kind": "0 laid on the part, 1 bridge, 2 turnaround, 3 dwell, 4 join",
+    "role": "0 approach, 1 wind, 2 retract, 3 travel: cut the fibre before the first of them, tie it on after the last",
+    "kind": "0 laid on the part, 1 bridge, 2 turnaround, 3 dwell, 4 join, 5 travel",
     "speed": "of the fibre through the eye, in mm a second, on the way to the pose",
     "mandrel_deg": "of the external axis, in degrees, unwrapped",
 }
@@ -61,9 +61,9 @@ def rows(blocks: Blocks, mandrel: Mandrel, scale: float) -> Floats:
     found = robot_poses(blocks, mandrel)
     position = scale * found.position
     step = np.diff(blocks.time, prepend=blocks.time[0])
-    paid = scale * np.diff(blocks.arc_length + blocks.free_length, prepend=blocks.arc_length[0] + blocks.free_length[0])
+    paid = scale * np.append(0.0, blocks.drawn)
     speed = np.divide(paid, step, out=np.zeros_like(paid), where=step > 0.0)
-    role = np.ones(len(blocks))
+    role = np.where(blocks.kind == TRAVEL, 3.0, 1.0)
     table = np.column_stack(
         [role, blocks.layer, blocks.circuit, blocks.passed, blocks.path, blocks.kind, blocks.time, speed]
         + [blocks.mandrel, position, found.quaternion, scale * blocks.free_length]

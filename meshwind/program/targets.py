@@ -13,6 +13,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import nearest
 from meshwind.core.units import UNKNOWN, millimetres
 from meshwind.core.version import version
+from meshwind.program.blocks import TRAVEL
 from meshwind.program.machine import DEFAULT, read_machine
 from meshwind.program.posts.dialects import DIALECTS
 from meshwind.program.program import Program, Work, program
@@ -109,6 +110,7 @@ def figures_of(made: Program) -> dict[str, Any]:
     blocks, mandrel = made.blocks, made.mandrel
     back = np.maximum(-np.diff(blocks.mandrel), 0.0)
     laying = np.diff(blocks.arc_length) > 0.0
+    span = blocks.free_length[blocks.kind != TRAVEL]
     return plain({
         "meshwind": version(),
         "part": made.work.name,
@@ -122,7 +124,7 @@ def figures_of(made: Program) -> dict[str, Any]:
         "fibre": {
             "laid": float(blocks.arc_length[-1]),
             "speed": float((blocks.arc_length[-1] - blocks.arc_length[0]) / max(made.seconds, 1e-300)),
-            "free_length": {"min": float(blocks.free_length.min()), "max": float(blocks.free_length.max())},
+            "free_length": {"min": float(span.min()), "max": float(span.max())},
         },
         "clearance": made.clearance,
         "nearest": made.nearest,
@@ -131,6 +133,10 @@ def figures_of(made: Program) -> dict[str, Any]:
             "laying": float(back[laying].sum()), "standing": float(back[~laying].sum()),
             "most": float(_stretches(back).max(initial=0.0)),
         },
+        "cuts": [
+            {"index": cut, "tied": tied, "layer": blocks.layer[tied], "seconds": blocks.time[tied] - blocks.time[cut]}
+            for cut, tied in blocks.travels
+        ],
         "lost": made.losses,
         "remedies": made.remedies,
         "faults": [{"index": each.index, "kind": each.kind, "words": each.words} for each in made.faults],

@@ -81,7 +81,7 @@ class Track:
         point = np.where(lay[:, None], point, np.where(landed, p1, p0))
         tangent = unit(ahead)
         turns = np.flatnonzero(~lay)
-        tangent[turns] = _between(t0[turns], t1[turns], share[turns])
+        tangent[turns] = swung(t0[turns], t1[turns], share[turns])
         return point, tangent
 
     def laid(self, at: Floats) -> Floats:
@@ -228,7 +228,7 @@ def _turn(one: Floats, other: Floats) -> Floats:
     return np.asarray(2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(other - one, axis=1), 1.0)))
 
 
-def _between(one: Floats, other: Floats, share: Floats) -> Floats:
+def swung(one: Floats, other: Floats, share: Floats) -> Floats:
     """Unit vectors (n, 3) turned evenly by shares (n,) from one to another."""
     angle = _turn(one, other)
     sine = np.sin(angle)

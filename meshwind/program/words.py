@@ -1,5 +1,7 @@
 """Words for what a program does and what is wrong with it, for those who watch it."""
 
+from meshwind.appearance.strips import WORDS
+from meshwind.filament.course import Kind
 from meshwind.program.faults import EYE, LIES, SPAN, TRAVEL
 
 AXES = {"mandrel": "mandrel", "carriage": "carriage", "cross": "cross-feed", "roll": "roll", "yaw": "yaw"}
@@ -15,3 +17,7 @@ _FAULTS = {
 def fault_words(kind: str) -> str:
     """A kind of fault in short words."""
     return _FAULTS.get(kind, kind)
+
+
+DOES = (*(WORDS[kind] for kind in Kind), "cut: on the way to the next filament")
+"""What the fibre does, by the kind of a block."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.core.version import version
-from meshwind.program.blocks import Blocks
+from meshwind.program.blocks import TRAVEL, Blocks
 from meshwind.program.machine import Axis, Machine
 from meshwind.program.posts.dialect import ALL_INCREMENTS, INCREMENTS, ON, RESET, Dialect
 
@@ -54,8 +54,14 @@ def header(blocks: Blocks, machine: Machine, dialect: Dialect, job: Job) -> list
         f"before the start: eye clear of the part, mandrel on its mark, {_zero(machine)}",
         f"the program approaches and stops at {dialect.pause} for the fibre to be tied on",
     ]
+    if len(blocks.travels):
+        words.append(
+            f"filaments: {len(blocks.travels) + 1}; {dialect.pause} stops to cut the fibre behind one, and again to "
+            "tie it on for the next; the time has only the moves between"
+        )
     if machine.tension and blocks.tension.any():
-        words.insert(6, f"tension: {blocks.tension.min():g} to {blocks.tension.max():g} N")
+        pull = blocks.tension[blocks.kind != TRAVEL]
+        words.insert(6, f"tension: {pull.min():g} to {pull.max():g} N")
     return [line for each in words for line in comments(each, dialect)]
 
 

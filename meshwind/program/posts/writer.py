@@ -59,6 +59,8 @@ class _Writer:
         changes = np.flatnonzero((np.diff(blocks.circuit) != 0) | (np.diff(blocks.layer) != 0)) + 1
         self.circuits = set(changes.tolist())
         self.layers = set((np.flatnonzero(np.diff(blocks.layer) != 0) + 1).tolist())
+        self.cuts = {cut + 1: (number, tied) for number, (cut, tied) in enumerate(blocks.travels.tolist(), 1)}
+        self.ties = {tied: number for number, tied in self.cuts.values()}
         self.tensions = set((np.flatnonzero(np.diff(blocks.tension) != 0) + 1).tolist()) if machine.tension else set()
         self.lines: list[str] = []
         self.last = 0
@@ -112,11 +114,13 @@ class _Writer:
     def block(self, index: int) -> None:
         """The lines of a block, none where no axis moves by a last decimal."""
         now, stood = self.at[index], self.at[self.last]
+        if index in self.cuts or index in self.ties:
+            self._stop(index)
         if index in self.layers:
             self._layer(index)
         if index in self.circuits:
             self._count_again()
-        if index in self.tensions:
+        if index in self.tensions - self.cuts.keys() - self.ties.keys():
             self._tension(index)
         end = index == len(self.at) - 1
         if now == stood:
@@ -182,6 +186,18 @@ class _Writer:
             taken = turn * int(math.copysign(abs(now) // turn, now))
             self.count += taken
             self._say(self.dialect.reset.format(axes=self._word(axis, now - taken)))
+
+    def _stop(self, index: int) -> None:
+        """The stops at which the operator cuts the fibre, with no pull on it any more, and ties it on again."""
+        self._wait(self.time[index - 1])
+        if index in self.cuts:
+            self._tension(index)
+            words = f"filament {self.cuts[index][0]} of {len(self.cuts) + 1} is done: cut the fibre"
+        else:
+            words = f"tie on the fibre of filament {self.ties[index] + 1}"
+        self.lines += [*comments(words, self.dialect), self.dialect.pause]
+        if index in self.ties:
+            self._tension(index)
 
     def _tension(self, index: int) -> None:
         """The command of the tension from a block on."""

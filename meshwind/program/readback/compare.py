@@ -114,6 +114,7 @@ def read_back(text: str, blocks: Blocks, machine: Machine, part: Part) -> ReadBa
     faults += _faults_of_time(reading, blocks, at)
     faults += _faults_of_end(reading, meant, blocks, at, digit)
     faults += _faults_of_tension(reading, blocks, at, machine)
+    faults += _faults_of_stops(reading, blocks, np.append(0, at), np.vstack([start, said]), (meant, digit))
     eye, touch = _of_the_fibre(said, blocks.chosen(at), machine, part)
     held = digit / part.millimetres * np.sqrt(2.0) + np.radians(digit) * np.abs(blocks.eye_r[at])
     faults += [
@@ -204,6 +205,24 @@ def _faults_of_tension(reading: Reading, blocks: Blocks, at: Ints, machine: Mach
     wanted = blocks.tension[at]
     wrong = np.flatnonzero(~(np.abs(reading.tension - wanted) <= TIMED * np.abs(wanted)))[:_SHOWN]
     return [(int(reading.line[k]), f"tension is {reading.tension[k]:g} instead of {wanted[k]:g}") for k in wrong]
+
+
+def _faults_of_stops(
+    reading: Reading, blocks: Blocks, at: Ints, said: Floats, told: tuple[Floats, float]
+) -> list[tuple[int, str]]:
+    """Stops that are missing, or elsewhere than where the fibre is cut and tied on; told: values and their digit."""
+    meant, digit = told
+    wanted = blocks.travels.ravel()
+    words = "the fibre is cut", "the next filament is tied on"
+    if len(reading.stops) != len(wanted):
+        line = reading.stops[-1][0] if reading.stops else _last(reading)
+        return [(line, f"{len(reading.stops)} stops after the first, instead of {len(wanted)} to cut and tie on")]
+    after = np.append(at[1:], len(meant))
+    return [
+        (line, f"stops elsewhere than where {words[number % 2]}")
+        for number, ((line, rows), block) in enumerate(zip(reading.stops, wanted, strict=True))
+        if not (at[rows] <= block < after[rows] and (np.abs(said[rows] - meant[block]) <= _DIGITS * digit).all())
+    ]
 
 
 def _of_the_fibre(said: Floats, meant: Blocks, machine: Machine, part: Part) -> tuple[Floats, Floats]:

@@ -37,7 +37,7 @@ class Krl(Interpreter):
         elif found := _WAIT.fullmatch(text):
             self.done(number, self._values(), float(found[1]))
         elif text == "HALT":
-            self.running, self.start = True, self._values()
+            self.stop(number, self._values())
         elif text == "END":
             self.over = True
         else:

@@ -31,6 +31,8 @@ class Reading:
         Time that each takes.
     tension : ndarray of float, shape (m,)
         Tension in force, NaN where none was set.
+    stops : tuple of (int, int)
+        Line of each stop after the first, and the number of moves and waits before it.
     faults : tuple of (int, str)
         Lines that a controller would refuse, with the reason.
     """
@@ -40,6 +42,7 @@ class Reading:
     values: Floats
     seconds: Floats
     tension: Floats
+    stops: tuple[tuple[int, int], ...]
     faults: tuple[tuple[int, str], ...]
 
 
@@ -52,6 +55,7 @@ class Interpreter(ABC):
         self.start = [math.nan] * len(machine.axes)
         self.tension = math.nan
         self.rows: list[tuple[int, list[float], float, float]] = []
+        self.stops: list[tuple[int, int]] = []
         self.faults: list[tuple[int, str]] = []
         before, _, after = machine.tension.partition("{")
         tension = re.escape(before) + f"({NUMBER})" + re.escape(after.partition("}")[2])
@@ -81,6 +85,13 @@ class Interpreter(ABC):
         """Note a fault in a line."""
         self.faults.append((number, words))
 
+    def stop(self, number: int, values: list[float]) -> None:
+        """Wait for the operator; the program begins with the first time."""
+        if self.running:
+            self.stops.append((number, len(self.rows)))
+        else:
+            self.running, self.start = True, values
+
     def done(self, number: int, values: list[float], seconds: float) -> None:
         """Note a move or a wait."""
         self.rows.append((number, values, seconds, self.tension))
@@ -98,5 +109,6 @@ class Interpreter(ABC):
             values=np.array(values, dtype=float).reshape(len(line), len(self.start)),
             seconds=np.array(seconds, dtype=float),
             tension=np.array(tension, dtype=float),
+            stops=tuple(self.stops),
             faults=tuple(sorted(self.faults)),
         )

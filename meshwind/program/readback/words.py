@@ -76,9 +76,7 @@ class Words(Interpreter):
             elif code in _FEEDS and (self.controller.inverse or not _FEEDS[code]):
                 self.inverse, self.feed = _FEEDS[code], math.nan
             elif code == _STOP:
-                if not self.running:
-                    self.start = list(self.at)
-                self.running = True
+                self.stop(number, list(self.at))
             elif code in self.controller.ends:
                 self.over = True
             elif code not in _SILENT and code not in ("G4", "G92"):

@@ -8,7 +8,7 @@ import numpy as np
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.threads import parallel_for
 from meshwind.filament.course import Kind, runs
-from meshwind.program.blocks import Blocks
+from meshwind.program.blocks import TRAVEL, Blocks
 from meshwind.program.program import Program
 from meshwind.program.rewinding.pull import Eyes, Row, feet_of
 from meshwind.surface.surface import Surface
@@ -57,6 +57,7 @@ def stretches_of(blocks: Blocks, surfaces: Sequence[Surface]) -> Stretches:
         # what waits at a rim belongs to the turnaround
         on[rows] = (height <= _ON * surface.size) & (within | ~np.isin(blocks.kind[rows], (Kind.TURN, Kind.DWELL)))
         uv[rows] = feet
+    on &= blocks.kind != TRAVEL
     new = _new(blocks)
     # while nothing is laid the span swings about the point where the fibre comes onto the part, or leaves it
     lays = on[1:] & on[:-1] & ~new[1:] & (np.diff(blocks.arc_length) > 0.0)
@@ -96,7 +97,8 @@ def planned(program: Program, found: Stretches) -> Row:
         before = float(along[-1][-1])
     every = np.concatenate(along)
     start, stop = program.blocks.arc_length[found.first], program.blocks.arc_length[found.last]
-    inside = np.searchsorted(every, start), np.searchsorted(every, stop, side="right")
+    # both ends are put in as their blocks have them: where a filament ends, the next one starts at the same length
+    inside = np.searchsorted(every, start, side="right"), np.searchsorted(every, stop)
     count = np.maximum(inside[1] - inside[0], 0)
     index = runs(inside[0], count)
     places = np.stack([np.cumsum(count) - count, np.cumsum(count)], axis=1).ravel()  # both ends of each stretch
