@@ -56,8 +56,8 @@ def header(blocks: Blocks, machine: Machine, dialect: Dialect, job: Job) -> list
     ]
     if len(blocks.travels):
         words.append(
-            f"filaments: {len(blocks.travels) + 1}; {dialect.pause} stops to cut the fibre behind one, and again to "
-            "tie it on for the next; the time has only the moves between"
+            f"filaments: {len(blocks.travels) + 1}, {dialect.pause} stops to cut the fibre behind one, and again to "
+            "tie it on for the next, the time has only the moves between"
         )
     if machine.tension and blocks.tension.any():
         pull = blocks.tension[blocks.kind != TRAVEL]
