@@ -22,13 +22,15 @@ from meshwind.core.errors import BadInputError
 from meshwind.filament.filament import backwards
 from meshwind.pictures.axes_picture import draw_axes, lines_of
 from meshwind.pictures.machine_picture import turned
+from meshwind.pictures.subject import subject_of
 from meshwind.program.axes_chart import axes_chart
 from meshwind.program.faults import EYE, LIES, SPAN, TRAVEL, Fault
+from meshwind.program.hits_scene import hits_scene
 from meshwind.program.machine import read_machine
 from meshwind.program.machine_scene import frame_times, shots_of
 from meshwind.program.page import program_data
 from meshwind.program.program import Program, Work, program
-from meshwind.program.seen import SEEN
+from meshwind.program.seen import SEEN, write_seen
 from meshwind.program.targets import write_program
 from meshwind.program.track import track
 from meshwind.results.reading import read_results
@@ -150,6 +152,32 @@ def test_frames_are_even_and_slow_first(made: Program) -> None:
     assert (np.diff(frame_times(made, 20)) >= 0.0).all()
 
 
+def test_hits_are_where_spans_meet_the_part(run: Path, made: Program) -> None:
+    of, blocks = subject_of(read_results(run)), made.blocks
+    # the span of block 7 is turned to go straight into the part, just below whose surface it counts as met
+    aimed = np.where(np.arange(len(blocks))[:, None] == 7, -blocks.normal, blocks.tangent)
+    faults = (Fault(7, SPAN, ""), Fault(90, EYE, ""), Fault(30, LIES, ""), Fault(31, LIES, ""))
+    scene = hits_scene(of, replace(made, blocks=replace(blocks, tangent=aimed), faults=faults))
+    assert scene is not None
+    assert scene.spans[0, 0] == pytest.approx(blocks.point[7])
+    assert scene.entries[0] == pytest.approx(blocks.point[7] - 1e-3 * made.work.diagonal * blocks.normal[7], abs=2e-4)
+    assert scene.eyes == pytest.approx(blocks.eye[[90]])
+    assert scene.astray == pytest.approx(blocks.point[[30, 31]])
+    assert sum(int(line.split()[0]) for line in scene.notes[: scene.notes.index("")]) == 4
+    assert abs(scene.frame.view.eye @ made.mandrel.direction) < 0.5
+    assert hits_scene(of, replace(made, faults=(Fault(3, TRAVEL, "no place on the part"),))) is None
+
+
+@pytest.mark.usefixtures("opengl")
+def test_hits_are_drawn_where_there_are_any(run: Path, made: Program, tmp_path: Path) -> None:
+    assert "hits.png" not in [file.name for file in write_program(run, to=("hits",), out=tmp_path).files]
+    faults = tuple(Fault(k, SPAN, "") for k in range(0, 200, 20))
+    assert write_seen(tmp_path, read_results(run), replace(made, faults=faults), ("hits",)) == []
+    with Image.open(tmp_path / "hits.png") as drawn:
+        pixels = np.asarray(drawn.convert("RGB"), dtype=int)[150:1050, :1300]
+    assert (np.abs(pixels - [0xE0, 0x21, 0x8A]).max(axis=2) < 40).sum() > 1000
+
+
 @pytest.mark.usefixtures("opengl")
 def test_the_movie_moves(run: Path, tmp_path: Path) -> None:
     told: list[str] = []
@@ -209,7 +237,7 @@ def test_a_movie_without_its_encoder_is_refused_at_once(run: Path, tmp_path: Pat
 
 
 def test_what_can_be_made_is_named() -> None:
-    assert set(SEEN) == {"axes", "viewer", "gif", "mp4"}
+    assert set(SEEN) == {"axes", "hits", "viewer", "gif", "mp4"}
 
 
 def test_filaments_are_seen_in_the_order_of_the_program() -> None:

@@ -23,7 +23,21 @@ EXAMPLES = """
     # in the words of a controller
     meshwind program part-wound --to linuxcnc
 """
-TARGETS = "csv", "poses", "axes", "viewer", "gif", "mp4", "linuxcnc", "grbl", "marlin", "fanuc", "siemens", "krl"
+TARGETS = (
+    "csv",
+    "poses",
+    "axes",
+    "hits",
+    "viewer",
+    "gif",
+    "mp4",
+    "linuxcnc",
+    "grbl",
+    "marlin",
+    "fanuc",
+    "siemens",
+    "krl",
+)
 """Names for help and completion: the module that defines them takes long to import."""
 _MACHINE = "Machine and files"
 WITH_FAULTS = 3
@@ -60,7 +74,7 @@ def program(  # noqa: PLR0913
             autocompletion=some_of(*TARGETS),
             rich_help_panel=_MACHINE,
         ),
-    ] = "csv,axes",
+    ] = "csv,axes,hits",
     tension: Annotated[
         float, typer.Option(help="Tension of the fibre, in N; 0 sets none.", rich_help_panel=_MACHINE)
     ] = 0.0,
@@ -89,7 +103,8 @@ def program(  # noqa: PLR0913
     """Write the program of a machine that winds the filament of a run, which was wound with --continuous.
 
     program.csv: every block with the fibre, the eye, the axes and the time. program.json: the mandrel's axis, the time
-    and what is wrong. axes.png (axes): the axes over time, and what limits them. poses.csv (poses): the eye for a
+    and what is wrong. axes.png (axes): the axes over time, and what limits them. hits.png (hits), where there are
+    any: the spans and eyes that meet the part, and where the fibre goes astray. poses.csv (poses): the eye for a
     robot, the mandrel on an external axis, in mm. program.html (viewer): a page to go through it block by block.
     program.gif, program.mp4: the machine at work. program.ngc (linuxcnc), program.gcode (grbl, marlin), program.nc
     (fanuc), program.mpf (siemens), program.src (krl): the program in the words of a controller. Each is read back from

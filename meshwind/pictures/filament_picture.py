@@ -1,6 +1,5 @@
 """filament.png and bands.png: bands of true width, by their order or over what they leave bare."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -61,15 +60,18 @@ def add_stand(window: Any, scene: FilamentScene) -> list[Any]:
         diffuse=0.5 if signal else 0.8,
         backface_params={"color": canvas.INSIDE, "ambient": 0.25, "interpolation": "Phong"},
     )  # fmt: skip
-    return [part, *_gear(window, scene.gear)]
+    return [part, *add_gear(window, scene.gear)]
 
 
-def _gear(window: Any, stands: Gear) -> Iterator[Any]:
-    """Add what the turnarounds stand on."""
-    for quads, colour in ((stands.base, BASE), (stands.held, HELD)):
-        if len(quads):
-            body = pv.PolyData.from_regular_faces(stands.points, quads)
-            yield window.add_mesh(body, color=colour, ambient=0.35, diffuse=0.7, render=False)
+def add_gear(window: Any, stands: Gear) -> list[Any]:
+    """Add what the turnarounds stand on; return it."""
+    return [
+        window.add_mesh(
+            pv.PolyData.from_regular_faces(stands.points, quads), color=colour, ambient=0.35, diffuse=0.7, render=False
+        )
+        for quads, colour in ((stands.base, BASE), (stands.held, HELD))
+        if len(quads)
+    ]
 
 
 def add_bands(window: Any, scene: FilamentScene, page: Page) -> list[Any]:

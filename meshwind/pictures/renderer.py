@@ -20,6 +20,7 @@ from meshwind.pictures import (
     drawings,
     filament_picture,
     fit_picture,
+    hits_picture,
     laminate_picture,
     machine_picture,
     map_picture,
@@ -44,6 +45,7 @@ DRAWN_BY: dict[type, Callable[..., Any]] = {
     scenes.FilamentScene: filament_picture.draw,
     scenes.AnglesScene: angles_picture.draw,
     scenes.LaminateScene: laminate_picture.draw,
+    scenes.HitsScene: hits_picture.draw,
 }
 MOVED_BY: dict[type, Callable[..., Any]] = {
     scenes.AnimationScene: animation_picture.frames,

@@ -9,31 +9,9 @@ from typing import TypeAlias
 
 from meshwind.appearance.looks import Scale
 from meshwind.appearance.strips import Gear, Ribbons
-from meshwind.appearance.view import View
 from meshwind.core.cast import Bools, Floats, Ints
-
-
-@dataclass(frozen=True)
-class Frame:
-    """Title and subtitle, name of the unit of length, and view, which every picture has."""
-
-    title: str
-    subtitle: str
-    units: str
-    view: View
-
-
-@dataclass(frozen=True)
-class Part:
-    """The surface: outward quads (q, 4) between points (k, 3) with normals (k, 3) of any length.
-
-    pitch: mean distance from fibre to fibre of a family on it, in mesh units.
-    """
-
-    points: Floats
-    quads: Ints
-    normals: Floats
-    pitch: float
+from meshwind.pictures.contents import Frame as Frame
+from meshwind.pictures.contents import Part as Part
 
 
 @dataclass(frozen=True)
@@ -292,6 +270,24 @@ class MachineScene:
 
 
 @dataclass(frozen=True)
+class HitsScene:
+    """Where free spans and eye of a program meet the part, and where the fibre does not come to lie as planned.
+
+    spans (k, 2, 3): from where the fibre leaves the part to the eye; entries (k, 3): where each meets it; eyes (m, 3):
+    that meet it; astray (l, 3): places from which the fibre comes to lie elsewhere; notes: lines of text.
+    """
+
+    frame: Frame
+    part: Part
+    gear: Gear
+    spans: Floats
+    entries: Floats
+    eyes: Floats
+    astray: Floats
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class LaminateScene:
     """The thickness of a laminate on the part, (k,) on a scale, and that of its layers along the part.
 
@@ -330,6 +326,7 @@ Scene: TypeAlias = (
     | AnimationScene
     | ReelScene
     | MachineScene
+    | HitsScene
     | CrossingsScene
     | MapScene
     | SlipScene

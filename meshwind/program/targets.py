@@ -93,7 +93,7 @@ def write_program(
         for name in (each for each in wanted if each in TARGETS):
             notes += TARGETS[name](staging, made)
         texts = write_texts(staging, made, [name for name in wanted if name in DIALECTS])
-        write_seen(staging, results, made, [name for name in wanted if name in SEEN], seconds, progress)
+        notes += write_seen(staging, results, made, [name for name in wanted if name in SEEN], seconds, progress)
         names = sorted(path.relative_to(staging) for path in staging.rglob("*") if path.is_file())
         names = sorted([*names, Path(PROGRAM_JSON)])
         figures = figures_of(made) | {

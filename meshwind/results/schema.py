@@ -201,7 +201,7 @@ VIEWER = File("viewer.html")
 SHELL, SHELL_S4R = File("shell.inp"), File("shell_s4r.inp")
 STEP = File("surface.step")
 PROGRAM_CSV, PROGRAM_JSON, POSES = File("program.csv"), File("program.json"), File("poses.csv")
-PROGRAM_PAGE, AXES_PICTURE = File("program.html"), picture("axes")
+PROGRAM_PAGE, AXES_PICTURE, HITS_PICTURE = File("program.html"), picture("axes"), picture("hits")
 """The program of a machine; that in the words of a machine has the same stem and another ending."""
 
 
@@ -287,7 +287,9 @@ SUFFIXES = {
 
 EXPORT_FOLDERS = FRAMES_FOLDER, FORMATS_FOLDER
 EXPORTS = re.compile(
-    "|".join(re.escape(name) for name in (SHELL, SHELL_S4R, FIBERS, FIBERS_LEGACY, STEP, POSES, AXES_PICTURE))
+    "|".join(
+        re.escape(name) for name in (SHELL, SHELL_S4R, FIBERS, FIBERS_LEGACY, STEP, POSES, AXES_PICTURE, HITS_PICTURE)
+    )
     + rf"|{PROGRAM_CSV.stem}(_\w+)?\.\w+"
     + rf"|{FRAMES_FOLDER}/(path_\d{{3,}}\.csv|layer_\d{{3,}}\.csv|{re.escape(ALL_FRAMES)}|{re.escape(FILAMENT_FRAMES)})"
     + rf"|{FORMATS_FOLDER}/({'|'.join(file.stem for file in CONVERTED)})\.({'|'.join(sum(SUFFIXES.values(), ()))})"

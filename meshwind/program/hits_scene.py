@@ -1,0 +1,95 @@
+"""Scene of what is wrong with a program on the part: spans and eyes that meet it, and fibre that goes astray."""
+
+from collections import Counter
+
+import numpy as np
+
+from meshwind.appearance.gear import gear
+from meshwind.appearance.view import View, around, framed, merit_view
+from meshwind.core.cast import Floats, Ints
+from meshwind.mesh.geometry.rays import cast
+from meshwind.pictures.scenes import HitsScene
+from meshwind.pictures.subject import Subject
+from meshwind.program.clear import Shaft, obstacle
+from meshwind.program.faults import EYE, LIES, SPAN
+from meshwind.program.program import Program
+from meshwind.program.words import DOES, fault_words
+
+_EYES = 240
+"""Directions from which the picture may be seen."""
+_ACROSS = 0.5
+"""Cosine to the axis up to which one of them is taken: from an end a part shows little."""
+_MOST = 400
+"""Spans and marks that are drawn of each kind: more cannot be told apart."""
+_LINES = 6
+"""Lines that name single blocks."""
+
+
+def blocks_at_fault(made: Program, kind: str) -> Ints:
+    """Numbers of the blocks with a fault of some kind."""
+    return np.array(sorted({fault.index for fault in made.faults if fault.kind == kind}), dtype=np.int64)
+
+
+def hits_scene(of: Subject, made: Program) -> HitsScene | None:
+    """The places at which a program is at fault on the part; None if there are none."""
+    blocks = made.blocks
+    spans, eyes, astray = (blocks_at_fault(made, kind) for kind in (SPAN, EYE, LIES))
+    if not len(spans) + len(eyes) + len(astray):
+        return None
+    shown, eye = _some(spans), blocks.eye
+    lines = np.stack([blocks.point[shown], eye[shown]], axis=1)
+    entries = blocks.point[shown] + _met(made, shown)[:, None] * blocks.tangent[shown]
+    marks, others = eye[_some(eyes)], blocks.point[_some(astray)]
+    stands = gear(of.paths.surface, of.filaments, of.turned)
+    everything = np.concatenate([of.points, stands.points, lines.reshape(-1, 3), marks])
+    every = np.concatenate([spans, eyes, astray])
+    view = _view(of, made, everything, (eye[every] - of.points.mean(axis=0), blocks.normal[every]))
+    words = "; ".join(
+        f"{fault_words(kind)} at {len(found)} block{'s' * (len(found) > 1)}"
+        for kind, found in ((SPAN, spans), (EYE, eyes), (LIES, astray)) if len(found)
+    )  # fmt: skip
+    frame = of.frame(f"{of.name}: where the program is at fault", f"{made.machine.name}  ·  {words}", view)
+    return HitsScene(frame, of.part, stands, lines, entries, marks, others, _notes(made, every))
+
+
+def _some(index: Ints) -> Ints:
+    """Up to `_MOST` of the numbers, evenly."""
+    return index[:: -(-len(index) // _MOST)] if len(index) else index
+
+
+def _met(made: Program, index: Ints) -> Floats:
+    """Lengths (k,) of free spans at which they meet part or shaft."""
+    work, blocks = made.work, made.blocks
+    shaft = Shaft(made.machine.shaft / work.scale, (float(made.body.x[0]), float(made.body.x[-1])))
+    blocked = obstacle(work.skin, work.diagonal, made.mandrel, shaft)
+    return np.minimum(
+        cast(blocked.below, blocks.point[index], blocks.tangent[index], 0.0)[1], blocks.free_length[index]
+    )
+
+
+def _view(of: Subject, made: Program, everything: Floats, sides: tuple[Floats, Floats]) -> View:
+    """The view from the side on which most of the places are; sides (k, 3): directions out to each of them."""
+    eyes = around(_EYES)
+    eyes = eyes[np.abs(eyes @ made.mandrel.direction) < _ACROSS]
+    merit = np.zeros(len(eyes))
+    for out in sides:
+        size = np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-300)
+        merit += np.clip((out / size) @ eyes.T, 0.0, None).mean(axis=0)
+    faces = np.concatenate([of.quads[:, [0, 1, 2]], of.quads[:, [0, 2, 3]]])
+    return framed(everything, merit_view(of.points, faces, eyes, merit))
+
+
+def _notes(made: Program, index: Ints) -> tuple[str, ...]:
+    """What the fibre does at the blocks, and the first of them with circuit and pass."""
+    blocks = made.blocks
+    counts = Counter(int(kind) for kind in blocks.kind[index])
+    lines = [f"{count} {DOES[kind]}" for kind, count in counts.most_common()]
+    lines.append("")
+    passes = dict.fromkeys(zip(blocks.layer[index], blocks.circuit[index], blocks.passed[index], strict=True))
+    layers = made.work.layers > 1
+    for layer, circuit, passed in list(passes)[:_LINES]:
+        way = "back" if passed % 2 else "out"
+        lines.append(f"{f'layer {layer + 1}, ' if layers else ''}circuit {circuit + 1}, pass {way}")
+    if len(passes) > _LINES:
+        lines.append(f"and {len(passes) - _LINES} more passes")
+    return tuple(lines)
