@@ -16,13 +16,14 @@ from meshwind.filament.course import Kind
 from meshwind.filament.edge import Edge, edge
 from meshwind.filament.ends import LayerPlan, choose_end
 from meshwind.filament.filament import filaments_of
-from meshwind.filament.lift import legs_over
+from meshwind.filament.lift import leaning, legs_over
 from meshwind.filament.pin_turn import Pins
 from meshwind.program.faults import SPAN
 from meshwind.program.machine import read_machine
 from meshwind.program.program import Work, program
 from meshwind.surface import Surface
 from meshwind.surface.interpolate import interpolate
+from meshwind.workflow.notes import about_filament
 
 property_test = settings(max_examples=8, deadline=None, derandomize=True, database=None, phases=[Phase.generate])
 WIDE, NARROW, HIGH, TURNS = 98.0, 54.0, 120.0, 0.35
@@ -156,6 +157,30 @@ def program_of(layer: ClosedLayer) -> int:
     surface = layer.paths.surface
     made = program(Work(tuple(filaments_of(layer)), surface, surface.size), read_machine())
     return sum(fault.kind == SPAN for fault in made.faults)
+
+
+@pytest.mark.parametrize(("count", "turns"), [(12, 1e-4), (40, 0.1), (12, 0.3)])
+def test_fibres_that_come_from_further_out_pull_along_their_pins(count: int, turns: float) -> None:
+    """A line at an angle b to the axis that passes it at p falls at sin b sqrt(1 - p^2 / r^2) where it is r from it."""
+    layer = close_layer(cone(turned=False), LayerPlan(count, turns, 0.0, 401, ("pins", "pins")))
+    start, end = layer.turnarounds
+    assert isinstance(start, Pins) and isinstance(end, Pins)
+    assert [leaning(start, layer.paths, family) for family in (1, -1)] == [0.0, 0.0]  # the part narrows from there
+    lean = max(leaning(end, layer.paths, family) for family in (1, -1))
+    legs = legs_over(end, layer.paths, 1)
+    if legs.lift is None:  # straight along the cone
+        assert lean == pytest.approx(atan2(WIDE - NARROW, HIGH), abs=1e-3)
+    elif legs.lift.held.all():
+        passes = np.abs(np.cross(legs.lift.off - end.edge.origin, legs.lift.ahead) @ end.edge.axis).max()
+        wanted = np.sin(legs.lift.angle[0]) ** 2 - (passes / NARROW) ** 2
+        assert np.sin(lean) ** 2 == pytest.approx(wanted, abs=2e-4)
+    else:  # it grazes the prism before the pins
+        assert not legs.lift.held.any() and lean == 0.0
+    told = [note.text for note in about_filament(layer, (False, False)) if "heads" in note.text]
+    assert told == ([] if lean == 0.0 else [
+        "the pins at the end need heads: fibres come to them from further out, at up to "
+        f"{np.degrees(lean):.0f} degrees, and would slip off their ends; or lean the pins outwards as much"
+    ])  # fmt: skip
 
 
 def test_the_span_is_clear_in_turnarounds_on_domes() -> None:

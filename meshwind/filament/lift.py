@@ -57,6 +57,21 @@ def legs_over(turn: Turnaround, paths: Paths, family: int) -> Legs:
     return replace(legs_, height=frozen(height))
 
 
+def leaning(turn: Turnaround, paths: Paths, family: int) -> float:
+    """Largest angle, in radians, at which fibres of a family come down to pins from further out.
+
+    So much of their pull goes along the pins, outwards.  Fibres that come to lie on the prism below them do not count.
+    """
+    on, over = turn.edge, legs_over(turn, paths, family)
+    ahead = _Rays.of(on, paths, family).at(np.zeros(len(over)))[1]
+    if over.lift is not None:
+        ahead = np.where(over.lift.aloft[:, None] > 0, over.lift.ahead, ahead)
+    inwards = -(ahead * on.normals(over.around, over.height)).sum(axis=1)
+    if over.lift is not None:
+        inwards = np.where((over.lift.aloft > 0) & ~over.lift.held, 0.0, inwards)
+    return float(np.arcsin(np.clip(inwards, 0.0, 1.0)).max())
+
+
 @dataclass(frozen=True)
 class Hung:
     """Paths of n points as their fibres lie, some of which hang between the part and what they turn on.

@@ -9,7 +9,9 @@ from meshwind.chart import Chart
 from meshwind.core.errors import BadInputError
 from meshwind.filament.closing import ClosedLayer
 from meshwind.filament.ends import CAP
+from meshwind.filament.lift import leaning
 from meshwind.filament.part_turn import Bend
+from meshwind.filament.pin_turn import Pins
 from meshwind.layup.layup import Layup
 from meshwind.mesh import Annulus, Mesh
 from meshwind.mesh.opening.branches import BRANCHES, CUT
@@ -52,6 +54,8 @@ _SAME_TURNS = 1e-9
 """Revolutions that differ by less are the same."""
 _STANDS_UP = 1.0
 """Degrees by which a turnaround stands up from the part at a rim that are worth a word."""
+_LEANS = 3.0
+"""Degrees at which a fibre may pull along a pin: friction on the pin holds it, as tan 3 is 0.05."""
 _AWAY = 1e-3
 """Share of the diagonal by which fibres may leave the part before a rim without a note."""
 _HOLLOW = 1e-3
@@ -182,6 +186,15 @@ def about_filament(layer: ClosedLayer, caps: tuple[bool, bool], units: str = "")
                     f"fibres leave it up to {quantity(before, units, 3)} before the rim and go straight over"
                 )
             )
+        if isinstance(turn, Pins):
+            lean = np.degrees(max(leaning(turn, layer.paths, family) for family in (1, -1)))
+            if lean > _LEANS:
+                notes.append(
+                    Note(
+                        f"the pins at the {name} need heads: fibres come to them from further out, at up to "
+                        f"{lean:.0f} degrees, and would slip off their ends; or lean the pins outwards as much"
+                    )
+                )
         if turn.edge.hollow > _HOLLOW * layer.paths.surface.size:
             notes.append(
                 Note(
