@@ -35,28 +35,41 @@ def filaments_of(layer: ClosedLayer) -> list[Filament]:
 
 
 def filament_of_layers(laminate: Laminate) -> list[Filament]:
-    """The one filament of all layers; none where they were not wound as one.
+    """The filaments of all layers, one but for cuts; none where they were not wound as one.
 
     Paths are counted on from layer to layer, as the polylines of all layers are, of which a hoop is one.
     """
-    courses: list[Course] = []
-    layers, below, paths = [], [], 0
-    for number, layer in enumerate(laminate.layers):
-        strand = layer.strand
+    made: list[Filament] = []
+    paths, strands = 0, [layer.strand for layer in laminate.layers]
+    for number, (layer, strand) in enumerate(zip(laminate.layers, strands, strict=True)):
         if strand is None:
             return []
-        own = strand.course if number == len(laminate.layers) - 1 else strand.left
+        after = strands[number + 1] if number + 1 < len(strands) else None
+        own = strand.course if after is None or after.cut else strand.left
         course = own if strand.join is None else in_a_row([strand.join, own])
         feet = _feet(layer, course)
         here = np.flatnonzero(np.isfinite(feet[:, 0]))
         deep = sum((each.raised.at(feet[here]) for each in laminate.layers[:number]), np.zeros(len(here)))
-        below.append(np.interp(np.arange(len(course)), here, deep))
-        layers.append(np.full(len(course), number))
         slip = np.where(np.isfinite(course.slip), course.slip, np.nan)
         path = np.where(course.path >= 0, course.path + paths, -1)
-        courses.append(replace(course, slip=frozen(slip), path=frozen(path)))
+        course = replace(course, slip=frozen(slip), path=frozen(path))
+        below = np.interp(np.arange(len(course)), here, deep)
+        one = Filament(course, frozen(np.full(len(course), number)), frozen(below))
+        if not made or strand.cut:
+            made.append(one)
+        else:
+            made[-1] = _led_on(made[-1], one)
         paths += 1 if layer.paths is None else len(layer.paths)
-    return [Filament(in_a_row(courses), frozen(np.concatenate(layers)), frozen(np.concatenate(below)))]
+    return made
+
+
+def _led_on(one: Filament, other: Filament) -> Filament:
+    """A filament that goes on with another."""
+    return Filament(
+        in_a_row([one.course, other.course]),
+        frozen(np.concatenate([one.layer, other.layer])),
+        frozen(np.concatenate([one.thickness, other.thickness])),
+    )
 
 
 def _feet(layer: LaidLayer, course: Course) -> Floats:

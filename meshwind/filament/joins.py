@@ -77,12 +77,15 @@ class Strand:
         Where the layer ends.
     slip : float
         Friction that the join needs, 0 without one; infinite where its fibre would lift.
+    cut : bool
+        Whether the fibre is cut before the layer: it is a filament of its own.
     """
 
     join: Course | None
     course: Course
     tail: Tail
     slip: float = 0.0
+    cut: bool = False
 
     @property
     def left(self) -> Course:

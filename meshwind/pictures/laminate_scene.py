@@ -4,6 +4,7 @@ import numpy as np
 
 from meshwind.appearance.looks import LAMINATE
 from meshwind.appearance.words import quantity
+from meshwind.filament.course import Kind
 from meshwind.filament.levels import levels
 from meshwind.pictures.scenes import LaminateScene
 from meshwind.pictures.subject import Subject
@@ -24,7 +25,9 @@ def laminate_scene(of: Subject) -> LaminateScene:
     low, usual, high = (quantity(float(each), of.units, 3) for each in np.quantile(values, [0.0, 0.5, 1.0]))
     many = "one layer" if laminate.layers == 1 else f"{laminate.layers} layers"
     scale = LAMINATE.scale(values, of.units)
-    frame = of.frame(f"{of.name}: thickness of {many}", f"{low} to {high}, median {usual}")
+    joined = any((each.course.kind == Kind.JOIN).any() for each in of.filaments)
+    without = "  ·  joins between layers are not in it" if joined else ""
+    frame = of.frame(f"{of.name}: thickness of {many}", f"{low} to {high}, median {usual}{without}")
     names = tuple(f"layer {number} {each['kind']}" for number, each in enumerate(of.layers, 1))
     return LaminateScene(
         frame, of.part, scale, scale.shares(values), np.interp(v, lines.v, lines.mean), thickness, angles, names

@@ -1,5 +1,7 @@
 """The figures of closed layers for the report: pattern, turnarounds, angle and what else could be wound."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from meshwind.core.cast import Floats
@@ -54,12 +56,13 @@ def pattern_figures(layer: ClosedLayer, plain: PlainLayer) -> PatternFigures:
     }
 
 
-def patterns_of_layers(laminate: Laminate, filament: Filament, units: str = "") -> list[PatternFigures]:
-    """The figures of layers that are one filament; the join to a layer counts as its fibre."""
-    length = np.bincount(filament.layer[1:], np.diff(filament.course.arc_length), len(laminate.layers))
-    return [
-        _of_layer(layer, float(mine), units) for layer, mine in zip(laminate.layers, length, strict=True)
-    ]  # fmt: skip
+def patterns_of_layers(laminate: Laminate, filaments: Sequence[Filament], units: str = "") -> list[PatternFigures]:
+    """The figures of layers that are one filament, but for cuts; the join to a layer counts as its fibre."""
+    length = sum(
+        (np.bincount(each.layer[1:], np.diff(each.course.arc_length), len(laminate.layers)) for each in filaments),
+        np.zeros(len(laminate.layers)),
+    )
+    return [_of_layer(layer, float(mine), units) for layer, mine in zip(laminate.layers, length, strict=True)]
 
 
 def _of_layer(layer: LaidLayer, length: float, units: str) -> PatternFigures:

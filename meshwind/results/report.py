@@ -100,7 +100,7 @@ def report(layup: Layup, mesh: Mesh, chart: Chart | None, run: RunFacts) -> Repo
     if run.plain.stations is not None:
         figures["angle_stations"] = station_figures(run.plain.stations)
     if run.laminate is not None and run.filaments:
-        figures["pattern"] = patterns_of_layers(run.laminate, run.filaments[0], mesh.units)
+        figures["pattern"] = patterns_of_layers(run.laminate, run.filaments, mesh.units)
     elif run.closed is not None:
         figures["pattern"] = [pattern_figures(run.closed, run.plain)]
     if run.laminate is not None:

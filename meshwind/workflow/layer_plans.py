@@ -35,7 +35,7 @@ class LayerPlan:
     resin_density, fibre_volume: as `Roving`; the run's count where these are None; friction; start, end: places along
     the part, as `station` reads them; repeat: times that the layer is wound; section, bridges: as `Laying`; passes,
     overlap, stagger: as `HoopPlan`; turn_start, turn_end: how it turns at both ends, where the layers are one filament;
-    by default as the run's.
+    by default as the run's; cut: whether the fibre is cut before it, rather than led on from the layer before.
     """
 
     kind: str
@@ -60,6 +60,7 @@ class LayerPlan:
     stagger: float = 0.0
     turn_start: str | None = None
     turn_end: str | None = None
+    cut: bool = False
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -116,6 +117,7 @@ _TYPES: dict[str, tuple[tuple[type, ...], str]] = {
     "revolutions": ((float, int, str), "a number, or a fraction in quotes"),
     "paths": ((int, str), 'a whole number, or "auto"'),
     "start": _PLACE, "end": _PLACE, "repeat": _WHOLE, "passes": _WHOLE, "tows": _WHOLE,
+    "cut": ((bool,), "true or false"),
     "kind": _TEXT, "section": _TEXT, "bridges": _TEXT, "turn_start": _TEXT, "turn_end": _TEXT,
 }  # fmt: skip
 """Types of TOML that a key's value may have, and their words; all others are numbers."""
@@ -170,6 +172,11 @@ def read_layers(file: str | PathLike[str], options: Options) -> LayersFile:
             raise BadInputError(
                 f"{path}: layer {turned}: turnarounds are of a filament; set continuous (--continuous), or leave "
                 "them out"
+            )
+        cut = next((k for k, plan in enumerate(plans, 1) if plan.cut), None)
+        if cut is not None:
+            raise BadInputError(
+                f"{path}: layer {cut}: only a filament is cut; set continuous (--continuous), or leave cut out"
             )
     if sum(plan.repeat for plan in plans) > _MOST_LAYERS:
         raise BadInputError(f"{path} has more than {_MOST_LAYERS} layers; wind it in several runs")

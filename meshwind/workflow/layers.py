@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from meshwind.appearance.words import quantity
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import AUTO
 from meshwind.filament.closing import close_layer
@@ -73,7 +74,9 @@ def _faults(layer: LaidLayer) -> list[str]:
     if layer.strand is not None and layer.strand.slip > layer.friction:
         slip = layer.strand.slip
         needed = f"needs a friction of {slip:.3g}, and has {layer.friction:g}" if np.isfinite(slip) else "lifts off"
-        lines.append(f"the join that leads to it {needed}: hold it until the layer is on it")
+        lines.append(
+            f"the join that leads to it {needed}: hold it until the layer is on it, or cut before it by cut = true"
+        )
     if layer.hoop is not None and (line := layer.hoop.advice(layer.friction)):
         lines.append(line)
     if layer.left_out:
@@ -114,12 +117,13 @@ def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options) -> LaidLaye
     lines = levels(surface)
     ground = Ground(surface, lines, ply.laying.width)
     between = station(plan.start, lines), station(plan.end, lines)
+    tail = None if plan.cut else below.tail
     if plan.kind == HOOP:
         hoops = HoopPlan(*between, ply.laying.width, plan.passes, plan.overlap, plan.stagger)
         if not options.continuous:
             return hoop_layer(surface, hoop(surface, hoops), ply, lines)
-        strand, laid = strand_of_hoop(hoops, below.tail, ground, ply.friction)
-        return hoop_layer(surface, laid, ply, lines, strand)
+        strand, laid = strand_of_hoop(hoops, tail, ground, ply.friction)
+        return hoop_layer(surface, laid, ply, lines, replace(strand, cut=plan.cut))
     if not between[0] < between[1]:
         raise BadInputError(f"it starts at v={between[0]:g} and ends at v={between[1]:g}; give its places in order")
     helices = Helices(surface, between, ply.friction, lines)
@@ -143,7 +147,7 @@ def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options) -> LaidLaye
     wound = lay(settled.paths) if plan.paths != AUTO else lay_until_covered(lay, settled.paths, ply.laying.width)[0]
     paths, closed = wound.paths, wound.closed
     if closed is not None:
-        strand = strand_of_paths(closed, below.tail, ground, ply.friction)
+        strand = replace(strand_of_paths(closed, tail, ground, ply.friction), cut=plan.cut)
         layer = helical_layer(paths, ply, lines, closed.left_out, strand)
         return replace(layer, shortfall=settled.shortfall)
     held = paths.status == Status.CONVERGED
@@ -172,4 +176,8 @@ def about_layers(layered: Layered, caps: tuple[bool, bool], units: str) -> tuple
         if layer.closed is not None
         for note in about_filament(layer.closed, caps, units)
     ]
+    joins = [layer.strand.join for layer in layered.laminate.layers if layer.strand and layer.strand.join]
+    if joins:
+        length = quantity(sum(float(each.arc_length[-1]) for each in joins), units, 3)
+        notes.append(Note(f"joins between layers, {length} of fibre, are in no layer's thickness"))
     return tuple(dict.fromkeys(notes))
