@@ -22,9 +22,10 @@ from meshwind.filament.part_turn import Bend
 from meshwind.filament.spiral import Ground, between_hoops, from_path, to_path
 from meshwind.filament.thickness import Laying
 from meshwind.results.filament_file import read_filaments
+from meshwind.results.pattern_figures import patterns_of_layers
 from meshwind.surface.interpolate import interpolate
 from meshwind.workflow.layer_plans import LayerPlan, LayersFile
-from meshwind.workflow.layers import lay_layers
+from meshwind.workflow.layers import about_layers, lay_layers
 from meshwind.workflow.options import Options
 
 HELIX = LayerPlan("helical", revolutions=0.45, paths=7, band_width=12.0, band_thickness=0.4, friction=0.3)
@@ -145,6 +146,28 @@ def test_a_way_to_a_hoop_needs_a_constant_slip_on_a_cylinder() -> None:
     assert level.slip <= 0.2 and np.degrees(level.course.angle.min()) < 80.0
 
 
+def test_a_cut_begins_a_filament_of_its_own() -> None:
+    plans = (HELIX, replace(HOOP, cut=True), HELIX, replace(HELIX, paths=5, cut=True))
+    layered, _ = lay_layers(BARREL, LayersFile(Path("none"), plans), Options(continuous=True, particles=51), "mm")
+    laminate = layered.laminate
+    made = filament_of_layers(laminate)
+    assert [sorted(set(each.layer.tolist())) for each in made] == [[0], [1, 2], [3]]
+    for each in (made[0], made[2]):  # nothing leads on: it closes
+        assert each.course.points[0] == pytest.approx(each.course.points[-1], abs=1e-6)
+    joins = [float(layer.strand.join.arc_length[-1]) for layer in laminate.layers if layer.strand and layer.strand.join]
+    assert len(joins) == 1
+    own = [float(layer.strand.course.arc_length[-1]) for layer in laminate.layers if layer.strand]
+    figures = patterns_of_layers(laminate, made, "mm")
+    assert [each["fibre_length"] for each in figures] == pytest.approx(
+        [own[0], own[1], joins[0] + own[2], own[3]], rel=1e-4
+    )
+    last = (note.text for note in about_layers(layered, (False, False), "mm"))
+    assert f"joins between layers, {joins[0]:.0f} mm of fibre, are in no layer's thickness" in last
+    # each path is in them, counted on; the hoop, which is the polyline after 14 paths, is none
+    paths = np.concatenate([np.unique(each.course.path[each.course.path >= 0]) for each in made])
+    assert paths.tolist() == [*range(14), *range(15, 15 + 14 + 10)]
+
+
 def test_what_the_files_say_of_joined_layers(tmp_path: Path) -> None:
     (tmp_path / "layers.toml").write_text(
         "".join(
@@ -171,4 +194,7 @@ def test_what_the_files_say_of_joined_layers(tmp_path: Path) -> None:
     joins = [str(note) for note in result.notes if "the join that leads to it" in note.text]
     assert joins and all(line.startswith("warning: layer ") for line in joins)
     with pytest.raises(BadInputError, match="turnarounds are of a filament; set continuous"):
+        mw.wind("data/tank.ply", layers=file, particles=101)
+    file.write_text(file.read_text().replace('turn_start = "shaft"', "cut = true"))
+    with pytest.raises(BadInputError, match="layer 1: only a filament is cut; set continuous"):
         mw.wind("data/tank.ply", layers=file, particles=101)
