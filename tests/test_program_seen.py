@@ -20,14 +20,15 @@ from viewer_browser import opened
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.filament.filament import backwards
+from meshwind.pictures.animation_scene import Reel
 from meshwind.pictures.axes_picture import draw_axes, lines_of
-from meshwind.pictures.machine_picture import turned
+from meshwind.pictures.machine_picture import places, turned
 from meshwind.pictures.subject import subject_of
 from meshwind.program.axes_chart import axes_chart
 from meshwind.program.faults import EYE, LIES, SPAN, TRAVEL, Fault
 from meshwind.program.hits_scene import hits_scene
 from meshwind.program.machine import read_machine
-from meshwind.program.machine_scene import frame_times, shots_of
+from meshwind.program.machine_scene import frame_times, machine_scene, shots_of
 from meshwind.program.page import program_data
 from meshwind.program.program import Program, Work, program
 from meshwind.program.seen import SEEN, write_seen
@@ -176,6 +177,20 @@ def test_hits_are_drawn_where_there_are_any(run: Path, made: Program, tmp_path: 
     with Image.open(tmp_path / "hits.png") as drawn:
         pixels = np.asarray(drawn.convert("RGB"), dtype=int)[150:1050, :1300]
     assert (np.abs(pixels - [0xE0, 0x21, 0x8A]).max(axis=2) < 40).sum() > 1000
+
+
+def test_a_robot_is_shown_by_its_flange(run: Path) -> None:
+    of, work = subject_of(read_results(run)), Work.of(read_results(run))
+    for name, frames in (("lathe-4", 0), ("robot", 25)):
+        made = program(work, read_machine(name))
+        scene = machine_scene(of, made, Reel(1.0, 1.0, [], ""))
+        assert scene.flange.shape == (frames, 3, 3)
+    assert np.swapaxes(scene.flange, 1, 2) @ scene.flange == pytest.approx(np.broadcast_to(np.eye(3), (25, 3, 3)))
+    # z leads from the eye to where the fibre leaves the part, as that stands at the first block
+    turn = turned(scene.frame, scene.origin, float(scene.shots.mandrel[0]))
+    touch, eye = turn[:3, :3] @ scene.shots.touch[0] + turn[:3, 3], places(scene, 0)[1]
+    ahead = (touch - eye) / np.linalg.norm(touch - eye)
+    assert scene.flange[0][:, 2] @ scene.frame == pytest.approx(ahead, abs=1e-9)
 
 
 @pytest.mark.usefixtures("opengl")

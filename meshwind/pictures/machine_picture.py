@@ -19,6 +19,10 @@ _THICK = 5.0
 """Width of the free fibre in pixels of the designed page."""
 _CHUCK = 2.4, 1.2
 """Radius and length of the chuck at the outer end of a shaft, over the shaft's radius."""
+FLANGE = ("#c0392b", "x"), ("#1c7c3c", "y"), ("#2f6da8", "z")
+"""Colours of the axes of a robot's flange."""
+_REACH, _AXIS = 2.0, 0.12
+"""Length of such an axis over the width of the eye, and its radius over that of the shaft."""
 _SLIDE, _ARM, _ROLLER = 0.9, 0.28, 0.4
 """Half the size of the carriage, and radii of arm and eye, over the radius of the shaft."""
 
@@ -30,8 +34,12 @@ def frames(window: Any, scene: MachineScene, page: Page) -> Iterator[Any]:
     turning = [*filament_picture.add_stand(window, filament), *_shafts(window, scene)]
     band = filament_picture.add_bands(window, filament, page)
     free = window.add_mesh(pv.Line(), color=_FIBRE, line_width=_THICK * page.unit, lighting=False, render=False)
-    _add(window, _bed(scene), _RAIL)
-    carriage, arm = _add(window, _carriage(scene), _STEEL), _add(window, pv.Line(), _STEEL)
+    lathe = not len(scene.flange)
+    if lathe:
+        _add(window, _bed(scene), _RAIL)
+        carriage, arm = _add(window, _carriage(scene), _STEEL), _add(window, pv.Line(), _STEEL)
+    else:
+        arrows = [_add(window, pv.Line(), colour) for colour, _ in FLANGE]
     eye = _add(window, _roller(scene), _EYE)
     # bands are drawn nearer than they are, so that order tells which is seen; the eye, nearer still, goes along
     nearer = filament_picture.DEPTH * max(view.width, view.height) * view.eye
@@ -49,8 +57,13 @@ def frames(window: Any, scene: MachineScene, page: Page) -> Iterator[Any]:
         free.mapper.dataset = pv.Line(turn[:3, :3] @ touch + turn[:3, 3], tip)
         free.prop.color = _FAULTY if shots.faulty[k] else _FIBRE
         eye.prop.color = _FAULTY if shots.faulty[k] else _EYE
-        carriage.user_matrix = _matrix(np.eye(3), foot)
-        arm.mapper.dataset = pv.Line(foot, tip).tube(radius=_ARM * scene.thick, n_sides=12)
+        if lathe:
+            carriage.user_matrix = _matrix(np.eye(3), foot)
+            arm.mapper.dataset = pv.Line(foot, tip).tube(radius=_ARM * scene.thick, n_sides=12)
+        else:
+            for arrow, way in zip(arrows, scene.flange[k].T, strict=True):
+                end = tip + _REACH * scene.band * (way @ scene.frame)
+                arrow.mapper.dataset = pv.Line(tip, end).tube(radius=_AXIS * scene.thick, n_sides=10)
         eye.user_matrix = _matrix(_rolled(scene.frame, float(shots.roll[k])), tip)
         yield _lettered(canvas.portrait(window, page, view, filament.part.points), scene, page, k)
 
@@ -142,6 +155,7 @@ def _lettered(image: Any, scene: MachineScene, page: Page, k: int) -> Any:
     filament, shots = scene.filament, scene.shots
     pen = canvas.titled(image, page, filament.frame)
     rows = [*filament_picture.rows(filament), (_FIBRE, "free span")]
+    rows += [(colour, f"flange {name}") for colour, name in FLANGE if len(scene.flange)]
     if shots.faulty.any():
         rows.append((_FAULTY, "at fault"))
     canvas.legend(pen, page, rows)

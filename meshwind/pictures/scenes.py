@@ -255,7 +255,7 @@ class MachineScene:
 
     origin (3,) and frame (3, 3), rows along the axis, towards the eye, and square to both: of the axis; rods (k, 2):
     where shafts start and end along it; thick: their radius; bed: distance of the carriage's bed from the axis; band:
-    width of the eye.
+    width of the eye; flange (f, 3, 3): axes of a robot's flange as columns, in the same frame, none for a lathe.
     """
 
     filament: FilamentScene
@@ -265,6 +265,7 @@ class MachineScene:
     thick: float
     bed: float
     band: float
+    flange: Floats
     shots: Shots
     motion: Motion
 

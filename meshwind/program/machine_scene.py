@@ -18,8 +18,11 @@ from meshwind.pictures.scenes import MachineScene, Shots
 from meshwind.pictures.subject import Subject
 from meshwind.program.axes import moved
 from meshwind.program.program import Program
+from meshwind.program.robot import robot_poses
 from meshwind.program.words import AXES, DOES, fault_words
 
+ROBOT = "krl"
+"""Dialect of machines that are robots: of these the flange is drawn, as the program does not know the arm."""
 _TURN = 12.0
 """Degrees of the mandrel from frame to frame up to which the eye follows the part."""
 _HEIGHT, _TILT = np.radians(48.0), np.radians(16.0)
@@ -48,10 +51,15 @@ def machine_scene(of: Subject, made: Program, reel: Reel) -> MachineScene:
     low, high = (float(end(np.append(skin[:, 0], blocks.eye_x))) for end in (np.min, np.max))
     rods, thick = _shafts(made, (low - _REACH * (high - low), high + _REACH * (high - low)))
     bed = float(max(blocks.eye_r.max(), np.hypot(skin[:, 1], skin[:, 2]).max())) + _PAST * (high - low) + thick
+    times = frame_times(made, motion.frames)
+    flange = np.zeros((0, 3, 3))
+    if made.machine.dialect == ROBOT:
+        block = np.minimum(np.searchsorted(blocks.time, times), len(blocks) - 1)
+        flange = robot_poses(blocks.chosen(block), mandrel).axes
     scene = MachineScene(
         replace(seen, ribbons=_bands(of, made)),
-        mandrel.origin, mandrel.frame, rods, thick, bed, max(_ROLLER * thick, max(of.widths)),
-        shots_of(made, frame_times(made, motion.frames)), motion,
+        mandrel.origin, mandrel.frame, rods, thick, bed, max(_ROLLER * thick, max(of.widths)), flange,
+        shots_of(made, times), motion,
     )  # fmt: skip
     frame = of.frame(f"{of.name} on {made.machine.name}", _subtitle(made), _view(scene, skin))
     return replace(scene, filament=replace(scene.filament, frame=frame))

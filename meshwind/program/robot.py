@@ -30,6 +30,13 @@ class RobotPoses:
     position: Floats
     quaternion: Floats
 
+    @property
+    def axes(self) -> Floats:
+        """The axes (n, 3, 3) of the eye as columns: z along the span to the part."""
+        from scipy.spatial.transform import Rotation
+
+        return np.asarray(Rotation.from_quat(self.quaternion[:, [1, 2, 3, 0]]).as_matrix())
+
 
 def robot_poses(blocks: Blocks, mandrel: Mandrel) -> RobotPoses:
     """The poses of the eye in blocks, in the mesh's units."""
