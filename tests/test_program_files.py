@@ -140,7 +140,19 @@ def test_travel_that_is_too_short_is_a_fault(run: Path, tmp_path: Path) -> None:
     assert values.min() < 0.4 < 0.5 < values.max()
     farthest = [values[each["index"]] for each in faults]
     assert sorted(farthest) == pytest.approx([values.min(), values.max()], abs=1e-9)
-    assert all("take a machine with more travel" in each["words"] for each in faults)
+    # moving the zero cannot help where the whole does not fit
+    needed = f"it needs {np.ptp(values):.6g} mm of travel, and has 0.1: take a machine with more travel"
+    assert all(needed in each["words"] for each in faults)
+    file.write_text(MINE.replace("low = 0.0, high = 120.0", "low = 0.4, high = 120.0"))
+    called(run, "--machine", file, "--out", tmp_path)
+    (fault,) = json.loads((tmp_path / "program.json").read_text())["faults"]
+    assert f"move its zero by {0.4 - values.min():.6g}, or take a machine with more travel" in fault["words"]
+
+
+def test_faults_in_a_row_have_one_line() -> None:
+    faults = [{"index": k, "words": words} for k, words in ((3, "a"), (4, "a"), (5, "a"), (6, "b"), (8, "b"), (9, "b"))]
+    assert command.in_runs(faults) == ["blocks 3 to 5: a", "block 6: b", "blocks 8 to 9: b"]
+    assert command.in_runs([]) == []
 
 
 def test_a_machine_of_ones_own_needs_no_code(tmp_path: Path) -> None:

@@ -169,6 +169,26 @@ def test_hits_are_where_spans_meet_the_part(run: Path, made: Program) -> None:
     assert hits_scene(of, replace(made, faults=(Fault(3, TRAVEL, "no place on the part"),))) is None
 
 
+def test_spans_that_meet_the_shaft_are_told_from_those_that_meet_the_part(run: Path) -> None:
+    of, shaft = subject_of(read_results(run)), replace(read_machine("lathe-4"), shaft=500.0)
+    made = program(Work.of(read_results(run)), shaft)
+    blocks = made.blocks
+    faults = tuple(Fault(k, SPAN, "") for k in range(40, 50))
+    plain = hits_scene(of, replace(made, machine=read_machine("lathe-4"), faults=faults))
+    for inwards, words in ((True, "all of these spans hit"), (False, None)):
+        # part (radius 1000 mm) and shaft are met straight from outside, from 100 mm above each
+        radius = 600.0 if inwards else 1100.0
+        at = made.mandrel.inside(blocks.point)
+        out = at[:, 1:] / np.linalg.norm(at[:, 1:], axis=1, keepdims=True)
+        above = np.column_stack([at[:, 0], radius / made.work.scale * out]) @ made.mandrel.frame + made.mandrel.origin
+        ahead = np.column_stack([0.0 * at[:, 0], -out]) @ made.mandrel.frame
+        aimed = replace(blocks, point=above, tangent=ahead, free_length=np.full(len(blocks), 1e3))
+        scene = hits_scene(of, replace(made, blocks=aimed, faults=faults))
+        assert scene is not None and plain is not None
+        assert len(scene.gear.held) > len(plain.gear.held) and "shaft" in scene.gear.held_words
+        assert (words in scene.notes) == inwards
+
+
 @pytest.mark.usefixtures("opengl")
 def test_hits_are_drawn_where_there_are_any(run: Path, made: Program, tmp_path: Path) -> None:
     assert "hits.png" not in [file.name for file in write_program(run, to=("hits",), out=tmp_path).files]
@@ -197,8 +217,8 @@ def test_a_robot_is_shown_by_its_flange(run: Path) -> None:
 def test_the_movie_moves(run: Path, tmp_path: Path) -> None:
     told: list[str] = []
     done = write_program(run, to=("axes", "gif", "viewer"), out=tmp_path, seconds=1.0, progress=told.append)
-    assert told[:7] == ["read", "program", "wind again", "write", "axes", "viewer", "movie"]
-    assert [int(line.split()[1]) for line in told[7:]] == [3, 5, 8, 10, 13, 15, 18, 20, 23, 25]
+    assert told[:6] == ["program", "wind again", "write", "axes", "viewer", "movie"]
+    assert [int(line.split()[1]) for line in told[6:]] == [3, 5, 8, 10, 13, 15, 18, 20, 23, 25]
     assert [file.name for file in done.files] == [
         "axes.png", "program.csv", "program.gif", "program.html", "program.json",
     ]  # fmt: skip

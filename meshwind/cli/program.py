@@ -42,7 +42,7 @@ TARGETS = (
 _MACHINE = "Machine and files"
 WITH_FAULTS = 3
 _MOST = 3
-"""Faults of a kind that are printed; program.json has them all."""
+"""Stretches of blocks with a fault of a kind that are printed; program.json has them all."""
 
 
 def _list_machines(wanted: bool) -> None:
@@ -166,10 +166,27 @@ def program_lines(figures: dict[str, Any]) -> list[str]:
     kinds = dict.fromkeys(fault["kind"] for fault in figures["faults"])
     for kind in kinds:
         found = [fault for fault in figures["faults"] if fault["kind"] == kind]
-        lines += [f"warning   block {fault['index']}: {fault['words']}" for fault in found[:_MOST]]
-        if len(found) > _MOST:
-            lines.append(f"warning   and {len(found) - _MOST} more blocks of this kind; program.json has them")
+        runs = in_runs(found)
+        lines += [f"warning   {words}" for words in runs[:_MOST]]
+        if len(runs) > _MOST:
+            lines.append(f"warning   and {len(runs) - _MOST} more stretches of this kind; program.json has all blocks")
     return lines
+
+
+def in_runs(faults: list[dict[str, Any]]) -> list[str]:
+    """Faults in words, with one line for blocks in a row that have the same."""
+    runs: list[list[int]] = []
+    words: list[str] = []
+    for fault in faults:
+        if runs and words[-1] == fault["words"] and fault["index"] == runs[-1][1] + 1:
+            runs[-1][1] = fault["index"]
+        else:
+            runs.append([fault["index"]] * 2)
+            words.append(fault["words"])
+    return [
+        f"block {first}: {text}" if first == last else f"blocks {first} to {last}: {text}"
+        for (first, last), text in zip(runs, words, strict=True)
+    ]
 
 
 def rewound_line(found: dict[str, Any], unit: str) -> str:

@@ -119,7 +119,8 @@ def _table(end: End, leaving: bool, reach: float) -> Table:
             lost = u[np.argmin(there.all(axis=1))]
             raise BadInputError(
                 f"a fibre that touches the opening at the {end.name} does not get from there to the middle of the part,"
-                f" at u={lost:.3f}: the part is not a closed cap there; cut another opening, or give a clearance"
+                f" at u={lost:.3f}: that end is no dome, as at a neck; let it turn by --turn-{end.name} pins, collar "
+                "or shaft, or give another --opening"
             )
     values = np.stack([legs.u - around, legs.angle], axis=1).reshape(_AROUND, len(_NODES), 2)
     powers = np.linalg.solve(np.vander(_NODES, increasing=True), values.swapaxes(0, 1).reshape(len(_NODES), -1))

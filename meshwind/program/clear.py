@@ -52,9 +52,9 @@ def obstacle(on: Grid, diagonal: float, mandrel: Mandrel, shaft: Shaft) -> Obsta
     for depth in (SKIN * diagonal, 0.0):
         points, faces = skin_below(on, depth)
         if shaft.radius > depth:
-            rod, sides = _rod(shaft.radius - depth, shaft.ends)
+            round_, sides = rod(shaft.radius - depth, shaft.ends)
             faces = np.concatenate([faces, sides + len(points)])
-            points = np.concatenate([points, mandrel.origin + rod @ mandrel.frame])
+            points = np.concatenate([points, mandrel.origin + round_ @ mandrel.frame])
         trees.append(FacetTree.of(frozen(points), frozen(faces)))
     return Obstacle(trees[0], trees[1], SKIN * diagonal)
 
@@ -77,7 +77,7 @@ def _closed(points: Floats, quads: Ints) -> tuple[Floats, Ints]:
     return vertices, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]], *lids])
 
 
-def _rod(radius: float, ends: tuple[float, float]) -> tuple[Floats, Ints]:
+def rod(radius: float, ends: tuple[float, float]) -> tuple[Floats, Ints]:
     """Vertices and triangles of a rod on the axis, in the mandrel's frame, that lies outside of its radius nowhere."""
     turn = 2.0 * np.pi * np.arange(_SIDES) / _SIDES
     ring = radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)

@@ -64,14 +64,19 @@ def unreachable(blocks: Blocks, machine: Machine, scale: float) -> list[Fault]:
         values = axis.sign * moved(blocks, axis.moves, scale) + axis.zero
         if axis.modulo is not None:
             values = np.mod(values, axis.modulo)
+        needed = float(np.ptp(values))
+        held = np.inf if axis.low is None or axis.high is None else axis.high - axis.low
+        more = "take a machine with more travel"
         for end, name, sign in ((axis.low, "low", -1.0), (axis.high, "high", 1.0)):
             if end is None:
                 continue
             past = sign * (values - end)
             k = int(past.argmax())
             if past[k] > _ROUND_OFF * max(float(np.ptp(values)), 1.0):
+                fits = needed <= held
                 found.append(Fault(k, TRAVEL, (
                     f"{axis.moves} {axis.letter} goes to {values[k]:.6g} {axis.unit}, past {name} = {end:g}; "
-                    f"move its zero by {-sign * past[k]:.6g}, or take a machine with more travel"
+                    + (f"move its zero by {-sign * past[k]:.6g}, or {more}" if fits else
+                       f"it needs {needed:.6g} {axis.unit} of travel, and has {held:g}: {more}")
                 )))  # fmt: skip
     return found

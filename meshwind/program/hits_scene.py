@@ -1,16 +1,18 @@
 """Scene of what is wrong with a program on the part: spans and eyes that meet it, and fibre that goes astray."""
 
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 
 from meshwind.appearance.gear import gear
+from meshwind.appearance.strips import Gear
 from meshwind.appearance.view import View, around, framed, merit_view
-from meshwind.core.cast import Floats, Ints
+from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.mesh.geometry.rays import cast
 from meshwind.pictures.scenes import HitsScene
 from meshwind.pictures.subject import Subject
-from meshwind.program.clear import Shaft, obstacle
+from meshwind.program.clear import Shaft, obstacle, rod, skin_below
 from meshwind.program.faults import EYE, LIES, SPAN
 from meshwind.program.program import Program
 from meshwind.program.words import DOES, fault_words
@@ -38,9 +40,10 @@ def hits_scene(of: Subject, made: Program) -> HitsScene | None:
         return None
     shown, eye = _some(spans), blocks.eye
     lines = np.stack([blocks.point[shown], eye[shown]], axis=1)
-    entries = blocks.point[shown] + _met(made, shown)[:, None] * blocks.tangent[shown]
+    far, shaft = _met(made, shown)
+    entries = blocks.point[shown] + far[:, None] * blocks.tangent[shown]
     marks, others = eye[_some(eyes)], blocks.point[_some(astray)]
-    stands = gear(of.paths.surface, of.filaments, of.turned)
+    stands = _with_shaft(made, gear(of.paths.surface, of.filaments, of.turned))
     everything = np.concatenate([of.points, stands.points, lines.reshape(-1, 3), marks])
     every = np.concatenate([spans, eyes, astray])
     view = _view(of, made, everything, (eye[every] - of.points.mean(axis=0), blocks.normal[every]))
@@ -49,7 +52,7 @@ def hits_scene(of: Subject, made: Program) -> HitsScene | None:
         for kind, found in ((SPAN, spans), (EYE, eyes), (LIES, astray)) if len(found)
     )  # fmt: skip
     frame = of.frame(f"{of.name}: where the program is at fault", f"{made.machine.name}  ·  {words}", view)
-    return HitsScene(frame, of.part, stands, lines, entries, marks, others, _notes(made, every))
+    return HitsScene(frame, of.part, stands, lines, entries, marks, others, _notes(made, every, shaft))
 
 
 def _some(index: Ints) -> Ints:
@@ -57,14 +60,28 @@ def _some(index: Ints) -> Ints:
     return index[:: -(-len(index) // _MOST)] if len(index) else index
 
 
-def _met(made: Program, index: Ints) -> Floats:
-    """Lengths (k,) of free spans at which they meet part or shaft."""
+def _met(made: Program, index: Ints) -> tuple[Floats, Bools]:
+    """Lengths (k,) of free spans at which they meet part or shaft, and which of them meet the shaft."""
     work, blocks = made.work, made.blocks
     shaft = Shaft(made.machine.shaft / work.scale, (float(made.body.x[0]), float(made.body.x[-1])))
     blocked = obstacle(work.skin, work.diagonal, made.mandrel, shaft)
-    return np.minimum(
-        cast(blocked.below, blocks.point[index], blocks.tangent[index], 0.0)[1], blocks.free_length[index]
-    )
+    face, far = cast(blocked.below, blocks.point[index], blocks.tangent[index], 0.0)
+    own = len(skin_below(work.skin, 0.0)[1])  # the triangles of the part come first
+    return np.minimum(far, blocks.free_length[index]), np.asarray(face >= own)
+
+
+def _with_shaft(made: Program, stands: Gear) -> Gear:
+    """What the turnarounds stand on, with the machine's shaft."""
+    radius = made.machine.shaft / made.work.scale
+    if not radius > 0.0:
+        return stands
+    points, sides = rod(radius, (float(made.body.x[0]), float(made.body.x[-1])))
+    quads = sides[:, [0, 1, 2, 2]] + len(stands.points)
+    return replace(
+        stands, points=np.concatenate([stands.points, made.mandrel.origin + points @ made.mandrel.frame]),
+        held=np.concatenate([stands.held, quads]),
+        held_words=f"{stands.held_words}, shaft" if stands.held_words else "shaft",
+    )  # fmt: skip
 
 
 def _view(of: Subject, made: Program, everything: Floats, sides: tuple[Floats, Floats]) -> View:
@@ -79,11 +96,14 @@ def _view(of: Subject, made: Program, everything: Floats, sides: tuple[Floats, F
     return framed(everything, merit_view(of.points, faces, eyes, merit))
 
 
-def _notes(made: Program, index: Ints) -> tuple[str, ...]:
-    """What the fibre does at the blocks, and the first of them with circuit and pass."""
+def _notes(made: Program, index: Ints, shaft: Bools) -> tuple[str, ...]:
+    """What the fibre does at the blocks, and the first of them with circuit and pass; shaft: spans that meet it."""
     blocks = made.blocks
     counts = Counter(int(kind) for kind in blocks.kind[index])
     lines = [f"{count} {DOES[kind]}" for kind, count in counts.most_common()]
+    if shaft.any():
+        lines.append(f"{'all' if shaft.all() else f'{100.0 * shaft.mean():.0f} %'} of these spans hit")
+        lines.append("the shaft, not the part")
     lines.append("")
     passes = dict.fromkeys(zip(blocks.layer[index], blocks.circuit[index], blocks.passed[index], strict=True))
     layers = made.work.layers > 1

@@ -75,7 +75,6 @@ def write_program(
     check(to, seconds)
     say: Callable[[str], None] = progress or (lambda _stage: None)
     used = read_machine(machine)
-    say("read")
     results = read_results(folder)
     work = Work.of(results)
     say("program")

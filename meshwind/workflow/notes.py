@@ -156,7 +156,7 @@ def about_filament(layer: ClosedLayer, caps: tuple[bool, bool], units: str = "")
         notes.append(Note(f"revolutions moved from {asked:.6g} to {wound:.6g}, with which the filament closes"))
     if all(caps) and not any(turn.name == CAP for turn in layer.turnarounds):
         notes.append(
-            Note("both ends are closed: with --turn-start cap --turn-end cap the fibre turns on them, at another angle")
+            Note("both ends are closed: domes turn fibres by --turn-start cap --turn-end cap, at another angle")
         )
     if layer.words:
         notes.append(Note(layer.words, bool((layer.paths.status != Status.CONVERGED).any())))
