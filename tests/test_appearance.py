@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.colors import to_rgb
 
-from meshwind.appearance.looks import DIVERGING, MAPS, Scale, colour_map, round_below
+from meshwind.appearance.looks import DIVERGING, MAPS, SEQUENTIAL, Scale, colour_map, round_below
 from meshwind.core.cast import Floats
 from meshwind.pictures.bodies import FAMILY
 from meshwind.pictures.layup_scenes import ANGLE
@@ -77,6 +77,11 @@ def test_scales_hold_any_values(values: list[float], name: str) -> None:
     assert marks and marks == sorted(marks)
     assert min(marks) >= 0.0 and max(marks) <= 1.0
     assert not any(text.startswith("-0") and float(text) == 0.0 for _, text in scale.marks if text[0] not in "≤≥")
+
+
+def test_marks_of_long_fibres_are_written_out() -> None:
+    texts = [text for _, text in Scale(("wound so far,",), SEQUENTIAL, 0.0, 16820.0).marks]
+    assert texts == ["0", "5,000", "10,000", "15,000"]
 
 
 def test_a_scale_marks_values_beyond_it() -> None:

@@ -7,6 +7,7 @@ import pytest
 from mesh_shapes import tube
 
 import meshwind as mw
+from meshwind.cli.layer_table import _covered
 from meshwind.cli.summary import _not_converged
 from meshwind.core.errors import BadInputError
 from meshwind.mesh import mesh_from
@@ -39,6 +40,12 @@ def test_paths_that_are_not_at_rest_are_told_in_one_line_for_each_kind() -> None
         "warning   2 paths not at rest: stopped (path 2, 5)",
         "advice    0.3 revolutions hold all 24 paths",
     ]
+
+
+def test_a_cover_beyond_all_bounds_is_told_as_such() -> None:
+    assert _covered({"min": 0.806, "max": 21688.1}) == "0.806 to over 99"
+    assert _covered({"min": 1.01, "max": 4.59}) == "1.010 to 4.590"
+    assert _covered(None) == "-"
 
 
 def test_flat_ends_are_named_as_the_cause_and_domes_are_not() -> None:

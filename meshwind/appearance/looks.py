@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from meshwind.appearance.words import quantity
 from meshwind.core.cast import Floats
 from meshwind.results import schema
 
@@ -67,7 +68,9 @@ class Scale:
     def marks(self) -> list[tuple[float, str]]:
         """Round values on the scale: their positions and their text."""
         values = self._powers() if self.log else self._steps()
-        marks = [(float(share), f"{value:.4g}") for share, value in zip(self.shares(values), values, strict=True)]
+        marks = [
+            (float(share), quantity(float(value))) for share, value in zip(self.shares(values), values, strict=True)
+        ]
         if self.log:
             marks = [mark for mark in marks if mark[0] > _CLEAR]
             marks.insert(0, (0.0, f"≤ {self.low:.2g}"))

@@ -8,6 +8,8 @@ from meshwind.results.pattern_types import CoverFigures, Spread
 from meshwind.results.report_types import Report
 
 _HEAD = ("layer", "circuits", "angle", "cover", "thickness", "median", "fibre", "fibre g", "resin g", "laminate g")
+_MANY = 99.0
+"""Cover above which a number says nothing any more."""
 _UNKNOWN = "-"
 
 
@@ -30,7 +32,7 @@ class _Row:
             self.name,
             str(self.circuits),
             _range(self.angle, ".1f"),
-            _range(self.cover, ".3f"),
+            _covered(self.cover),
             _range(self.thickness, ".3g"),
             _number(None if self.thickness is None else self.thickness["median"], ".3g"),
             quantity(self.length, units),
@@ -92,6 +94,13 @@ def _range(spread: Spread | CoverFigures | None, form: str) -> str:
     if spread is None:
         return _UNKNOWN
     return f"{_number(spread['min'], form)} to {_number(spread['max'], form)}"
+
+
+def _covered(cover: CoverFigures | None) -> str:
+    """The range of the cover factor, which is beyond all bounds where fibres turn back."""
+    if cover is None or cover["max"] <= _MANY:
+        return _range(cover, ".3f")
+    return f"{_number(cover['min'], '.3f')} to over {_MANY:g}"
 
 
 def _number(value: float | None, form: str) -> str:
