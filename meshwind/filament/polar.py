@@ -257,7 +257,8 @@ def passes_over_a_cap(
     if lost.any():
         raise BadInputError(
             f"a fibre that touches the opening at the {cap} at u={touch[np.argmax(lost)] % 1.0:.3f} does not reach the"
-            " rim across from it: it turns back before; give an opening as narrow as the part is at its narrowest"
+            " rim across from it: it turns back before; give an --opening that is, with half a band's width, as "
+            "narrow as the part at its narrowest"
         )
     fibres = [[Stretch(trace, end.half, at_end)] for legs in (there, back) for trace in legs.marched.traces()]
     paths = _as_paths(surface, (end,), fibres, evenly(surface, fibres, particles), friction)
