@@ -180,7 +180,7 @@ def test_over_one_cap_and_back_to_a_rim() -> None:
 
 
 def test_what_is_no_cap_is_refused() -> None:
-    with pytest.raises(BadInputError, match="not a closed cap"):
+    with pytest.raises(BadInputError, match="that end is no dome"):
         passes_between_caps(mw.shapes.hyperboloid(1.0, 1.0, 1.0), 5)
     ball = mw.shapes.sphere_band(1.0, 0.5, 2.5)
     with pytest.raises(BadInputError, match="coprime"):
