@@ -12,7 +12,7 @@ from program_blocks import MANDREL, PART, blocks_of, wound
 from meshwind.core.errors import BadInputError
 from meshwind.program.blocks import Blocks
 from meshwind.program.machine import Axis, Machine, machine_names, read_machine
-from meshwind.program.posts.dialect import fitted
+from meshwind.program.posts.dialect import ALL_INCREMENTS, fitted
 from meshwind.program.posts.dialects import DIALECTS, dialect, file_names
 from meshwind.program.posts.header import Job
 from meshwind.program.posts.writer import program_text
@@ -179,10 +179,11 @@ def programs(draw: st.DrawFn) -> tuple[Blocks, Machine, str, Part]:
     blocks = blocks_of(columns, np.concatenate([[0.0], np.cumsum(time)]), circuit, part, tension)
     held = draw(st.sampled_from([2, 3, 4, 5]))
     moves = [moves for moves, *_ in said.usual][:held]
-    modulo = 360.0 if said.turned and draw(st.booleans()) else None
+    counts = said.turned is not None or said.turning == ALL_INCREMENTS
+    modulo = [moves for moves in ("mandrel", "roll", "yaw") if counts and draw(st.booleans())]
     axes = tuple(
         Axis(each, letter, **LIMITS, sign=draw(st.sampled_from([-1, 1])),
-             zero=draw(st.sampled_from([0.0, -7.5, 100.25])), modulo=modulo if each == "mandrel" else None)
+             zero=draw(st.sampled_from([0.0, -7.5, 100.25])), modulo=360.0 if each in modulo else None)
         for each, letter, _ in said.usual if each in moves
     )  # fmt: skip
     feed = draw(st.sampled_from(said.feeds))

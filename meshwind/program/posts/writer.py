@@ -225,9 +225,12 @@ class _Writer:
         axis = self.machine.axes[k]
         if self._by_increments(axis) and not absolute:
             return self.dialect.increment.format(letter=axis.letter, value=number(move, self.dialect.decimals))
-        if axis.modulo and self.dialect.turned and self.dialect.turning != ALL_INCREMENTS:
-            text = number(value % round(axis.modulo * self.unit), self.dialect.decimals)
-            return self.dialect.turned[0 if move >= 0 else 1].format(letter=axis.letter, value=text)
+        if axis.modulo:
+            value %= round(axis.modulo * self.unit)
+            if self.dialect.turned and self.dialect.turning != ALL_INCREMENTS:
+                text = number(value, self.dialect.decimals)
+                return self.dialect.turned[0 if move >= 0 else 1].format(letter=axis.letter, value=text)
+            return self._word(axis, value)
         return self._word(axis, value - (self.count if k == self.mandrel else 0))
 
     def _word(self, axis: Axis, value: int) -> str:

@@ -93,17 +93,21 @@ def read_text(text: str, machine: Machine) -> Reading:
 def read_back(text: str, blocks: Blocks, machine: Machine, part: Part) -> ReadBack:
     """Read a text as its controller does and compare it with the blocks that it was written from.
 
-    The machine is as the dialect speaks of it (`fitted`).  Whole turns before the first block do not count.
+    The machine is as the dialect speaks of it (`fitted`).  Whole turns before the first block, of the mandrel and of
+    axes with a modulo, do not count.
     """
     reading = read_text(text, machine)
     digit = CONTROLLERS[machine.dialect].digit
     said, start = _program_values(reading, machine)
     meant = np.stack([moved(blocks, each.moves, part.millimetres) for each in machine.axes], axis=1)
     mandrel = [each.moves for each in machine.axes].index("mandrel")
-    turns = 360.0 * np.rint((meant[0, mandrel] - start[mandrel]) / 360.0)
-    if np.isfinite(turns):
-        start[mandrel] += turns
-        said[:, mandrel] += turns
+    for k, axis in enumerate(machine.axes):
+        if k == mandrel or axis.modulo:
+            around = 360.0 if k == mandrel else axis.modulo
+            turns = around * np.rint((meant[0, k] - start[k]) / around)
+            if np.isfinite(turns):
+                start[k] += turns
+                said[:, k] += turns
     faults = list(reading.faults)
     if not (np.abs(start - meant[0]) <= _DIGITS * digit).all():
         faults.append((1, "the approach does not lead to the first block"))

@@ -126,6 +126,8 @@ class Words(Interpreter):
         axis, now, wanted = self.machine.axes[index], self.at[index], float(value)
         if way == "IC" or (self.relative and not way):
             return now + wanted
+        if math.isnan(now) and (way or axis.modulo):  # how often it has turned before is not known
+            return abs(wanted)
         if way:
             return turned(now, wanted, axis.modulo or 360.0, forwards=way == "ACP")
         if axis.modulo:
