@@ -4,6 +4,7 @@ import csv
 import json
 import subprocess
 import sys
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -182,7 +183,7 @@ WRONG = {
     'moves = "carriage"': ('moves = "cross"', "two axes move 'cross'"),
     '{moves = "mandrel", letter = "C", speed = 360, acceleration = 720, sign = -1},': ("", "no axis moves the mandrel"),
     "sign = -1": ("sign = 2", "sign 2; give 1 or -1"),
-    "speed = 360": ("speed = 0", "speed 0.0; give a number above 0"),
+    "speed = 360": ("speed = 0", "speed 0.0; give a number from 0.001"),
     ", acceleration = 720": ("", "has no acceleration; give it"),
     "low = 0.0": ("low = 500", "give low below high"),
     'feed = "G94"': ('feed = "G95"', "give G93, G93-seconds, G94"),
@@ -191,8 +192,32 @@ WRONG = {
     "axes = [": ("[[axis]]\nx = [", "has no 'axis'; did you mean 'axes'"),
     'letter = "Z"': ("letter = 3", "give text in quotes"),
     "high = 120.0": ("modulo = 360", "of rotary axes only"),
+    "acceleration = 720, sign": ("acceleration = 720, modulo = 5, sign", "modulo 5; give one of at least 30"),
+    "acceleration = 720": ("acceleration = 1e-12", "acceleration 1e-12; give a number from 0.001"),
+    "low = 0.0, ": ("zero = 1e300, low = 0.0, ", "too large; give a number from -1e+06 to 1e+06"),
+    "fibre_speed = 200\n": ("fibre_speed = 1e-9\n", "fibre_speed is 1e-09; give a number from 0.001"),
+    'feed = "G94"\n': ('dialect = "linuxnc"\n', "dialect is 'linuxnc'; did you mean 'linuxcnc'"),
     "words": ("clearance = -1\nwords", "clearance is -1.0; give a number above 0"),
 }
+
+
+@pytest.mark.parametrize("command", [
+    "M68 Q{newtons}", "M68 Q{", "M68 Q{tension[0]}", "M68 Q{tension.a.b}", "M68 Q{tension:d}", "M68",
+    "M68 {tension}\nG0 A0",
+])  # fmt: skip
+def test_a_wrong_command_of_the_tension_is_told_in_one_line(command: str) -> None:
+    table = {**tomllib.loads(MINE), "tension": command}
+    with pytest.raises(BadInputError, match=r"^machine mine.toml: tension is .*; give .*\{tension") as error:
+        machine_of(table, "mine.toml")
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("name", ["clearance", "eye_radius", "shaft"])
+def test_lengths_far_beyond_the_part_are_told(name: str) -> None:
+    """They would take blocks without end: 1e9 mm is 1e8 blocks."""
+    table = {**tomllib.loads(MINE), name: 1e9}
+    with pytest.raises(BadInputError, match=f"{name} of mine is 1e\\+09 mm, and the diagonal of the part is only "):
+        program(work(mw.shapes.cylinder(30.0, 90.0, (12, 8))), machine_of(table, "mine.toml"))
 
 
 @pytest.mark.parametrize("right", list(WRONG))

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, fields
 from importlib.resources import files
-from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,14 @@ MOVES = {"mandrel": "deg", "carriage": "mm", "cross": "mm", "roll": "deg", "yaw"
 """What an axis may move, and in which unit."""
 FEEDS = "G93", "G93-seconds", "G94"
 """What F says: 1 over the block's minutes, the block's seconds, or units a minute."""
+DIALECT_NAMES = "linuxcnc", "grbl", "marlin", "fanuc", "siemens", "krl"
+"""Dialects that a machine may speak: those of `posts.dialects`."""
+LEAST_MODULO = 30.0
+"""Least modulo in degrees: an axis goes up to 10 degrees in a block, and where it turned to must be plain from it."""
+_SPEEDS = 1e-3, 1e9
+"""Least and largest speed and acceleration that numbers of a program can tell, in mm or degrees a second (squared)."""
+_FARTHEST = 1e6
+"""Largest zero and travel in mm or degrees: at more of them numbers of a program hold no hundredth of a degree."""
 _FOLDER = "machines"
 _NEEDED = "mandrel", "carriage"
 """Axes without which nothing can be wound."""
@@ -212,12 +219,19 @@ def _check(machine: Machine, source: str) -> None:
     """Raise BadInputError where values of a machine cannot be."""
     if machine.feed not in FEEDS:
         raise BadInputError(f"machine {source}: feed is {machine.feed!r}; {nearest(machine.feed, FEEDS)}")
-    for name in ("fibre_speed", "clearance", "eye_radius"):
+    if machine.dialect not in DIALECT_NAMES:
+        raise BadInputError(
+            f"machine {source}: dialect is {machine.dialect!r}; {nearest(machine.dialect, DIALECT_NAMES)}"
+        )
+    for name in ("clearance", "eye_radius"):
         value = getattr(machine, name)
         if value is not None and not 0.0 < value < float("inf"):
             raise BadInputError(f"machine {source}: {name} is {value}; give a number above 0")
+    if not _SPEEDS[0] <= machine.fibre_speed <= _SPEEDS[1]:
+        raise BadInputError(f"machine {source}: fibre_speed is {machine.fibre_speed}; {_within(_SPEEDS)}")
     if not 0.0 <= machine.shaft < float("inf"):
         raise BadInputError(f"machine {source}: shaft is {machine.shaft}; give a number of at least 0")
+    _check_tension(machine.tension, source)
     for axis in machine.axes:
         _check_axis(axis, source)
     moves, letters = [each.moves for each in machine.axes], [each.letter for each in machine.axes]
@@ -238,13 +252,34 @@ def _check_axis(axis: Axis, source: str) -> None:
     if not axis.letter.strip():
         raise BadInputError(f"{where} has no letter; give one")
     for name in ("speed", "acceleration"):
-        if not 0.0 < getattr(axis, name) < float("inf"):
-            raise BadInputError(f"{where} has the {name} {getattr(axis, name)}; give a number above 0")
+        if not _SPEEDS[0] <= getattr(axis, name) <= _SPEEDS[1]:
+            raise BadInputError(f"{where} has the {name} {getattr(axis, name)}; {_within(_SPEEDS)}")
     if axis.sign not in (-1, 1):
         raise BadInputError(f"{where} has the sign {axis.sign}; give 1 or -1")
-    if not all(isfinite(each) for each in (axis.zero, axis.low or 0.0, axis.high or 0.0)):
-        raise BadInputError(f"{where} has a zero or a travel that is no number; give finite ones")
+    if not all(abs(each) <= _FARTHEST for each in (axis.zero, axis.low or 0.0, axis.high or 0.0)):
+        raise BadInputError(
+            f"{where} has a zero or a travel that is no number or too large; {_within((-_FARTHEST, _FARTHEST))}"
+        )
     if axis.low is not None and axis.high is not None and not axis.low < axis.high:
         raise BadInputError(f"{where} travels from {axis.low:g} to {axis.high:g}; give low below high")
-    if axis.modulo is not None and not (0.0 < axis.modulo < float("inf") and axis.unit == "deg"):
-        raise BadInputError(f"{where} has the modulo {axis.modulo:g}; give one above 0, and of rotary axes only")
+    if axis.modulo is not None and not (LEAST_MODULO <= axis.modulo <= _FARTHEST and axis.unit == "deg"):
+        raise BadInputError(
+            f"{where} has the modulo {axis.modulo:g}; give one of at least {LEAST_MODULO:g}, and of rotary axes only"
+        )
+
+
+def _check_tension(command: str, source: str) -> None:
+    """Raise BadInputError where a command is not one line that says the tension."""
+    try:
+        lines = command.format(tension=1.5).splitlines()
+    except (KeyError, IndexError, ValueError, TypeError, AttributeError) as error:
+        raise BadInputError(
+            f"machine {source}: tension is {command!r}; give the command with {{tension}} or {{tension:.1f}}"
+        ) from error
+    if command and (len(lines) != 1 or "{" not in command):
+        raise BadInputError(f"machine {source}: tension is {command!r}; give one line with {{tension}} in it")
+
+
+def _within(limits: tuple[float, float]) -> str:
+    """What to give instead of a number out of limits."""
+    return f"give a number from {limits[0]:g} to {limits[1]:g}"

@@ -34,6 +34,8 @@ _SMALL = 0.05
 """Longest step of the eye over the part's diagonal, for parts that are smaller than the step in mm is made for."""
 _LIFT, _PAST = 0.1, 1.1
 """How far the eye keeps off the part where it runs out along a bridge, over the clearance, and over its own radius."""
+_FARTHEST = 20.0
+"""Clearance, shaft and eye radius over the part's diagonal above which spans would take blocks without end."""
 _LONGER = 3.0
 """Clearance that is tried where the eye comes too near, over that which is wanted."""
 
@@ -189,6 +191,13 @@ def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
     """
     if not (np.isfinite(tension) and tension >= 0.0):
         raise BadInputError(f"tension is {tension}; give a number of newtons of at least 0")
+    for name in ("clearance", "eye_radius", "shaft"):
+        value = getattr(machine, name)
+        if value is not None and value > _FARTHEST * work.diagonal * work.scale:
+            raise BadInputError(
+                f"{name} of {machine.name} is {value:g} mm, and the diagonal of the part is only "
+                f"{work.diagonal * work.scale:.4g} mm; give less, or wind with other --units"
+            )
     share = CLEARANCE * work.diagonal
     way = Way(share if machine.clearance is None else machine.clearance / millimetres(work.units))
     best = _wound(work, machine, way)

@@ -204,13 +204,7 @@ class _Writer:
         tension = float(self.blocks.tension[index])
         if not self.machine.tension or not self.blocks.tension.any():
             return
-        try:
-            line = self.machine.tension.format(tension=tension)
-        except (KeyError, IndexError, ValueError) as error:
-            raise BadInputError(
-                f"tension of machine {self.machine.name} is {self.machine.tension!r}; give the command with {{tension}}"
-            ) from error
-        self._say(line)
+        self._say(self.machine.tension.format(tension=tension))
 
     def _layer(self, index: int) -> None:
         self.lines += comments(f"layer {int(self.blocks.layer[index]) + 1}", self.dialect)
