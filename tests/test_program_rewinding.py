@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import exp, pi, radians
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -26,13 +27,13 @@ ANGLE = np.arctan2(2.0 * pi * R * TURNS, LENGTH)
 
 def tube() -> tuple[Program, Ground]:
     surface = mw.shapes.cylinder(R, LENGTH)
-    return program(work(surface, turns=TURNS, count=401), LATHE), Ground((surface,), (4.0,), 0.0)
+    return program(work(surface, turns=TURNS, count=401), LATHE), Ground((surface,), (4.0,), (0.0,))
 
 
 def wound(surface: Surface, plan: LayerPlan, diagonal: float, friction: float = 0.0) -> tuple[Program, Ground]:
     layer = close_layer(surface, plan)
     made = program(Work(tuple(filaments_of(layer)), surface, diagonal, "mm"), LATHE)
-    return made, Ground((surface,), (4.0,), friction)
+    return made, Ground((surface,), (4.0,), (friction,))
 
 
 def turned(made: Program, degrees: Floats) -> Program:
@@ -93,8 +94,8 @@ def test_bridges_come_down_where_they_should_and_friction_is_measured() -> None:
     laid = made.blocks.kind == Kind.LAID
     assert found.slip.max() == pytest.approx(np.nanmax(made.blocks.slip[laid]), abs=0.03)
     # what friction does not hold slides to the geodesic
-    held = rewind(made, replace(ground, friction=0.2))
-    smooth = rewind(made, replace(ground, friction=0.0))
+    held = rewind(made, replace(ground, frictions=(0.2,)))
+    smooth = rewind(made, replace(ground, frictions=(0.0,)))
     assert not held.slid.any()
     if found.slip.max() > 0.1:
         assert smooth.slid.any() and smooth.distance.max() > held.distance.max()
@@ -118,5 +119,18 @@ def test_a_program_that_lays_nothing_on_the_part_has_nothing_to_tell() -> None:
     found = rewind(aside, ground)
     assert not len(found.distance) and not found.faults(aside.blocks)
     assert found.figures["passes"] == 0 and found.figures["distance"] is None
-    two = Ground((*ground.surfaces, ground.surfaces[0]), (4.0, 4.0), 0.0)  # no block is of the second layer
+    two = Ground((*ground.surfaces, ground.surfaces[0]), (4.0, 4.0), (0.0, 0.0))  # no block is of the second layer
     assert np.array_equal(rewind(made, two).distance, rewind(made, ground).distance)
+
+
+def test_each_layer_is_wound_again_with_its_own_friction() -> None:
+    """That of the run is only for a part without layers: a laminate's file gives it layer by layer."""
+    surface = mw.shapes.cylinder(R, LENGTH)
+    layers = [SimpleNamespace(paths=SimpleNamespace(surface=surface), figures={"friction": mu}) for mu in (0.1, 0.3)]
+    results = SimpleNamespace(
+        surface=surface, band_widths=(4.0, 5.0), paths=SimpleNamespace(friction=0.0),
+        wound_layers=SimpleNamespace(layers=layers),
+    )  # fmt: skip
+    assert [(on.width, on.friction) for on in Ground.of(results).layers] == [(4.0, 0.1), (5.0, 0.3)]  # type: ignore[arg-type]
+    results.wound_layers, results.band_widths = None, (4.0,)
+    assert [on.friction for on in Ground.of(results).layers] == [0.0]  # type: ignore[arg-type]

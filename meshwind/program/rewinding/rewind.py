@@ -47,23 +47,25 @@ class On(NamedTuple):
 
 @dataclass(frozen=True)
 class Ground:
-    """What a filament lies on: the surface below each layer, the width of its band, and the friction."""
+    """What a filament lies on: the surface below each layer, the width of its band, and the friction there."""
 
     surfaces: tuple[Surface, ...]
     widths: tuple[float, ...]
-    friction: float
+    frictions: tuple[float, ...]
 
     @property
     def layers(self) -> list[On]:
         """The same, layer by layer."""
-        return [On(*each, self.friction) for each in zip(self.surfaces, self.widths, strict=True)]
+        return [On(*each) for each in zip(self.surfaces, self.widths, self.frictions, strict=True)]
 
     @staticmethod
     def of(results: Results) -> "Ground":
         """What a run's filament lies on."""
         wound = results.wound_layers
-        surfaces = (results.surface,) if wound is None else tuple(each.paths.surface for each in wound.layers)
-        return Ground(surfaces, results.band_widths, results.paths.friction)
+        if wound is None:
+            return Ground((results.surface,), results.band_widths, (results.paths.friction,))
+        surfaces = tuple(each.paths.surface for each in wound.layers)
+        return Ground(surfaces, results.band_widths, tuple(each.figures["friction"] for each in wound.layers))
 
 
 def rewind(program: Program, ground: Ground) -> Rewound:
