@@ -168,6 +168,27 @@ def test_a_cut_begins_a_filament_of_its_own() -> None:
     assert paths.tolist() == [*range(14), *range(15, 15 + 14 + 10)]
 
 
+def test_joins_cross_the_part_where_there_is_no_room_at_the_rim() -> None:
+    """On a cylinder from a hoop up to one rim to a path, and back, over its length h: R (1/sin a - 1/sin b) / h.
+
+    On half a band before the rim it would take a friction of 12.
+    """
+    plans = (
+        replace(HOOP, start=0.0, end=1.0), replace(HELIX, turn_start="pins", turn_end="pins", friction=0.5),
+        replace(HOOP, start=0.0, end=1.0, friction=0.01),
+    )  # fmt: skip
+    options = Options(continuous=True, particles=51)
+    layered, notes = lay_layers(interpolate(_tube, (24, 16)), LayersFile(Path("none"), plans), options, "mm")
+    _, path, hoop = (each.strand for each in layered.laminate.layers)
+    assert path is not None and hoop is not None
+    angle = np.arctan(2 * np.pi * 50.0 * 0.45 / 300.0)
+    wanted = 50.0 * (1.0 / np.sin(angle) - 1.0) / (300.0 - 6.0)
+    # the steps of the layers below at both rims take the rest
+    assert 0.95 * wanted < min(path.slip, hoop.slip) <= max(path.slip, hoop.slip) < 2.0 * wanted
+    warnings = [each.text.split(",")[0] for each in notes if "join" in each.text]
+    assert warnings == [f"layer 3: the join that leads to it needs a friction of {hoop.slip:.3g}"]
+
+
 def test_what_the_files_say_of_joined_layers(tmp_path: Path) -> None:
     (tmp_path / "layers.toml").write_text(
         "".join(

@@ -97,7 +97,9 @@ class Strand:
 
 
 def strand_of_paths(closed: ClosedLayer, tail: Tail | None, ground: Ground, friction: float) -> Strand:
-    """The fibre of a closed layer, begun where it is the shortest way from the layer before.
+    """The fibre of a closed layer, begun at the end of the part that is nearer to where the layer before ended.
+
+    After a hoop it is begun at the other end where the way to the nearer one needs more friction than there is.
 
     Raises BadInputError if the layer is of several filaments.
     """
@@ -107,6 +109,15 @@ def strand_of_paths(closed: ClosedLayer, tail: Tail | None, ground: Ground, fric
         )
     if tail is None:
         return _begun(closed, None, 0, 0)
+    strand = _from_tail(closed, tail, ground, friction)
+    if tail.layer is None and strand.slip > friction:  # from a hoop that ends too near to the rim, by the other one
+        other = _from_tail(closed, replace(tail, end=1 - tail.end), ground, friction)
+        return min(strand, other, key=lambda each: each.slip)
+    return strand
+
+
+def _from_tail(closed: ClosedLayer, tail: Tail, ground: Ground, friction: float) -> Strand:
+    """The fibre of a closed layer, begun at the end of the part at which the tail is."""
     turn = closed.turnarounds[tail.end]
     if isinstance(turn, Cap | Bend):
         first, ways, slip = _on_part(closed, turn, tail, ground, friction)
@@ -120,7 +131,11 @@ def strand_of_paths(closed: ClosedLayer, tail: Tail | None, ground: Ground, fric
 
 
 def strand_of_hoop(plan: HoopPlan, tail: Tail | None, ground: Ground, friction: float) -> tuple[Strand, Hoop]:
-    """The fibre of a hoop, begun at the line that is nearer to the end of the layer before, and the hoop."""
+    """The fibre of a hoop, and the hoop.
+
+    It begins at the line that is nearer to the end of the layer before or, where friction does not hold the way there,
+    at the one to which it needs less.
+    """
     join, slip = None, 0.0
     if tail is not None:
         lines = ground.lines
@@ -129,6 +144,9 @@ def strand_of_hoop(plan: HoopPlan, tail: Tail | None, ground: Ground, friction: 
         far = np.abs(np.interp(starts, lines.v, lines.mean) - np.interp(here, lines.v, lines.mean))
         from_end = bool(far[1] < far[0])
         reached = _onto(tail, ground, starts[from_end], friction)
+        if reached.slip > friction:  # too near to where the layer before ends
+            other = _onto(tail, ground, starts[not from_end], friction)
+            from_end, reached = min((from_end, reached), (not from_end, other), key=lambda each: each[1].slip)
         plan = replace(plan, from_end=from_end, u=reached.u)
         join, slip = (_as_join(reached.ways) if reached.ways else None), reached.slip
     laid = hoop(ground.surface, plan)

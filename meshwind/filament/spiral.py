@@ -20,6 +20,8 @@ _SAMPLES = 1025
 """Places between the lines at which the angle is summed up to turns."""
 _PER_TURN = 180
 """Points of the way in a turn, two degrees apart."""
+_FEWEST = 90
+"""Points of a way at least: a short one bends as much as a long one."""
 _TRIES = 9
 """Angles that are tried between two hoops."""
 _LATE = np.arange(10) / 10
@@ -98,7 +100,8 @@ class Ground:
         rate = np.tan(lean) / length * abs(last - first)  # turns for a share of the way
         turned = u + np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(share))])
         along = CubicSpline(turned, distance)
-        at = np.linspace(turned[0], turned[-1], int(np.ceil((turned[-1] - turned[0]) * _PER_TURN)) + 2)
+        many = max(int(np.ceil((turned[-1] - turned[0]) * _PER_TURN)), _FEWEST) + 2
+        at = np.linspace(turned[0], turned[-1], many)
         d, slope, second = along(at), along(at, 1), along(at, 2)
         line = self._along
         uv = np.stack([at, np.clip(line(d), 0.0, 1.0)], axis=1)

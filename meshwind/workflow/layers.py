@@ -54,8 +54,8 @@ def lay_layers(surface: Surface, asked: LayersFile, options: Options, units: str
         for _ in range(plan.repeat):
             with _naming(number):
                 layer = _lay(_Below.of(layers, surface), plan, ply, options)
-            notes += [Note(f"layer {number}: {line}", warning=True) for line in _faults(layer)]
             layers.append(layer)
+            notes += [Note(f"layer {len(layers)}: {line}", warning=True) for line in _faults(layer)]
     return Layered(Laminate(tuple(layers)), asked.file, options), tuple(dict.fromkeys(notes))
 
 
