@@ -189,6 +189,25 @@ def test_joins_cross_the_part_where_there_is_no_room_at_the_rim() -> None:
     assert warnings == [f"layer 3: the join that leads to it needs a friction of {hoop.slip:.3g}"]
 
 
+def test_a_join_ends_where_its_layer_begins_on_parts_that_are_not_round() -> None:
+    """Ways bend where that needs least friction, which differs around a lobed tube, but are planned from one place."""
+
+    def lobed(u: Floats, v: Floats) -> Floats:
+        radius = 50.0 * (1.0 + 0.06 * np.cos(6 * np.pi * u)) * (1.0 + 0.05 * np.sin(np.pi * v))
+        return np.stack([radius * np.cos(2 * np.pi * u), radius * np.sin(2 * np.pi * u), 260.0 * v], axis=-1)
+
+    plans = (
+        replace(HOOP, passes=2, start=0.2, end=0.8),
+        replace(HELIX, start=0.3, end=0.7, friction=0.45, revolutions=0.35, paths=13),
+        replace(HOOP, start=0.2, end=0.8),
+    )
+    options = Options(continuous=True, particles=51)
+    layered, _ = lay_layers(interpolate(lobed, (32, 16)), LayersFile(Path("none"), plans), options, "mm")
+    for layer in layered.laminate.layers[1:]:
+        assert layer.strand is not None and layer.strand.join is not None
+        assert layer.strand.join.points[-1] == pytest.approx(layer.strand.course.points[0], abs=0.01)
+
+
 def test_what_the_files_say_of_joined_layers(tmp_path: Path) -> None:
     (tmp_path / "layers.toml").write_text(
         "".join(

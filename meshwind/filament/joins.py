@@ -192,7 +192,7 @@ def _on_part(
     ring = ground.round(reached.u, reached.v, (float(ahead[first]), at))
     ways, slip = [*reached.ways, ring], max(reached.slip, most_slip(ring))
     if bent is not None:
-        way = to_path(ground, float(ahead[first]), at, line, ground.course_of(closed.paths))
+        way = to_path(ground, float(ahead[first]), at, line, ground.course_of(closed.paths), bent.late)
         ways, slip = [*ways, way.course], max(slip, way.slip)
     return first, ways, slip
 

@@ -1,7 +1,7 @@
 """Ways on the part from one level line to another, by which the fibre comes from layer to layer."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeAlias
 
@@ -46,6 +46,8 @@ class Spiral:
         Friction that it needs; infinite where the fibre would lift.
     leaves, comes : float
         Winding angle, in radians, at the start and at the end.
+    late : float
+        Share of the way on which it lies as a path, where it bends on the rest.
     """
 
     course: Course
@@ -54,6 +56,7 @@ class Spiral:
     slip: float
     leaves: float
     comes: float
+    late: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -122,20 +125,27 @@ def from_path(on: Ground, u: float, v: float, to: float, course: Floats) -> Spir
     return _bending(on, (u, v, to), course, lambda share, late: (share - late) / (1.0 - late))
 
 
-def to_path(on: Ground, u: float, v: float, to: float, course: Floats) -> Spiral:
-    """A way from a hoop at v to the line `to`, at last as paths of this course (k,) lie."""
-    return _bending(on, (u, v, to), course, lambda share, late: 1.0 - share / (1.0 - late))
+def to_path(on: Ground, u: float, v: float, to: float, course: Floats, late: float | None = None) -> Spiral:
+    """A way from a hoop at v to the line `to`, at last as paths of this course (k,) lie.
+
+    late: share of the way on which it does, by default that with the least slip.  Ways with the same share turn as far,
+    wherever they begin.
+    """
+    tries = _LATE if late is None else np.array([late])
+    return _bending(on, (u, v, to), course, lambda share, late: 1.0 - share / (1.0 - late), tries)
 
 
 def _bending(
-    on: Ground, between: tuple[float, float, float], course: Floats, bend_at: Callable[[Floats, float], Floats]
-) -> Spiral:
-    """The way with the least slip of those that lie as a path for some share of it, and bend on the rest."""
+    on: Ground, between: tuple[float, float, float], course: Floats, bend_at: Callable[[Floats, float], Floats],
+    tries: Floats = _LATE,
+) -> Spiral:  # fmt: skip
+    """The way with the least slip of those that lie as a path for shares of it, and bend on the rest."""
 
     def tried(late: float) -> Spiral:
-        return on.way(*between, lambda share, v, hoop: _bent(on, v, hoop, course, bend_at(share, late)))
+        way = on.way(*between, lambda share, v, hoop: _bent(on, v, hoop, course, bend_at(share, late)))
+        return replace(way, late=float(late))
 
-    return min(map(tried, _LATE), key=lambda way: way.slip)
+    return min(map(tried, tries), key=lambda way: way.slip)
 
 
 def path_on(on: Ground, u: float, v: float, to: float, courses: tuple[Floats, Floats]) -> Spiral:
