@@ -13,7 +13,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.filament.closing import ClosedLayer, close_layer
 from meshwind.filament.collar_turn import Collar
 from meshwind.filament.course import Kind
-from meshwind.filament.edge import Edge, edge
+from meshwind.filament.edge import Edge, Legs, edge
 from meshwind.filament.ends import LayerPlan, choose_end
 from meshwind.filament.filament import filaments_of
 from meshwind.filament.lift import leaning, legs_over
@@ -198,3 +198,25 @@ def test_a_fibre_that_aims_at_the_axis_of_a_collar_is_refused() -> None:
     with pytest.raises(BadInputError, match="slide up on it without end; give pins or a shaft there"):
         choose_end(dome, 1, plan, "collar", paths).pairs(paths)
     assert choose_end(dome, 1, plan, "auto", paths).turnaround.name == "pins"
+
+
+def test_a_fibre_that_lands_beside_its_pin_never_goes_back() -> None:
+    """It lands on the prism anywhere between the rim and the far side of the pin, and bends from there on."""
+    on, angle, count = edge(mw.shapes.cylinder(NARROW, HIGH), 1.0), np.radians(35.0), 12
+    pins = Pins(on, 4.0, 1.5, 20.0)
+    height = on.highest + np.linspace(0.0, 4.0 + 1.5 - 1e-3, count)
+
+    def legs(around: Floats, sense: int) -> Legs:
+        return Legs(around, height, np.full(count, angle), on.points(around, height), sense)
+
+    later = np.full(count, 100.0)
+    arriving, leaving = legs(np.zeros(count), 1), legs(later, -1)
+    turns = pins.courses(arriving, leaving, later)
+    assert (pins.surplus(arriving, leaving, later) > 0.0).all()
+    for k in range(count):
+        points = turns.course.points[turns.first[k] : turns.first[k] + turns.count[k]]
+        step = np.diff(points, axis=0)
+        step = step[np.linalg.norm(step, axis=1) > 1e-9]
+        step /= np.linalg.norm(step, axis=1, keepdims=True)
+        assert np.degrees(np.arccos((step[1:] * step[:-1]).sum(axis=1))).max() < 10.0
+        assert ((points - on.origin) @ on.axis).max() == pytest.approx(on.highest + pins.reach)

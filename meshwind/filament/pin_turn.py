@@ -56,17 +56,25 @@ class Pins:
         """Height of the fibre behind the pins over the rim's highest point."""
         return self.height + self.radius
 
-    def _legs(self, legs: Legs) -> tuple[Floats, Floats, Floats]:
-        """Angle of each leg, where it meets its pin, and where it has gone round it: (n,), from where it starts."""
+    def _legs(self, legs: Legs) -> tuple[Floats, Floats, Floats, Floats]:
+        """Angle of each leg, the radius on which it bends, where it meets its pin, and where it has gone round it.
+
+        The last two, (n,), are from where it starts.  A leg that comes to lie on the prism beside its pin bends from
+        there on, on less than the pin's radius.
+        """
         angle = np.minimum(legs.angle, _STEEPEST)
-        climb = self.edge.highest + self.height + self.radius * np.sin(angle) - legs.height
-        meets = climb * np.tan(angle)
-        return angle, meets, meets + self.radius * np.cos(angle)
+        radius, room = np.full(len(legs), self.radius), self.edge.highest + self.reach - legs.height
+        beside = room < self.radius * (1.0 - np.sin(angle))
+        if legs.lift is not None:
+            beside &= ~legs.lift.held
+        radius[beside] = np.maximum(room[beside], 0.0) / (1.0 - np.sin(angle[beside]))
+        meets = (room - radius * (1.0 - np.sin(angle))) * np.tan(angle)
+        return angle, radius, meets, meets + radius * np.cos(angle)
 
     def surplus(self, arriving: Legs, leaving: Legs, later: Floats) -> Floats:
         """Turns (n,) to spare beyond the ways to the pins and back."""
         return np.asarray(
-            (later - arriving.around - self._legs(arriving)[2] - self._legs(leaving)[2] - self.pitch)
+            (later - arriving.around - self._legs(arriving)[3] - self._legs(leaving)[3] - self.pitch)
             / self.edge.hull.perimeter
         )
 
@@ -78,13 +86,13 @@ class Pins:
 
     def _over_pins(self, legs: Legs, start: Floats) -> tuple[Courses, Place]:
         """The way of each leg from the rim, at `start` (n,) along the hull, until it is a hoop behind its pin there."""
-        angle, meets, _ = self._legs(legs)
-        level, sense = self.edge.highest + self.height, legs.sense
+        angle, radius, meets, _ = self._legs(legs)
+        top, sense = self.edge.highest + self.reach, legs.sense
         pin = start + sense * meets
-        up = straight(self.edge, (start, legs.height), (pin, level + self.radius * np.sin(angle)), Kind.TURN)
+        up = straight(self.edge, (start, legs.height), (pin, top - radius * (1.0 - np.sin(angle))), Kind.TURN)
         bend = angle[:, None] + (0.5 * np.pi - angle)[:, None] * np.linspace(0.0, 1.0, _BEND)
-        around = (pin + sense * self.radius * np.cos(angle))[:, None] - sense * self.radius * np.cos(bend)
-        height = level + self.radius * np.sin(bend)
+        around = (pin + sense * radius * np.cos(angle))[:, None] - sense * radius[:, None] * np.cos(bend)
+        height = top - radius[:, None] * (1.0 - np.sin(bend))
         round_ = on_prism(
             self.edge, (around.ravel(), height.ravel()), bend.ravel(), np.zeros(bend.size),
             np.full(len(legs), _BEND), Kind.TURN,
