@@ -62,7 +62,7 @@ def test_an_eye_with_cross_feed_clears_a_bend_that_another_cannot() -> None:
 
 
 def test_the_fibre_comes_to_lie_where_it_was_planned_only_if_the_eye_goes_into_the_hollow() -> None:
-    ground = Ground((bend().surface,), (10.0,), FRICTION)
+    ground = Ground((bend().surface,), (10.0,), (FRICTION,))
     assert not rewind(wound("lathe-2"), ground).good.all()
     again = rewind(wound("lathe-4"), ground)
     assert again.good.all()
