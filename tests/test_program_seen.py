@@ -170,19 +170,19 @@ def test_hits_are_where_spans_meet_the_part(run: Path, made: Program) -> None:
 
 
 def test_spans_that_meet_the_shaft_are_told_from_those_that_meet_the_part(run: Path) -> None:
-    of, shaft = subject_of(read_results(run)), replace(read_machine("lathe-4"), shaft=500.0)
+    of, shaft = subject_of(read_results(run)), replace(read_machine("lathe-4"), shaft=0.5)
     made = program(Work.of(read_results(run)), shaft)
     blocks = made.blocks
     faults = tuple(Fault(k, SPAN, "") for k in range(40, 50))
     plain = hits_scene(of, replace(made, machine=read_machine("lathe-4"), faults=faults))
     for inwards, words in ((True, "all of these spans hit"), (False, None)):
-        # part (radius 1000 mm) and shaft are met straight from outside, from 100 mm above each
-        radius = 600.0 if inwards else 1100.0
+        # part (radius 1) and shaft are met straight from outside, from 0.1 above each
+        radius = 0.6 if inwards else 1.1
         at = made.mandrel.inside(blocks.point)
         out = at[:, 1:] / np.linalg.norm(at[:, 1:], axis=1, keepdims=True)
         above = np.column_stack([at[:, 0], radius / made.work.scale * out]) @ made.mandrel.frame + made.mandrel.origin
         ahead = np.column_stack([0.0 * at[:, 0], -out]) @ made.mandrel.frame
-        aimed = replace(blocks, point=above, tangent=ahead, free_length=np.full(len(blocks), 1e3))
+        aimed = replace(blocks, point=above, tangent=ahead, free_length=np.full(len(blocks), 1.0))
         scene = hits_scene(of, replace(made, blocks=aimed, faults=faults))
         assert scene is not None and plain is not None
         assert len(scene.gear.held) > len(plain.gear.held) and "shaft" in scene.gear.held_words
