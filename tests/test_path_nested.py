@@ -17,8 +17,10 @@ from friction_checks import bent, wavy
 from meshwind.core.cast import Floats
 from meshwind.path import Counters, Paths, Status, solve
 from meshwind.path.friction import friction_of
-from meshwind.path.nested import slide_finer, solve_with
+from meshwind.path.nested import resolve, slide_finer, solve_with
 from meshwind.path.solver import Solver
+from meshwind.planning import families
+from meshwind.surface import Surface, shapes
 
 
 def length(paths: Paths) -> Floats:
@@ -63,6 +65,48 @@ def test_a_slide_that_stalls_is_taken_from_one_with_twice_the_particles(name: st
     assert (lost.counters > batch.counters).any()
     across = np.linalg.norm(lost.X - batch.X, axis=2).max()
     assert across <= 1e-3 * np.linalg.norm(np.diff(batch.X, axis=1), axis=2).sum()
+
+
+def star(arms: int, height: float, sharp: float, twist: float) -> Surface:
+    """A tube of which ridges as sharp as asked run round as they rise."""
+
+    def points(u: Floats, v: Floats) -> Floats:
+        r = 1.0 + height * np.tanh(sharp * np.cos(2 * np.pi * (arms * u + twist * v))) / np.tanh(sharp)
+        return np.stack([r * np.cos(2 * np.pi * u), r * np.sin(2 * np.pi * u), 3.0 * v], axis=-1)
+
+    return shapes.parametric(points, (128, 48))
+
+
+@pytest.mark.parametrize("weight", [4.0, 16.0])
+def test_few_particles_of_a_path_at_rest_under_friction_are_at_rest(weight: float) -> None:
+    """Most of them stand where it bends, on ridges that it crosses at an angle, and hardly slip from there."""
+    surface = star(5, 0.15, 2.0, 0.5)
+    solver = Solver(surface, friction_of(surface, 0.2), True, 1e-10, 1000)
+    ends = families(surface, 4, 0.4)
+    fine = solve_with(solver, np.stack([ends.start, ends.end], axis=1), 401)
+    for particles in (51, 101):
+        few = fine.thinned(particles, weight).curves_sampled()
+        before = few.X.copy()
+        solver.relax_as_spaced(few)
+        assert (few.status == Status.CONVERGED).all()
+        assert (few.residual <= 1e-8).all()
+        assert few.starts.shape == (few.paths, particles, 2)
+        turned = np.linalg.norm(np.diff(few.X, axis=1), axis=2).sum(axis=1)
+        whole = np.linalg.norm(np.diff(before, axis=1), axis=2).sum(axis=1)
+        assert np.abs(turned / whole - 1.0).max() <= 20.0 / particles**2
+
+
+def test_paths_that_cut_edges_follow_them_with_particles_where_they_bend() -> None:
+    surface = star(4, 0.3, 1.5, 1.5)
+    solver = Solver(surface, friction_of(surface, 0.0), True, 1e-10, 1000)
+    ends = families(surface, 3, 1.1)
+    curves = np.stack([ends.start, ends.end], axis=1)
+    batch = solve_with(solver, curves, 26)
+    cut = batch.status == Status.TOO_COARSE
+    assert cut.sum() >= 3
+    resolve(solver, batch, curves)
+    assert (batch.status != Status.TOO_COARSE).all()
+    assert (batch.status[cut] == Status.CONVERGED).any()
 
 
 def test_no_more_particles_than_needed() -> None:

@@ -10,9 +10,6 @@ from meshwind.core.vectors import TINY
 from meshwind.path.kernels.refine import refine_all
 from meshwind.path.kernels.starting_curve import sample_all
 
-A_RADIAN = 4.0
-"""Particles that a turn by a radian is worth where few of them have to follow a fibre."""
-
 
 class Batch(NamedTuple):
     """Arrays of p paths of n particles.
@@ -80,11 +77,11 @@ class Batch(NamedTuple):
         parallel_for(refine_all, self.paths, 64, self, fine)
         return fine
 
-    def thinned(self, particles: int) -> "Batch":
-        """The same paths with fewer of their particles, most of them where the fibre bends; counters go on."""
-        index = np.array([_where_it_bends(X, particles) for X in self.X], dtype=np.int64)
+    def thinned(self, particles: int, a_radian: float) -> "Batch":
+        """The same paths with fewer of their particles, so many a radian besides where they turn; counters go on."""
+        index = np.array([_where_it_bends(X, particles, a_radian) for X in self.X], dtype=np.int64)
         few = fresh(self.starts, particles)
-        for name in ("X", "uv", "normal", "touching", "gap", "required"):
+        for name in ("X", "uv", "normal", "touching", "gap", "required", "anchor", "mode"):
             getattr(few, name)[:] = getattr(self, name)[np.arange(self.paths)[:, None], index]
         few.residual[:], few.status[:], few.counters[:] = self.residual, self.status, self.counters
         return few
@@ -109,15 +106,15 @@ _ALONG_PATH = ("starts", "X", "uv", "normal", "touching", "gap", "required", "an
 """Fields whose second axis runs along the path."""
 
 
-def _where_it_bends(X: Floats, count: int) -> Ints:
-    """Which `count` particles of X (n, 3) share out its length, and its turning by so much a radian."""
+def _where_it_bends(X: Floats, count: int, a_radian: float) -> Ints:
+    """Which `count` particles of X (n, 3) share out its length, and its turning by `a_radian` particles a radian."""
     way = np.diff(X, axis=0)
     size = np.linalg.norm(way, axis=1)
     ahead = way / np.maximum(size, TINY)[:, None]
     turn = np.linalg.norm(np.diff(ahead, axis=0), axis=1)  # nearly the angle
     each = size * ((count - 1) / size.sum())
-    each[:-1] += 0.5 * A_RADIAN * turn
-    each[1:] += 0.5 * A_RADIAN * turn
+    each[:-1] += 0.5 * a_radian * turn
+    each[1:] += 0.5 * a_radian * turn
     share = np.concatenate([[0.0], np.cumsum(each)])
     rank = np.arange(count)
     wanted = np.searchsorted(share, share[-1] * rank / (count - 1))

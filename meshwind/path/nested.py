@@ -18,8 +18,10 @@ from meshwind.path.solver import Solver
 REST, CUT = int(Status.CONVERGED), int(Status.TOO_COARSE)
 MOST = 6401
 """Particles of the highest level where their number is left open."""
-FINER = 2
+FINER = 3
 """Number of times that particles are doubled for paths that cut an edge."""
+A_RADIAN = 4.0, 16.0
+"""Particles that a turn by a radian is worth where few of them have to follow a fibre: it is tried in this order."""
 SHARES = 8
 """Steps in which the turn of a path that slides off is built up."""
 
@@ -29,10 +31,9 @@ def solve_nested(solver: Solver, curves: Floats, particles: int | None, accuracy
     if particles is None:
         return choose(solver, curves, accuracy)
     batch = solve_with(solver, curves, particles)
-    if solver.friction.none:
-        resolve(solver, batch)
-    else:
+    if not solver.friction.none:
         slide_finer(solver, batch, curves)
+    resolve(solver, batch, curves)
     return batch
 
 
@@ -52,7 +53,7 @@ def solve_with(solver: Solver, curves: Floats, particles: int) -> Batch:
     return batch
 
 
-def resolve(solver: Solver, batch: Batch) -> None:
+def resolve(solver: Solver, batch: Batch, curves: Floats) -> None:
     """Solve paths that cut an edge with more particles, and leave them those that follow it, in place.
 
     What has no equilibrium then has none.
@@ -62,17 +63,39 @@ def resolve(solver: Solver, batch: Batch) -> None:
     for _ in range(FINER):
         if not len(index):
             break
-        fine = ascend(solver, fine, 2 * fine.particles - 1)
-        few = fine.thinned(n)
-        rest = np.flatnonzero(fine.status == REST)
-        taut = few.rows(rest)
-        solver.relax_as_spaced(taut)
-        few.put(rest, taut)
-        batch.counters[index] = few.counters
-        fine.counters[:] = few.counters
-        done = np.where(fine.status == REST, few.status == REST, fine.status != CUT)
+        if solver.friction.none:
+            fine = ascend(solver, fine, 2 * fine.particles - 1)
+        else:  # the law says how they come to rest
+            before = fine.counters
+            fine = solve_with(solver, curves[index], 2 * fine.particles - 1)
+            fine.counters[:] += before
+        few = follow(solver, fine, n)
+        batch.counters[index] = fine.counters[:] = few.counters
+        gone = failing(fine) & (fine.status != Status.STALLED)
+        done = gone | (few.status == REST)
         batch.put(index[done], few.rows(np.flatnonzero(done)))
         index, fine = index[~done], fine.rows(np.flatnonzero(~done))
+
+
+def follow(solver: Solver, fine: Batch, particles: int) -> Batch:
+    """Paths with fewer of their particles, brought to equilibrium where they have been at rest."""
+    few = thinned(solver, fine, particles, A_RADIAN[0])
+    rest = np.flatnonzero(fine.status == REST)
+    few.status[rest] = CUT
+    for weight in A_RADIAN:
+        rest = rest[few.status[rest] != REST]
+        if len(rest):
+            taut = thinned(solver, fine.rows(rest), particles, weight)
+            taut.counters[:] = few.counters[rest]
+            solver.relax_as_spaced(taut)
+            few.put(rest, taut)
+    return few
+
+
+def thinned(solver: Solver, fine: Batch, particles: int, a_radian: float) -> Batch:
+    """Paths with fewer of their particles, as they lie."""
+    few = fine.thinned(particles, a_radian)
+    return few if solver.friction.none else few.curves_sampled()
 
 
 def slide_finer(solver: Solver, batch: Batch, curves: Floats) -> None:

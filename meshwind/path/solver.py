@@ -12,8 +12,9 @@ from meshwind.path.kernels.certificate import PULL
 from meshwind.path.kernels.coulomb import RoughBody
 from meshwind.path.kernels.lay import solve_without_friction
 from meshwind.path.kernels.relax_with_friction import relax_all_with_friction
-from meshwind.path.kernels.rest import relax_all, relax_all_as_spaced
+from meshwind.path.kernels.rest import relax_all
 from meshwind.path.kernels.slide import slide_all
+from meshwind.path.kernels.spaced import relax_all_as_spaced
 from meshwind.path.kernels.state import NEEDS_TREE, Limits
 from meshwind.surface.surface import Surface
 from meshwind.surface.tree import Body
@@ -77,8 +78,12 @@ class Solver:
         self._relax(batch, np.sort(np.concatenate([np.flatnonzero(aloft), lifted])), resume, tree=True)
 
     def relax_as_spaced(self, batch: Batch) -> None:
-        """Bring a frictionless batch to equilibrium from where it is, its particles as far apart as they are."""
-        parallel_for(relax_all_as_spaced, batch.paths, 1, self.surface.centred.body, self._limits, batch)
+        """Bring a batch to equilibrium from where it is, its particles as far apart as they are.
+
+        Friction holds it to where it is.
+        """
+        rough, held = RoughBody(self.surface.centred.body, self.friction.table), not self.friction.none
+        parallel_for(relax_all_as_spaced, batch.paths, 1, rough, self._limits, held, batch)
 
     def slide(self, batch: Batch) -> tuple[Floats, Bools]:
         """Let a batch slide under friction from its starting curves to rest, in place.

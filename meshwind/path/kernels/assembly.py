@@ -44,14 +44,14 @@ def assemble(state, periodic, resist, contacts, system, faint):
         fu, fv = dot(force, su), dot(force, sv)
         fuu, fuv = dot(force, derivative(frames, i, SUU)), dot(force, derivative(frames, i, SUV))
         fvv = dot(force, derivative(frames, i, SVV))
-        pin_u = pin_v = pin = 0.0
+        du = dv = pin_u = pin_v = pin = single = 0.0
         if state.pinned[i]:
             du, dv = to_parameters(su, sv, minus(row(X, after[i]), row(X, before[i])))
             pin_u, pin_v = auu * du + auv * dv, auv * du + avv * dv
-            pin = 1.0 / max(pin_u * du + pin_v * dv, TINY)
-            along = pin * (fu * du + fv * dv)
+            single = 1.0 / max(pin_u * du + pin_v * dv, TINY)
+            along = single * (fu * du + fv * dv)
             fu, fv = fu - along * pin_u, fv - along * pin_v
-            pin *= PINNED * weight
+            pin = PINNED * weight * single
         bits = held(uv, i, periodic, fu, fv)
         diagonal[count, 0] = weight * auu - fuu + pin * pin_u * pin_u
         diagonal[count, 1] = weight * auv - fuv + pin * pin_u * pin_v
@@ -81,6 +81,11 @@ def assemble(state, periodic, resist, contacts, system, faint):
             resist_slip(resist, i, count, system)
             back = resist.side[i] if resist.mode[i] == 0 else resist.bound[i] * resist.mode[i]
             fu, fv = fu - back * resist.ways[i, 0], fv - back * resist.ways[i, 1]
+            if state.pinned[i]:  # across where it lay is no longer quite across the fibre
+                along = single * (fu * du + fv * dv)
+                fu, fv = fu - along * pin_u, fv - along * pin_v
+                if resist.mode[i] == 0:  # it is held both along and across
+                    fu = fv = 0.0
             if not bits:
                 diagonal[count, 0] += back * dot(way, derivative(frames, i, SUU))
                 diagonal[count, 1] += back * dot(way, derivative(frames, i, SUV))

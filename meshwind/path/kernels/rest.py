@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from meshwind.path.kernels.certificate import DEEPEST, certify, leaps, unresolved
+from meshwind.path.kernels.certificate import DEEPEST, certify, leaps
 from meshwind.path.kernels.coulomb import RoughBody
 from meshwind.path.kernels.glide import spread_along
 from meshwind.path.kernels.landing import land
@@ -54,22 +54,6 @@ def relax_all(first, last, body, limits, resume, final, batch):
         else:
             start_on_curve(body.spline, batch.starts[p], state, counters)
         batch.residual[p], batch.status[p] = relax_and_certify(body, limits, final, state, batch.required[p], counters)
-
-
-@njit(nogil=True, cache=True)
-def relax_all_as_spaced(first, last, body, limits, batch):
-    """As `relax_all`, from paths first to last of a batch whose particles stay where they are along the fibre."""
-    n = batch.uv.shape[1]
-    frames = np.empty((n, 6, 3))
-    rough, resist = frictionless(body)
-    for p in range(first, last):
-        state, counters = state_of(batch, p, frames), batch.counters[p]
-        restore_contact(body, state, counters)
-        state.pinned[:] = True
-        residual, status = settle_evenly(rough, resist, limits, True, False, state, batch.required[p], counters)
-        if status == CONVERGED and unresolved(body, state, counters):
-            status = TOO_COARSE
-        batch.residual[p], batch.status[p] = residual, status
 
 
 @njit(cache=True)
