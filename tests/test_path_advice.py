@@ -106,6 +106,20 @@ def test_one_sentence_holds_all_paths_of_a_run_as_families_and_as_u_would_turn_t
     assert not rest(solve(surface, rims.start, further, particles=101))
 
 
+def test_paths_of_one_turn_are_advised_by_the_number_that_was_asked_for() -> None:
+    """By symmetry all turn alike in u, too, by another number than the revolutions that the rims' lengths give."""
+    surface = shapes.ellipsoid(1.3, 0.7, 1.9, 0.5, 2.7, (128, 96))
+    rims = families(surface, 1, 0.8)
+    lost = solve(surface, rims.start, rims.end, family=rims.family, particles=51)
+    turn = abs(rims.end - rims.start)[:, 0]
+    assert np.ptp(turn) < 1e-9 < 1e-3 < abs(turn[0] - 0.8)
+    assert lost.holding.asked == pytest.approx(0.8, abs=1e-9)
+    turned = families(surface, 1, lost.holding.revolutions)
+    assert rest(solve(surface, turned.start, turned.end, family=turned.family, particles=51))
+    single = solve(surface, [(0.0, 0.0)], [(0.9, 1.0)], particles=51)
+    assert single.holding.asked == pytest.approx(0.9, abs=1e-9)
+
+
 def test_paths_with_turns_of_their_own_and_rough_places_are_told_a_factor() -> None:
     start, end = [(0.0, 0.0), (0.3, 0.0)], [(0.8, 1.0), (-0.6, 1.0)]
     table = np.array([[0.02, 0.04], [0.03, 0.02]])

@@ -12,6 +12,8 @@ from meshwind.surface.surface import Surface
 
 _ALIKE = 1e-9
 """Turns that differ by less are one number."""
+_DIGITS = 6
+"""Most digits of a number of revolutions that somebody asks for."""
 
 
 @dataclass(frozen=True)
@@ -56,13 +58,19 @@ def turning(surface: Surface, asked: Asked) -> Turning | None:
     turn = np.abs(end[:, 0] - start[:, 0])
     if not turn.max() > _ALIKE:
         return None
-    if np.ptp(turn) <= _ALIKE:
-        return Turning(surface, asked, float(turn.mean()), False)
+    alike, number = np.ptp(turn) <= _ALIKE, float(turn.mean())
     if surface.periodic and not start[:, 1].any() and (end[:, 1] == 1.0).all():
         share = np.abs(rim(surface, 1.0).shares(end[:, 0]) - rim(surface, 0.0).shares(start[:, 0]))
-        if np.ptp(share) <= _ALIKE:
-            return Turning(surface, asked, float(share.mean()), True)
-    return Turning(surface, asked, 0.0, False)
+        spread = float(share.mean())
+        # a single path, or some on a symmetric part, turn alike both ways: one of the two was asked for
+        if np.ptp(share) <= _ALIKE and not (alike and (_plain(number) or not _plain(spread))):
+            return Turning(surface, asked, spread, True)
+    return Turning(surface, asked, number if alike else 0.0, False)
+
+
+def _plain(number: float) -> bool:
+    """Whether a number has few digits."""
+    return abs(number - float(f"{number:.{_DIGITS}g}")) <= _ALIKE
 
 
 def _with_u(end: Floats, u: Floats) -> Floats:
