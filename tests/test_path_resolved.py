@@ -12,6 +12,7 @@ from scipy.spatial import ConvexHull
 from meshwind.core.cast import Floats
 from meshwind.path import Paths, Status, solve
 from meshwind.surface import Surface, shapes
+from meshwind.surface.tree import nearest_foot
 
 LENGTH, RADIUS = 300.0, 50.0
 COUNTS = (51, 101, 201, 801, None)
@@ -105,6 +106,26 @@ def test_a_bridge_over_a_shallow_groove_is_as_long_as_it_states() -> None:
     surface = revolved(lambda z: groove(z) + 5.758 * np.sin(np.pi * z / LENGTH), 1457)
     for particles in (97, 193, 385, None):
         check(surface, particles)
+
+
+def test_a_low_rib_that_the_end_of_a_bridge_passes_through_is_in_the_stated_error() -> None:
+    """It stands between the last particle in the air and the first that touches, lower than what wants a particle."""
+    at, width = [18.902468, 104.017018, 113.805672], [0.316508, 0.585361, 1.841977]
+    surface = revolved(bumps(np.array(at), np.array(width), np.array([-6.850251, 0.110686, -6.084607])), 4096)
+    check(surface, 51)
+    assert meridian(surface, 51).length_error[0] < 1e-4 * LENGTH
+
+
+def test_the_foot_behind_a_rib_is_the_nearest_where_spans_are_long_across() -> None:
+    """Spans are 20 mm round and 0.07 mm along: the first piece that may be nearer leads back to the foot found."""
+    at, width = [164.44678205, 90.21942658, 38.84729737], [1.88818817, 0.37034881, 0.55195644]
+    surface = revolved(bumps(np.array(at), np.array(width), np.array([2.35661269, -1.7342726, 0.05121439])), 4096)
+    point, uv = np.array([42.32044161, 30.74712561, 161.45682635]), np.array([0.09999904, 0.54492055])
+    at_foot = np.empty((6, 3))
+    nearest_foot(surface.centred.body, point - surface.middle, uv, at_foot)
+    v = np.linspace(0.5, 0.6, 20001)
+    near = np.linalg.norm(surface.points(np.stack([np.full_like(v, 0.1), v], axis=1)) - point, axis=1).min()
+    assert np.linalg.norm(at_foot[0] + surface.middle - point) <= near + 1e-6
 
 
 def test_particles_that_coincide_are_measured() -> None:

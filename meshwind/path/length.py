@@ -37,6 +37,11 @@ DEEPEST_HALF = 12
 """Maximum number of times that a segment is halved."""
 LANDED = 0.5
 """Share of what the true ends of a bridge change its length by that is left as an error."""
+EXPLAINED = 3.0
+"""Longest way round the arc on which a bridge lands, over what that adds to its length: 1.5, with a margin of two."""
+BETWEEN_SAMPLES = 1.04
+"""Largest rise over that of samples a third of a span apart: the narrowest bump of a spline, its basis function, is
+3.8 % lower a sixth of a span from its top."""
 
 
 class Laid(NamedTuple):
@@ -131,7 +136,7 @@ def measure_all(first, last, body, laid, length, error, off):
                 high, low = seen(body.spline, state, i, point, counters)
                 found.rise[i], found.dip[i] = max(found.rise[i], high), max(found.dip[i], low)
         length[p], error[p] = fibre_length(body.spline, state, found.rise)
-        off[p] = max(found.dip.max(), found.rise.max() + peak(body, state, counters))
+        off[p] = max(found.dip.max(), BETWEEN_SAMPLES * found.rise.max() + peak(body, state, counters))
 
 
 @njit(cache=True)
@@ -251,6 +256,8 @@ def fibre_length(spline, state, rise):
             total += straight
             error += LANDED * abs(straight - chord)
             error += (first if before == 0.0 else 0.0) + (last if after == 0.0 else 0.0)
+            over = (first if before > 0.0 else 0.0) + (last if after > 0.0 else 0.0)
+            error += max(over - EXPLAINED * abs(straight - chord), 0.0)  # what they land on does not explain
         else:  # the ends lie beyond one another, or further round than the surface stands out
             total += chord
             error += first + last + max(straight - chord, 0.0)

@@ -25,8 +25,8 @@ SIDE = DENSITY + 1
 """Samples of a piece in either direction, its edges included; as many as Bezier points."""
 MAX_FEET = 4
 """Maximum number of feet tried: one from the guess, then one per piece that may be nearer."""
-MAX_MISSED = 1
-"""Maximum number of those that are not nearer after all."""
+MAX_MISSED = 2
+"""Maximum number of those that are not nearer after all: the first may lead back to the foot that was found."""
 BOWED = 1.5
 """How much more than an even arc a piece may bow between samples."""
 REACH = 0.36
