@@ -116,6 +116,17 @@ def test_a_low_rib_that_the_end_of_a_bridge_passes_through_is_in_the_stated_erro
     assert meridian(surface, 51).length_error[0] < 1e-4 * LENGTH
 
 
+def test_the_top_of_a_rib_between_samples_is_in_the_stated_error() -> None:
+    surface = revolved(bumps(np.array([77.1]), np.array([0.25]), np.array([3.0])), 2048)
+    v = np.linspace(0.0, 1.0, 200001)
+    x, y, z = surface.points(np.stack([np.full_like(v, 0.1), v], axis=1)).T
+    for particles in (26, 27, 31):
+        paths = meridian(surface, particles)
+        along = paths.points[0, :, 2]
+        fibre = np.interp(z, along, np.hypot(paths.points[0, :, 0], paths.points[0, :, 1]))
+        assert (np.hypot(x, y) - fibre).max() <= paths.position_error[0] + 1e-5 * LENGTH
+
+
 def test_the_foot_behind_a_rib_is_the_nearest_where_spans_are_long_across() -> None:
     """Spans are 20 mm round and 0.07 mm along: the first piece that may be nearer leads back to the foot found."""
     at, width = [164.44678205, 90.21942658, 38.84729737], [1.88818817, 0.37034881, 0.55195644]
