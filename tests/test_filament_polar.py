@@ -14,6 +14,7 @@ from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.filament.joining import join, passes
 from meshwind.filament.polar import PolarPasses, natural_turns, passes_between_caps, passes_over_a_cap
+from meshwind.filament.polar_legs import FINEST, End, Legs, halves, opening
 from meshwind.path.paths import Status
 from meshwind.surface.interpolate import Formula, interpolate
 
@@ -203,3 +204,27 @@ def test_passes_do_not_lie_over_a_waist() -> None:
     layer = passes_between_caps(interpolate(dumbbell, (48, 64)), 5, friction=0.5, particles=101)
     assert not layer.holds
     assert (layer.paths.status == Status.STALLED).all()
+
+
+def test_half_legs_meet_after_two_marches_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    """1,600 half-legs for 200 circuits and the table's, and those that were run on are what a march gives."""
+    asked: list[int] = []
+    march = End.march
+
+    def counted(end: End, u: Floats, slip: Floats, leaving: bool, tolerance: float = FINEST) -> Legs:
+        asked.append(len(u))
+        return march(end, u, slip, leaving, tolerance)
+
+    monkeypatch.setattr(End, "march", counted)
+    surface = mw.fit(flatten(annulus(ellipsoid(ELLIPSOIDS[0][0]), 8000, 0.6)))
+    layer = passes_between_caps(surface, 200, friction=0.1, particles=11)
+    assert sum(asked) < 2 * 800 + 4 * (128 + 2 * 32) + 100
+    assert layer.holds and layer.miss.max() < 1e-10
+    uv, slip = layer.paths.uv, layer.slip
+    # passes back are kept from the start rim to the end rim: their last point is where they begin
+    ends = [End(half, opening(surface, k)) for k, half in enumerate(halves(surface))]
+    for first, rows in ((0, slice(0, 200)), (1, slice(200, 400))):
+        legs = [ends[k].march(uv[rows, -k, 0], slip[rows, k], k == first, 1e-14) for k in (first, 1 - first)]
+        turned = legs[0].u - legs[1].u
+        assert np.abs(turned - np.round(turned)).max() < 2e-10
+        assert np.abs(legs[0].angle - legs[1].angle).max() < 2e-10

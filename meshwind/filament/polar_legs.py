@@ -148,10 +148,14 @@ class End:
         found = marched(
             surface, start, way, _LONGEST * surface.size, slip=sign * slip, press="ignore", tolerance=tolerance
         )
+        return self.crossing(found, leaving)
+
+    def crossing(self, found: Marched, leaving: bool) -> Legs:
+        """Half-legs as they were marched, leaving or arriving, with where they cross the level half-way."""
         last = found.last
-        frames = surface.frames(np.ascontiguousarray(last[:, 1:3]))
+        frames = self.half.surface.frames(np.ascontiguousarray(last[:, 1:3]))
         su, sv = frames[:, SU], frames[:, SV]
-        tangent = sign * (last[:, 3:4] * su + last[:, 4:5] * sv)
+        tangent = (last[:, 3:4] * su + last[:, 4:5] * sv) * (1.0 if leaving else -1.0)
         along = unit(sv)
         across = unit(np.cross(sv, np.cross(su, sv)))
         angle = np.arctan2((tangent * across).sum(axis=1), (tangent * along).sum(axis=1))

@@ -5,8 +5,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from meshwind.core.cast import Floats, Ints
-from meshwind.filament.polar_legs import FINEST, End
+from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.filament.polar_legs import End, Legs
 from meshwind.filament.polar_natural import Tables, slips
 from meshwind.march.forward import Marched
 from meshwind.march.traced import Trace
@@ -16,12 +16,12 @@ _Pair: TypeAlias = tuple[tuple[Trace, ...], tuple[Trace, ...]]
 
 MEETS = 1e-10
 """Miss of two half-legs, in turns and in radians, that is round-off of their marches."""
-_ROUGH = 1e-9
-"""Tolerance of the first marches, which are further from meeting than this."""
 _MOVED = 1e-9
 """Change of a slip from which two marches give a derivative, as each is good to 1e-12."""
 _STEPS = 12
 """Most steps in which half-legs are brought to meet; two or three do from a smooth table."""
+_STRAIGHT = 2e-11
+"""By how much, in turns and over the part's size, two marches may be run on beside the curve that a third gives."""
 
 
 @dataclass(frozen=True)
@@ -51,38 +51,79 @@ def met(ends: tuple[End, End], tables: Tables, touch: Floats) -> Met:
 
 
 def _meet(ends: tuple[End, End], touch: Floats, slip: Floats, rates: Floats) -> tuple[Floats, _Pair, Floats]:
-    """Slips (n, 2), half-legs and misses (n,) of passes from one end to the other; the first round is a rough one."""
+    """Slips (n, 2), half-legs and misses (n,) of passes from one end to the other.
+
+    Two rounds are marched.  From the third on half-legs are run on from the two rounds before, in a straight line, and
+    marched only where that would not be as good.
+    """
     best, off = slip.copy(), np.full(len(touch), np.inf)
     open_: Ints = np.arange(len(touch))
     slip, rates = slip.copy(), rates.copy()
-    kept: tuple[Marched, Marched] | None = None
-    before, step = np.empty((len(touch), 2, 2)), np.zeros_like(slip)
+    kept: list[Marched] = []
+    rounds: list[list[Marched]] = [[], []]
+    before, step, share = np.empty((len(touch), 2, 2)), np.zeros_like(slip), np.zeros_like(slip)
     for turn in range(_STEPS):
-        tolerance = FINEST if turn else _ROUGH
-        leave = ends[0].march(touch[open_, 0], slip[open_, 0], True, tolerance)
-        arrive = ends[1].march(touch[open_, 1], slip[open_, 1], False, tolerance)
+        legs = [
+            _legs(end, (touch[open_, k], slip[open_, k]), k == 0, (rounds[k], share[:, k]))
+            for k, end in enumerate(ends)
+        ]
         # by quantity, u or angle, and leg
-        at = np.stack([np.stack([leg.u, leg.angle], axis=1) for leg in (leave, arrive)], axis=2) * [1.0, -1.0]
+        at = np.stack([np.stack([leg.u, leg.angle], axis=1) for leg in legs], axis=2) * [1.0, -1.0]
         miss = at.sum(axis=2)
         size = np.abs(miss).max(axis=1)
         size = np.where(np.isfinite(size), size, np.inf)
-        if kept is None:
-            kept = leave.marched, arrive.marched
-            met_ = np.zeros(len(size), dtype=np.bool_)
-        else:
+        if turn:
             moved = np.abs(step) > _MOVED
             secant = (at - before) / np.where(moved, step, 1.0)[:, None]
             rates = np.where(moved[:, None], secant, rates)
-            nearer = np.flatnonzero(size < off[open_])
-            paths = open_[nearer]
-            kept = kept[0].put(paths, leave.marched, nearer), kept[1].put(paths, arrive.marched, nearer)
-            best[paths], off[paths] = slip[paths], size[nearer]
-            met_ = size <= MEETS
-        going = np.isfinite(size) & ~met_
-        if not going.any():
+        nearer = np.flatnonzero(size < off[open_]) if turn else open_
+        paths = open_[nearer]
+        kept = [kept[k].put(paths, legs[k].marched, nearer) if turn else legs[k].marched for k in range(2)]
+        best[paths], off[paths] = slip[paths], size[nearer]
+        going = np.flatnonzero(np.isfinite(size) & (size > MEETS))
+        if not len(going):
             break
         open_, rates, before = open_[going], rates[going], at[going]
-        step = np.asarray(-np.linalg.solve(rates, miss[going][..., None])[..., 0])
+        after = np.asarray(-np.linalg.solve(rates, miss[going][..., None])[..., 0])
+        share = np.where(np.abs(step[going]) > 0.0, after / np.where(step[going] == 0.0, 1.0, step[going]), np.inf)
+        step = after
         slip[open_] += step
-    assert kept is not None
+        rounds = [[_chosen(run, going) for run in [*rounds[k][-1:], legs[k].marched]] for k in range(2)]
     return best, (kept[0].traces(), kept[1].traces()), off
+
+
+def _legs(end: End, at: tuple[Floats, Floats], leaving: bool, last: tuple[list[Marched], Floats]) -> Legs:
+    """Half-legs from touch points with slips (n,) each: run on by shares (n,) of the last step, or else marched."""
+    (touch, slip), (rounds, share) = at, last
+    if len(rounds) < 2:
+        return end.march(touch, slip, leaving)
+    run, good = _run_on(rounds[0], rounds[1], share)
+    bent = np.flatnonzero(~good)
+    if len(bent):
+        run = run.put(bent, end.march(touch[bent], slip[bent], leaving).marched, np.arange(len(bent)))
+    return end.crossing(run, leaving)
+
+
+def _run_on(first: Marched, second: Marched, share: Floats) -> tuple[Marched, Bools]:
+    """The half-legs that follow after two rounds, the slip having moved on by shares (n,), and which are good.
+
+    A half-leg is a smooth function of its slip, row by row where it has as many rows: beyond the straight line through
+    two rounds it bends by about the share of their change squared.
+    """
+    size = np.array([first.surface.size, 1.0, 1.0, first.surface.size, first.surface.size])
+    rows, good = list(second.rows), np.zeros(len(share), dtype=np.bool_)
+    for k, (one, two) in enumerate(zip(first.rows, second.rows, strict=True)):
+        if len(one) != len(two):
+            continue
+        change = two - one
+        wide = float(np.abs(change / size).max())
+        good[k] = abs(share[k]) * wide * wide < _STRAIGHT
+        if good[k]:
+            rows[k] = two + share[k] * change
+    slip = second.slip + np.where(good, share, 0.0) * (second.slip - first.slip)
+    return Marched(second.surface, tuple(rows), slip, second.counts), good
+
+
+def _chosen(found: Marched, which: Ints) -> Marched:
+    """The half-legs of numbers `which` (k,)."""
+    return Marched(found.surface, tuple(found.rows[k] for k in which), found.slip[which], found.counts[which])

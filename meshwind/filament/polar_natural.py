@@ -18,15 +18,15 @@ from meshwind.filament.polar_legs import End
 
 _AROUND = 128
 """Touch points around an opening from which half-legs are tabulated: the table is a start, exact legs follow it."""
+_STEERED = 4
+"""Touch points for each of those from which half-legs with slip are tabulated as well, at first."""
 _ROUGH = 1e-9
 """Tolerance of the marches for the table, far below what it is off by between its touch points."""
 _FINER = 8
 """Places of the table's spline between two of them, by Fourier series: it is then as good as these."""
-_NODES = np.array([-1.0, 0.0, 1.0])
-"""Slips of the table, over its reach: half-legs are nearly linear in the slip."""
-_REACH = 0.1
+_REACH = 0.05
 """Slip up to which half-legs are tabulated at first."""
-_FURTHEST = 1.0
+FURTHEST = 1.0
 """Slip up to which they are tabulated where more is needed: more than any friction on a mould."""
 _SMALLEST = 0.01
 """Slip up to which half-legs must get away from their opening at the least."""
@@ -94,40 +94,50 @@ class Tables:
         return miss, by_touch, by_slip
 
 
-def tables(ends: tuple[End, End], reach: float = _REACH) -> Tables:
-    """Tabulate half-legs up to a slip, or up to a smaller one where they would not get away from the opening."""
+def tables(ends: tuple[End, End], reach: float = _REACH, steered: int = _STEERED) -> Tables:
+    """Tabulate half-legs up to a slip, or up to a smaller one where they would not get away from the opening.
+
+    steered: touch points for each of those from which half-legs with slip are tabulated as well.
+    """
     return Tables(
         (
-            _table(ends[0], True, reach),
-            _table(ends[1], False, reach),
-            _table(ends[1], True, reach),
-            _table(ends[0], False, reach),
+            _table(ends[0], True, reach, steered),
+            _table(ends[1], False, reach, steered),
+            _table(ends[1], True, reach, steered),
+            _table(ends[0], False, reach, steered),
         )
     )
 
 
-def _table(end: End, leaving: bool, reach: float) -> Table:
+def _table(end: End, leaving: bool, reach: float, steered: int) -> Table:
     u = np.arange(_AROUND) / _AROUND
+    # how a half-leg answers to slip is nearly linear, and need be known less well than where it leads without
+    few = u[::steered]
+    around = np.concatenate([u, few, few])
+    side = np.repeat([0.0, 1.0, -1.0], [len(u), len(few), len(few)])
     while True:
-        around, slip = np.repeat(u, len(_NODES)), np.tile(reach * _NODES, _AROUND)
-        legs = end.march(around, slip, leaving, _ROUGH)
-        there = legs.arrived.reshape(_AROUND, -1)
-        if there.all():
+        legs = end.march(around, reach * side, leaving, _ROUGH)
+        if legs.arrived.all():
             break
         reach *= 0.5
-        if reach < _SMALLEST or not there[:, 1].all():
-            lost = u[np.argmin(there.all(axis=1))]
+        if reach < _SMALLEST or not legs.arrived[: len(u)].all():
+            lost = around[np.argmin(legs.arrived)]
             raise BadInputError(
                 f"a fibre that touches the opening at the {end.name} does not get from there to the middle of the part,"
                 f" at u={lost:.3f}: that end is no dome, as at a neck; let it turn by --turn-{end.name} pins, collar "
                 "or shaft, or give another --opening"
             )
-    values = np.stack([legs.u - around, legs.angle], axis=1).reshape(_AROUND, len(_NODES), 2)
-    powers = np.linalg.solve(np.vander(_NODES, increasing=True), values.swapaxes(0, 1).reshape(len(_NODES), -1))
-    powers = powers.reshape(len(_NODES), _AROUND, 2).swapaxes(0, 1)
-    fine = np.fft.irfft(np.fft.rfft(powers, axis=0), _FINER * _AROUND, axis=0) * _FINER
-    closed = np.concatenate([fine, fine[:1]])
+    free, left, right = np.split(np.stack([legs.u - around, legs.angle], axis=1), [len(u), len(u) + len(few)])
+    odd, even = 0.5 * (left - right), 0.5 * (left + right) - free[::steered]
+    powers = np.stack([_finer(each) for each in (free, odd, even)], axis=1)
+    closed = np.concatenate([powers, powers[:1]])
     return Table(CubicSpline(np.linspace(0.0, 1.0, len(closed)), closed, bc_type="periodic"), reach)
+
+
+def _finer(values: Floats) -> Floats:
+    """Values (n, 2) around an opening at more places, by their Fourier series."""
+    count = _FINER * _AROUND
+    return np.asarray(np.fft.irfft(np.fft.rfft(values, axis=0), count, axis=0) * (count / len(values)))
 
 
 @dataclass(frozen=True)
