@@ -1,5 +1,6 @@
 """The short examples from outside: they run, and make the pictures that they say."""
 
+import csv
 import re
 import subprocess
 import sys
@@ -26,6 +27,13 @@ def test_moving_ends_makes_its_picture(tmp_path: Path) -> None:
 def test_the_gallery_makes_its_pictures(tmp_path: Path) -> None:
     run("gallery.py", tmp_path, "--only", "tank")
     assert (tmp_path / "tank.png").stat().st_size > 10_000
+
+
+def test_filament_cost_measures_each_thing(tmp_path: Path) -> None:
+    run("filament_cost.py", tmp_path, "--quick", "--only", "ball")
+    rows = list(csv.DictReader((tmp_path / "filament_cost.csv").open(encoding="utf-8")))
+    assert [(row["circuits"], row["particles"]) for row in rows] == [("8", "51"), ("4", "101"), ("8", "101")]
+    assert all(float(row["closing over solving"]) > 0.0 and row["passes"] == row["lie well"] for row in rows)
 
 
 def test_the_page_names_what_there_is() -> None:
