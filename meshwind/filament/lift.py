@@ -15,6 +15,7 @@ from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.vectors import unit
 from meshwind.filament.edge import Edge, Legs, Lift, legs
 from meshwind.filament.part_edge import PartEdge
+from meshwind.filament.section import Meeting
 from meshwind.filament.turnaround import Catch, Turnaround
 from meshwind.path.paths import Paths
 from meshwind.path.winding_angle import winding_angle
@@ -27,8 +28,12 @@ _SAME = 1e-9
 """Heights that differ by less than this share of the hull's perimeter are the same."""
 _LEAST = 2
 """Particles on the way from part to prism at least, so that one of them is in the air."""
-_HALVED = 48
-"""Halvings in which the place where a fibre leaves is found: to round-off of the number of a particle."""
+_ROUNDS = 48
+"""Most rounds in which the place where a fibre leaves is found; ten do where the part is smooth."""
+_HALVED = 4
+"""Rounds of which one halves the way that is left, however the others get on."""
+_NEAR = 1e-12
+"""Numbers of a particle, and lengths over the hull's, that are round-off."""
 
 
 def legs_over(turn: Turnaround, paths: Paths, family: int) -> Legs:
@@ -151,17 +156,9 @@ class _Rays:
         return d + s * (c + s * (b + s * a)), -unit(c + s * (2.0 * b + 3.0 * s * a))
 
 
-def _met(on: Edge, point: Floats, ahead: Floats) -> Floats:
-    """Lengths (n,) along rays from points (n, 3) to where they meet the prism; infinite where they do not."""
-    hull = on.hull.points
-    sides = np.roll(hull, -1, axis=0) - hull
-    out = np.stack([sides[:, 1], -sides[:, 0]], axis=1)
-    start, way = (point - on.origin) @ on.across.T, ahead @ on.across.T
-    off, rate = (out * hull).sum(axis=1) - start @ out.T, way @ out.T
-    length = np.divide(off, rate, out=np.full_like(off, np.inf), where=rate != 0.0)
-    enters = np.where(rate < 0.0, length, np.where((rate == 0.0) & (off < 0.0), np.inf, -np.inf)).max(axis=1)
-    leaves = np.where(rate > 0.0, length, np.inf).min(axis=1)
-    return np.where((enters < leaves) & (leaves > 0.0), np.maximum(enters, 0.0), np.inf)
+def _met(on: Edge, point: Floats, ahead: Floats) -> Meeting:
+    """Where rays from points (n, 3) meet the prism."""
+    return on.hull.met((point - on.origin) @ on.across.T, ahead @ on.across.T)
 
 
 def _first(rays: _Rays, on: Edge, catch: Catch, last: float) -> tuple[Floats, Bools]:
@@ -170,45 +167,50 @@ def _first(rays: _Rays, on: Edge, catch: Catch, last: float) -> tuple[Floats, Bo
     last: the farthest place that is looked at.
     """
 
-    def past(place: Floats) -> Bools:
+    def beyond(place: Floats) -> Floats:
+        """Lengths (n,), over the hull's, by which rays pass the prism by, or meet it above the pins."""
         point, ahead = rays.at(place)
-        length = _met(on, point, ahead)
-        height = (point - on.origin) @ on.axis + np.where(np.isfinite(length), length, 0.0) * (ahead @ on.axis)
-        return np.asarray(~np.isfinite(length) | (height >= catch.height))
+        met = _met(on, point, ahead)
+        height = (point - on.origin) @ on.axis + np.where(np.isfinite(met.length), met.length, 0.0) * (ahead @ on.axis)
+        # one that has the prism behind it passes by as well
+        over = np.where(np.isfinite(met.length), height - catch.height, np.abs(met.depth))
+        return np.asarray(np.maximum(-met.depth, over) / on.hull.perimeter)
 
     count = len(rays.points)
     low, high, found = np.zeros(count), np.zeros(count), np.zeros(count, dtype=bool)
+    under, above = np.zeros(count), np.zeros(count)
     step = 1.0
     while not found.all() and step < 2.0 * last:
         tried = np.full(count, min(step, last))
-        now = past(tried) & ~found
-        high = np.where(now, tried, high)
-        low = np.where(found | now, low, tried)
+        value = beyond(tried)
+        now = (value >= 0.0) & ~found
+        high, above = np.where(now, tried, high), np.where(now, value, above)
+        more = ~found & ~now
+        low, under = np.where(more, tried, low), np.where(more, value, under)
         found, step = found | now, 2.0 * step
-    for _ in range(_HALVED):
-        middle = 0.5 * (low + high)
-        there = past(middle)
+    # false position as in the Illinois method: an end that stays counts half
+    stayed = np.zeros(count)
+    for turn in range(_ROUNDS):
+        span = above - under
+        share = np.divide(-under, span, out=np.full(count, 0.5), where=(under < 0.0) & np.isfinite(span) & (span > 0.0))
+        middle = low + (0.5 if turn % _HALVED == 0 else share) * (high - low)
+        value = beyond(middle)
+        there = value >= 0.0
+        under = np.where(there, np.where(stayed > 0.0, 0.5 * under, under), value)
+        above = np.where(there, value, np.where(stayed < 0.0, 0.5 * above, above))
         low, high = np.where(there, low, middle), np.where(there, middle, high)
-    return high, found
-
-
-def _around(on: Edge, points: Floats, near: Floats) -> Floats:
-    """Lengths (n,) along the hull of points (n, 3) on the prism, next to others (n,)."""
-    hull, flat = on.hull.points, (points - on.origin) @ on.across.T
-    sides = np.roll(hull, -1, axis=0) - hull
-    off = flat[:, None] - hull
-    share = np.clip((off * sides).sum(axis=2) / (sides**2).sum(axis=1), 0.0, 1.0)
-    side = np.linalg.norm(off - share[..., None] * sides, axis=2).argmin(axis=1)
-    passed = on.hull.passed[side] + share[np.arange(len(side)), side] * np.linalg.norm(sides[side], axis=1)
-    return np.asarray(passed + on.hull.perimeter * np.round((near - passed) / on.hull.perimeter))
+        stayed = np.where(there, 1.0, -1.0)
+        if (np.minimum(high - low, np.abs(value)) < _NEAR).all():
+            break
+    return np.where(np.abs(value) < _NEAR, middle, high), found
 
 
 def _lifted(crossing: Legs, which: Ints, rays: _Rays, found: tuple[Edge, Catch, Floats]) -> Legs:
     """Legs of which some leave the part at places."""
     on, catch, place = found
     off, ahead = rays.at(place)
-    length = _met(on, off, ahead)
-    hits = np.isfinite(length)  # or grazes, but for round-off
+    met = _met(on, off, ahead)
+    length, hits = met.length, np.isfinite(met.length)  # or grazes, but for round-off
     level = (off - on.origin) @ on.axis + np.where(hits, length, 0.0) * (ahead @ on.axis)
     held = hits & (level >= catch.height - _SAME * on.hull.perimeter)
     # a fibre that passes by touches the prism where its normal is square to the fibre
@@ -219,7 +221,8 @@ def _lifted(crossing: Legs, which: Ints, rays: _Rays, found: tuple[Edge, Catch, 
     touch = ((on.hull.at(grazed) - (off - on.origin) @ on.across.T) * way).sum(axis=1) / (way**2).sum(axis=1)
     length = np.where(held, length, touch)
     corner = off + length[:, None] * ahead
-    around = np.where(held, _around(on, corner, crossing.around[which]), grazed)
+    turns = np.round((crossing.around[which] - met.passed) / on.hull.perimeter)
+    around = np.where(held, met.passed + on.hull.perimeter * turns, grazed)
     height = (corner - on.origin) @ on.axis
     hoop = rays.sense * on.tangents(around)
     # of a fibre that pins hold, the angle that it turns by on its pin is what counts

@@ -2,15 +2,28 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshwind.core.cast import Floats, floats, frozen
+from meshwind.core.cast import Bools, Floats, Ints, floats, frozen
 from meshwind.core.errors import BadInputError
 
 _HOLLOW = 1e-9
 """Turn of the normal backwards, in radians, that is round-off."""
+
+
+class Meeting(NamedTuple):
+    """Where lines come into a section: lengths along them, 0 inside and infinite where they pass by or have left it.
+
+    passed: lengths along the section there; depth: how far lines lead through it, seen along them, from its nearer
+    side, negative where they pass by.  All (n,).
+    """
+
+    length: Floats
+    passed: Floats
+    depth: Floats
 
 
 @dataclass(frozen=True)
@@ -42,6 +55,53 @@ class Section:
         loop, angles = self._loop
         whole, rest = np.divmod(np.asarray(turned) - angles[0], 2.0 * np.pi)
         return np.asarray(whole * self.perimeter + np.interp(rest + angles[0], angles, loop))
+
+    def met(self, start: Floats, way: Floats) -> Meeting:
+        """Where lines from points (n, 2) with directions (n, 2) come into the section.
+
+        On the edges that face a line the side of it that a corner lies on changes once, which is found by halving.
+        """
+        facing, count = self._facing, len(self.points)
+        ahead = np.arctan2(way[:, 1], way[:, 0]) + 0.5 * np.pi
+        ahead += 2.0 * np.pi * np.ceil((facing[0] - ahead) / (2.0 * np.pi))
+        low = np.searchsorted(facing, ahead, side="right")
+        high = np.searchsorted(facing, ahead + np.pi, side="left")
+        left = self._left(start, way, low), self._left(start, way, high)
+        depth = np.minimum(left[0], -left[1]) / np.hypot(way[:, 0], way[:, 1])
+        for _ in range(count.bit_length()):
+            middle = (low + high) // 2
+            there = self._left(start, way, middle) >= 0.0
+            low, high = np.where(there, middle, low), np.where(there, high, np.maximum(middle, low + 1))
+        corner, side = self.points[low % count], self._sides[low % count]
+        cross = side[:, 1] * way[:, 0] - side[:, 0] * way[:, 1]
+        off = (side[:, 1] * (corner - start)[:, 0] - side[:, 0] * (corner - start)[:, 1]) / cross
+        along = ((start + off[:, None] * way - corner) * side).sum(axis=1) / np.hypot(side[:, 0], side[:, 1])
+        ahead_of = off > 0.0
+        behind = np.flatnonzero(~ahead_of & (depth > 0.0))
+        ahead_of[behind] = self._inside(start[behind])
+        length = np.where((depth > 0.0) & ahead_of, np.maximum(off, 0.0), np.inf)
+        return Meeting(length, self.passed[low % count] + along, depth)
+
+    def _left(self, start: Floats, way: Floats, corner: Ints) -> Floats:
+        """How far corners (n,) lie to the left of lines, times the size of their directions."""
+        off = self.points[corner % len(self.points)] - start
+        return np.asarray(way[:, 0] * off[:, 1] - way[:, 1] * off[:, 0])
+
+    def _inside(self, points: Floats) -> Bools:
+        """Whether points (n, 2) lie inside."""
+        off = self.points - points[:, None]
+        return np.asarray((off[..., 0] * self._sides[:, 1] > off[..., 1] * self._sides[:, 0]).all(axis=1))
+
+    @cached_property
+    def _sides(self) -> Floats:
+        """Edges (n, 2), from each point to the next."""
+        return np.roll(self.points, -1, axis=0) - self.points
+
+    @cached_property
+    def _facing(self) -> Floats:
+        """Angles (3 n,) of the normals of the edges, growing, in three loops."""
+        angle = np.unwrap(np.arctan2(-self._sides[:, 0], self._sides[:, 1]))
+        return np.asarray((angle + 2.0 * np.pi * np.arange(3)[:, None]).ravel())
 
     @cached_property
     def _loop(self) -> tuple[Floats, Floats]:
