@@ -4,7 +4,7 @@ from math import atan2, cos, hypot, pi, sin, sqrt
 
 import numpy as np
 import pytest
-from hypothesis import Phase, given, settings
+from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 
 import meshwind as mw
@@ -18,6 +18,7 @@ from meshwind.filament.ends import LayerPlan, choose_end
 from meshwind.filament.filament import filaments_of
 from meshwind.filament.lift import leaning, legs_over
 from meshwind.filament.pin_turn import Pins
+from meshwind.filament.section import section
 from meshwind.program.faults import SPAN
 from meshwind.program.machine import read_machine
 from meshwind.program.program import Work, program
@@ -47,6 +48,31 @@ def wound(surface: Surface, count: int, turns: float, particles: int = 401) -> m
 
 def from_axis(on: Edge, points: Floats) -> Floats:
     return np.asarray(np.hypot(*((points - on.origin) @ on.across.T).T))
+
+
+@settings(property_test, max_examples=60)
+@given(st.lists(st.floats(0.0, 6.28), min_size=3, max_size=40, unique=True), st.integers(0, 2**32 - 1))
+def test_lines_come_into_a_section_where_all_its_edges_say(angles: list[float], seed: int) -> None:
+    """The farthest of the edges that they enter by, if it is nearer than the nearest that they leave by."""
+    t = np.unique(np.round(angles, 3))
+    assume(len(t) > 2 and np.diff(t, append=t[0] + 2.0 * pi).max() < pi)
+    ring = np.stack([3.0 * np.cos(t), np.sin(t)], axis=1)
+    random = np.random.default_rng(seed)
+    start, way = random.uniform(-5.0, 5.0, (50, 2)), random.normal(size=(50, 2))
+    hull = section(ring)
+    found = hull.met(start, way)
+    side = np.roll(ring, -1, axis=0) - ring
+    out = np.stack([side[:, 1], -side[:, 0]], axis=1)
+    rate = way @ out.T
+    length = ((out * ring).sum(axis=1) - start @ out.T) / rate
+    enters, leaves = np.where(rate < 0.0, length, -np.inf).max(axis=1), np.where(rate > 0.0, length, np.inf).min(axis=1)
+    hits = (enters < leaves) & (leaves > 0.0)
+    assert (np.isfinite(found.length) == hits).all()
+    assert found.length[hits] == pytest.approx(np.maximum(enters, 0.0)[hits], abs=1e-9)
+    outside = hits & (enters > 0.0)
+    on = start[outside] + found.length[outside, None] * way[outside]
+    assert hull.at(found.passed[outside]) == pytest.approx(on, abs=1e-9)
+    assert ((found.depth > 0.0) == (enters < leaves)).all()
 
 
 @pytest.mark.parametrize("turned", [False, True])

@@ -28,6 +28,8 @@ _SAME = 1e-9
 """Heights that differ by less than this share of the hull's perimeter are the same."""
 _LEAST = 2
 """Particles on the way from part to prism at least, so that one of them is in the air."""
+_WINDOW = 32
+"""Particles next to a rim through which splines are laid at first: most fibres leave among the nearer half of them."""
 _ROUNDS = 48
 """Most rounds in which the place where a fibre leaves is found; ten do where the part is smooth."""
 _HALVED = 4
@@ -45,7 +47,7 @@ def legs_over(turn: Turnaround, paths: Paths, family: int) -> Legs:
     crossing = legs(on, paths, family)
     if isinstance(on, PartEdge):
         return crossing
-    rays = _Rays.of(on, paths, family)
+    rays = _Rays.of(on, paths, family, _WINDOW)
     point, ahead = rays.at(np.zeros(len(crossing)))
     corner = (ahead * on.normals(crossing.around, crossing.height)).sum(axis=1) < -_FLUSH
     if not corner.any():
@@ -53,7 +55,10 @@ def legs_over(turn: Turnaround, paths: Paths, family: int) -> Legs:
     which = np.flatnonzero(corner)
     rays = rays.chosen(which)
     last = (paths.points.shape[1] - 1) / 2.0  # the other end of a path has the other half to leave from
-    place, found = _first(rays, on, catch, last)
+    place, found = _first(rays, on, catch, min(last, 0.5 * _WINDOW))
+    if not found.all():
+        rays = _Rays.of(on, paths, family).chosen(which)
+        place, found = _first(rays, on, catch, last)
     legs_ = _lifted(crossing, which[found], rays.chosen(found), (on, catch, place[found])) if found.any() else crossing
     if np.isfinite(catch.height):
         return legs_
@@ -114,16 +119,19 @@ def hung(paths: Paths, over: Sequence[tuple[Legs, int, int]]) -> Hung:
             continue
         leaves = np.flatnonzero(legs_.lift.aloft)
         rows, lift = np.flatnonzero(paths.family == family)[leaves], legs_.lift.chosen(leaves)
-        left = np.arange(many)[::-1] if end else np.arange(many)
+        reach = int(lift.aloft.max()) + 1
+        near = slice(many - reach, many) if end else slice(0, reach)
+        left = np.arange(reach)[::-1] if end else np.arange(reach)
         share = np.clip(left / lift.aloft[:, None], 0.0, 1.0)[..., None]  # from the rim, 1 where it leaves the part
         moved = (left <= lift.aloft[:, None])[..., None]
         way = share * lift.off[:, None] + (1.0 - share) * legs_.points[leaves][:, None]
         last = many - 1 - lift.aloft if end else lift.aloft
         turn = unit(share * normals[rows, last][:, None] + (1.0 - share) * lift.normal[:, None])
         lean = share[..., 0] * angle[rows, last][:, None] + (1.0 - share[..., 0]) * lift.angle[:, None]
-        angle[rows] = np.where(moved[..., 0], lean, angle[rows])
-        points[rows], normals[rows] = np.where(moved, way, points[rows]), np.where(moved, turn, normals[rows])
-        aloft[rows] |= left < lift.aloft[:, None]
+        angle[rows, near] = np.where(moved[..., 0], lean, angle[rows, near])
+        points[rows, near] = np.where(moved, way, points[rows, near])
+        normals[rows, near] = np.where(moved, turn, normals[rows, near])
+        aloft[rows, near] |= left < lift.aloft[:, None]
         before[end] = max(before[end], float(lift.before.max(initial=0.0)))
     return Hung(frozen(points), frozen(normals), frozen(angle), frozen(aloft), (before[0], before[1]))
 
@@ -137,11 +145,12 @@ class _Rays:
     sense: int
 
     @staticmethod
-    def of(on: Edge, paths: Paths, family: int) -> "_Rays":
-        """Those of a family at an edge."""
+    def of(on: Edge, paths: Paths, family: int, window: int | None = None) -> "_Rays":
+        """Those of a family at an edge, as far as some particles from there."""
         rows = np.flatnonzero(paths.family == family)
         points = paths.points[rows][:, :: -1 if on.end else 1]
-        spline = CubicSpline(np.arange(points.shape[1]), points, axis=1)
+        near = points[:, :window]
+        spline = CubicSpline(np.arange(near.shape[1]), near, axis=1)
         return _Rays(points, spline.c, family if on.end else -family)
 
     def chosen(self, index: Ints | Bools) -> "_Rays":
@@ -232,10 +241,9 @@ def _lifted(crossing: Legs, which: Ints, rays: _Rays, found: tuple[Edge, Catch, 
                       on.points(around, height))  # fmt: skip
     last = max((rays.points.shape[1] - 1) // 2, 1)
     aloft = np.clip(np.round(place), min(_LEAST, last), last).astype(np.int64)
-    steps = np.linalg.norm(np.diff(rays.points, axis=1), axis=2)
+    index, row = place.astype(np.int64), np.arange(len(which))
+    steps = np.linalg.norm(np.diff(rays.points[:, : index.max(initial=0) + 2], axis=1), axis=2)
     passed = np.concatenate([np.zeros((len(which), 1)), np.cumsum(steps, axis=1)], axis=1)
-    index = place.astype(np.int64)
-    row = np.arange(len(which))
     before = passed[row, index] + (place - index) * steps[row, np.minimum(index, steps.shape[1] - 1)]
     full = [np.array(values) for values in (crossing.around, crossing.height, crossing.angle, crossing.points)]
     for values, new in zip(full, (around, height, angle, points), strict=True):
