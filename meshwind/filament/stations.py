@@ -103,17 +103,32 @@ def to_cover(paths: Paths, v: Floats) -> tuple[Floats, Ints]:
     needed = np.full((len(families), len(v)), np.nan)
     for row, family in enumerate(families):
         mine = paths.family == family
-        for k in np.flatnonzero(np.isfinite(angle[mine]).any(axis=0)):
-            here = mine & np.isfinite(angle[:, k])
-            needed[row, k] = (_around(u[here, k], np.cos(angle[here, k]), around) * speed[k]).mean()
+        passed = np.isfinite(angle[mine])
+        here = np.flatnonzero(passed.any(axis=0))
+        of, line = np.nonzero(passed[:, here])
+        cosine = np.cos(angle[mine][:, here][of, line])
+        found = _around(u[mine][:, here][of, line], cosine, around, line).reshape(len(here), many)
+        needed[row, here] = (found * speed[here]).mean(axis=1)
     return needed, np.array([(paths.family == family).sum() for family in families], dtype=np.int64)
 
 
-def _around(u: Floats, values: Floats, at: Floats) -> Floats:
-    """Values (m,) at `at`, from values (p,) at u in turns, smooth without overshoot and with the period 1."""
-    place, first = np.unique(np.mod(u, 1.0), return_index=True)
-    padded = np.concatenate([place - 1.0, place, place + 1.0])
-    return np.asarray(PchipInterpolator(padded, np.tile(values[first], 3))(at))
+def _around(u: Floats, values: Floats, at: Floats, line: Ints | None = None) -> Floats:
+    """Values (m,) at `at`, from values (p,) at u in turns, smooth without overshoot and with the period 1.
+
+    line: the numbers (p,) of lines that the values belong to, for values (k m,) on all k of them, one after another.
+    """
+    line = np.zeros(len(u), dtype=np.int64) if line is None else line
+    place = np.mod(u, 1.0)
+    order = np.lexsort([place, line])
+    place, line, values = place[order], line[order], values[order]
+    first = np.append(True, (np.diff(place) != 0.0) | (np.diff(line) != 0))
+    place, line, values = place[first], line[first], values[first]
+    # one row of all lines, each with two periods more on either side, so that they do not feel one another
+    start = (len(_PERIODS) + 1.0) * line
+    row = (start + place + np.array(_PERIODS)[:, None]).ravel()
+    order = np.argsort(row)
+    wanted = ((len(_PERIODS) + 1.0) * np.unique(line)[:, None] + at).ravel()
+    return np.asarray(PchipInterpolator(row[order], np.tile(values, len(_PERIODS))[order])(wanted))
 
 
 def covers(paths: Paths, v: Floats, width: float) -> Floats:
@@ -158,5 +173,7 @@ def circuits_to_cover(paths: Paths, lines: Levels, width: float) -> int:
 
 COVERED = 1e-6
 """Bands that are too narrow by less than this share cover all the same."""
+_PERIODS = (-2.0, -1.0, 0.0, 1.0, 2.0)
+"""Turns by which values around a line are repeated."""
 _AROUND = 4
 """Points around a level line for each span of the surface, between which the integral is a sum."""
