@@ -129,6 +129,16 @@ def test_the_command_says_what_it_wrote(run: Path, tmp_path: Path) -> None:
     assert len(machine_names()) == 6
 
 
+def test_options_may_come_from_a_file(run: Path, tmp_path: Path) -> None:
+    (tmp_path / "my.toml").write_text(f'folder = "{run}"\nagain = false\nto = "csv"\ntension = 20\nout = "there"\n')
+    done = called("--config", tmp_path / "my.toml", "--tension", "5", "--json")
+    assert done.returncode in (0, 3), done.stderr
+    told = json.loads(done.stdout)
+    assert told["rewound"] is None and told["folder"] == str(tmp_path / "there")
+    assert (np.genfromtxt(tmp_path / "there" / "program.csv", delimiter=",", names=True)["tension"] == 5.0).all()
+    assert not (tmp_path / "there" / "axes.png").exists()
+
+
 def test_travel_that_is_too_short_is_a_fault(run: Path, tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     file.write_text(MINE.replace("low = 0.0, high = 120.0", "low = 0.4, high = 0.5"))

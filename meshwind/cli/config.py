@@ -11,10 +11,10 @@ from meshwind.cli.signature import InFile
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import nearest, read_toml, shortened
 
-_PATHS = "mesh", "out", "pins", "layers"
+_PATHS = "mesh", "folder", "out", "pins", "layers"
 """Options that are paths, relative to the file that they are read from."""
 _EXPECTED = {bool: "true or false", int: "a whole number", float: "a number", str: "a text in quotes"}
-_NOT_IN_FILES = "config", "help"
+_NOT_IN_FILES = "config", "help", "machines"
 
 Keys = dict[str, tuple[str, tuple[type, ...]]]
 """What a file may hold: by its key the name of the parameter, and the types that its value may have."""
@@ -34,7 +34,7 @@ Config = Annotated[
         callback=take_config,
         is_eager=True,
         rich_help_panel=FILES,
-        help="TOML file with options by their long names, and mesh; command-line options override the file.",
+        help="TOML file with options by their long names, and mesh or folder; command-line options override the file.",
     ),
 ]
 

@@ -6,6 +6,7 @@ import typer
 
 from meshwind.appearance.words import duration
 from meshwind.cli.arguments import OtherFolder, Printed, ResultsFolder
+from meshwind.cli.config import Config
 from meshwind.cli.help import some_of, split_names
 from meshwind.cli.output import print_report, stages
 from meshwind.cli.signature import with_records
@@ -98,6 +99,7 @@ def program(  # noqa: PLR0913
         ),
     ] = False,
     out: OtherFolder = None,
+    config: Config = None,
     printed: Printed,
 ) -> int:
     """Write the program of a machine that winds the filament of a run, which was wound with --continuous.
@@ -117,7 +119,7 @@ def program(  # noqa: PLR0913
     span or the eye meets the part, an axis cannot go where it must, the fibre does not come to lie within half of its
     band's width of where it was planned, or a text was not read back as it was meant (program.json lists them).
     """
-    del machines
+    del machines, config
     from meshwind.program.targets import write_program
 
     with stages(printed) as progress:

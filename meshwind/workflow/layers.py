@@ -21,7 +21,7 @@ from meshwind.filament.spiral import Ground
 from meshwind.path import Status
 from meshwind.surface import Surface
 from meshwind.workflow.covering import Laid, lay_until_covered
-from meshwind.workflow.helices import Helices
+from meshwind.workflow.helices import Helices, Settled
 from meshwind.workflow.layer_plans import HOOP, LayerPlan, LayersFile
 from meshwind.workflow.notes import Note, about_filament
 from meshwind.workflow.options import Options
@@ -32,11 +32,12 @@ _HANGING = 0.05
 
 @dataclass(frozen=True)
 class Layered:
-    """A laminate, its file, and the options that the run was given."""
+    """A laminate, its file, the run's options, and what was settled on for the first layer if it is helical."""
 
     laminate: Laminate
     file: Path
     options: Options
+    first: Settled | None = None
 
 
 def lay_layers(surface: Surface, asked: LayersFile, options: Options, units: str) -> tuple[Layered, tuple[Note, ...]]:
@@ -47,16 +48,18 @@ def lay_layers(surface: Surface, asked: LayersFile, options: Options, units: str
     layers: list[LaidLayer] = []
     notes: list[Note] = []
     plies = []
+    first: Settled | None = None
     for number, plan in enumerate(asked.plans, 1):
         with _naming(number):
             plies.append(plan.ply(options, units))
     for number, (plan, ply) in enumerate(zip(asked.plans, plies, strict=True), 1):
         for _ in range(plan.repeat):
             with _naming(number):
-                layer = _lay(_Below.of(layers, surface), plan, ply, options)
+                layer, last = _lay(_Below.of(layers, surface), plan, ply, options)
+            first = first if layers else last
             layers.append(layer)
             notes += [Note(f"layer {len(layers)}: {line}", warning=True) for line in _faults(layer)]
-    return Layered(Laminate(tuple(layers)), asked.file, options), tuple(dict.fromkeys(notes))
+    return Layered(Laminate(tuple(layers)), asked.file, options, first), tuple(dict.fromkeys(notes))
 
 
 @contextmanager
@@ -111,8 +114,8 @@ class _Below:
         return cls(last.raised.surface, None if last.strand is None else last.strand.tail)
 
 
-def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options) -> LaidLayer:
-    """Wind one layer on a surface."""
+def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options) -> tuple[LaidLayer, Settled | None]:
+    """Wind one layer on a surface; with what was settled on for it, if it is helical."""
     surface = below.surface
     lines = levels(surface)
     ground = Ground(surface, lines, ply.laying.width)
@@ -121,9 +124,9 @@ def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options) -> LaidLaye
     if plan.kind == HOOP:
         hoops = HoopPlan(*between, ply.laying.width, plan.passes, plan.overlap, plan.stagger)
         if not options.continuous:
-            return hoop_layer(surface, hoop(surface, hoops), ply, lines)
+            return hoop_layer(surface, hoop(surface, hoops), ply, lines), None
         strand, laid = strand_of_hoop(hoops, tail, ground, ply.friction)
-        return hoop_layer(surface, laid, ply, lines, replace(strand, cut=plan.cut))
+        return hoop_layer(surface, laid, ply, lines, replace(strand, cut=plan.cut)), None
     if not between[0] < between[1]:
         raise BadInputError(f"it starts at v={between[0]:g} and ends at v={between[1]:g}; give its places in order")
     helices = Helices(surface, between, ply.friction, lines)
@@ -149,23 +152,29 @@ def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options) -> LaidLaye
     if closed is not None:
         strand = replace(strand_of_paths(closed, tail, ground, ply.friction), cut=plan.cut)
         layer = helical_layer(paths, ply, lines, closed.left_out, strand)
-        return replace(layer, shortfall=settled.shortfall)
+        return replace(layer, shortfall=settled.shortfall), settled
     held = paths.status == Status.CONVERGED
     if not held.any():
         raise BadInputError(f"no path of it comes to rest: {paths.advice(0)}")
-    return replace(helical_layer(paths.subset(held), ply, lines, int((~held).sum())), shortfall=settled.shortfall)
+    layer = helical_layer(paths.subset(held), ply, lines, int((~held).sum()))
+    return replace(layer, shortfall=settled.shortfall), settled
 
 
-def first_helical(plans: tuple[LayerPlan, ...], surface: Surface, options: Options, units: str) -> Options:
+def first_helical(plans: tuple[LayerPlan, ...], layered: Layered, surface: Surface, units: str) -> Options:
     """The options of a run whose paths are those of the first helical layer, as it would lie on the bare part."""
+    options = layered.options
     plan = next((plan for plan in plans if plan.kind != HOOP), None)
     if plan is None:
         return options
-    ply = plan.ply(options, units)
-    paths, turns, *_ = Helices(surface, (0.0, 1.0), ply.friction, levels(surface)).settled(
-        plan.angle, plan.revolutions, plan.paths, ply.laying.width
-    )
-    return replace(options, paths=paths, revolutions=turns, friction=ply.friction, band_width=ply.laying.width)
+    ply, settled, lines = plan.ply(options, units), layered.first, levels(surface)
+    if settled is None or (station(plan.start, lines), station(plan.end, lines)) != (0.0, 1.0):
+        settled = Helices(surface, (0.0, 1.0), ply.friction, lines).settled(
+            plan.angle, plan.revolutions, plan.paths, ply.laying.width
+        )
+    return replace(
+        options, paths=settled.paths, revolutions=settled.revolutions, friction=ply.friction,
+        band_width=ply.laying.width,
+    )  # fmt: skip
 
 
 def about_layers(layered: Layered, caps: tuple[bool, bool], units: str) -> tuple[Note, ...]:

@@ -80,10 +80,11 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: 
     """
     part = part.counting(options.threshold)
     surface, units = part.surface, part.source.mesh.units
-    asked = options
+    layered, about = None, tuple[Note, ...]()
     if layers is not None:
         with clock.stage("layers"):
-            options = first_helical(layers.plans, surface, options, units)
+            layered, about = lay_layers(surface, layers, options, units)
+            options = first_helical(layers.plans, layered, surface, units)
     with clock.stage("fit"):
         notes = (
             *about_file(part.source.mesh),
@@ -99,12 +100,8 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: 
             options, turned, more = _planned(surface, options, revolutions, friction)
             notes = (*notes, *more)
         revolutions = float(options.turns)
-    layered, first = None, None
-    if layers is not None:
-        with clock.stage("layers"):
-            layered, more = lay_layers(surface, layers, asked, units)
-            first = layered.laminate.layers[0].closed
-            notes = (*notes, *more)
+    notes = (*notes, *about)
+    first = None if layered is None else layered.laminate.layers[0].closed
     with clock.stage("wind"):
         closing = options.continuous and layered is None
         plan = _closing(options, revolutions, friction, turned, given.paths is None) if closing else None
