@@ -18,7 +18,7 @@ from meshwind.filament.pattern import Pattern
 from meshwind.filament.polar_hollow import hollow
 from meshwind.filament.polar_legs import End, Half, halves, opening
 from meshwind.filament.polar_meet import MEETS, met
-from meshwind.filament.polar_natural import FURTHEST, Natural, Tables, natural, tables
+from meshwind.filament.polar_natural import natural, tables, with_least
 from meshwind.filament.polar_rows import Rows, Stretch, evenly
 from meshwind.march.traced import Stop
 from meshwind.path.paths import Counters, Paths, Status
@@ -180,7 +180,7 @@ def passes_between_caps(
     legs = tables(ends)
     free = natural(legs)
     wanted = [turns] if turns is not None else _next_to(free.turns * circuits, circuits)
-    chosen, maps, legs = _with_least(ends, legs, free, wanted, circuits)
+    chosen, maps, legs = with_least(ends, legs, free, wanted, circuits)
     theta = np.arange(circuits) * (chosen / circuits)
     touch = maps.touches(np.asarray(theta))
     touch[:, 2] = np.append(touch[1:, 0], touch[0, 0] + chosen)
@@ -284,18 +284,6 @@ def _next_to(turns: float, circuits: int) -> list[int]:
     while gcd(above, circuits) != 1:
         above += 1
     return [below, above]
-
-
-def _with_least(
-    ends: tuple[End, End], legs: Tables, free: Natural, wanted: list[int], circuits: int
-) -> tuple[int, Natural, Tables]:
-    """The turns with the least slip, their maps, and tables that reach as far as their slips."""
-    each = [natural(legs, turns / circuits, free) for turns in wanted]
-    if min(maps.worst for maps in each) > legs.reach:
-        legs = tables(ends, min(1.5 * max(maps.worst for maps in each), FURTHEST), steered=1)
-        each = [natural(legs, turns / circuits, maps) for turns, maps in zip(wanted, each, strict=True)]
-    best = min(range(len(each)), key=lambda k: each[k].worst)
-    return wanted[best], each[best], legs
 
 
 def _spread(surface: Surface, end: End, count: int) -> Floats:

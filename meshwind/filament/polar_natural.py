@@ -26,7 +26,7 @@ _FINER = 8
 """Places of the table's spline between two of them, by Fourier series: it is then as good as these."""
 _REACH = 0.05
 """Slip up to which half-legs are tabulated at first."""
-FURTHEST = 1.0
+_FURTHEST = 1.0
 """Slip up to which they are tabulated where more is needed: more than any friction on a mould."""
 _SMALLEST = 0.01
 """Slip up to which half-legs must get away from their opening at the least."""
@@ -201,6 +201,18 @@ def natural(legs: Tables, turns: float | None = None, near: Natural | None = Non
         if small:
             break
     return now
+
+
+def with_least(
+    ends: tuple[End, End], legs: Tables, free: Natural, wanted: list[int], circuits: int
+) -> tuple[int, Natural, Tables]:
+    """The turns with the least slip, their maps, and tables that reach as far as their slips."""
+    each = [natural(legs, turns / circuits, free) for turns in wanted]
+    if min(maps.worst for maps in each) > legs.reach:
+        legs = tables(ends, min(1.5 * max(maps.worst for maps in each), _FURTHEST), steered=1)
+        each = [natural(legs, turns / circuits, maps) for turns, maps in zip(wanted, each, strict=True)]
+    best = min(range(len(each)), key=lambda k: each[k].worst)
+    return wanted[best], each[best], legs
 
 
 def _with_slips(legs: Tables, maps: Natural, theta: Floats) -> Natural:
