@@ -10,6 +10,9 @@ from layup_shapes import drawn
 
 import meshwind as mw
 from meshwind.core.errors import BadInputError
+from meshwind.filament.closing import close_layer
+from meshwind.filament.ends import LayerPlan as ClosingPlan
+from meshwind.filament.ends import Wish
 from meshwind.filament.levels import levels
 from meshwind.filament.stations import angles_at, median_angle
 from meshwind.layup.direction import directions
@@ -17,7 +20,7 @@ from meshwind.layup.direction import winding_angle as angle_map
 from meshwind.surface import Surface
 from meshwind.surface.interpolate import interpolate
 from meshwind.workflow.angle_search import back_to_held, hunt, last_held
-from meshwind.workflow.helices import Helices
+from meshwind.workflow.helices import Helices, Turned
 
 
 def helices(surface: Surface) -> Helices:
@@ -178,3 +181,17 @@ def test_the_median_of_many_paths_follows_from_a_few() -> None:
 def test_what_cannot_be_asked_for(options: dict[str, object], line: str) -> None:
     with pytest.raises(BadInputError, match=line):
         mw.wind("data/tank.ply", **options)  # type: ignore[arg-type]
+
+
+def test_a_filament_meets_its_angle_where_the_median_leaps() -> None:
+    """On the cast paths come to rest in one place or another: 24 of them tell the angle of all by up to a degree off."""
+    surface = mw.fit(mw.flatten(mw.annulus(mw.read("data/cast.ply"))))
+    wish = Wish(0.19853, radians(20.0))
+    closed = close_layer(surface, ClosingPlan(54, 0.2184, grows=True, angle=wish))
+    assert closed.left_out == 0
+    found = np.degrees(np.nanmedian(angles_at(closed.paths, np.array([wish.v]))))
+    assert found == pytest.approx(20.0, abs=0.5)
+    turned = Turned(closed.revolutions, wish.v, wish.wanted, radians(20.4))
+    assert turned.moved(closed.paths) == ()
+    (note,) = Turned(closed.revolutions, wish.v, wish.wanted - radians(1.0), radians(19.0)).moved(closed.paths)
+    assert "instead of 19.00" in note.text

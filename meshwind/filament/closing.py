@@ -12,7 +12,7 @@ from meshwind.filament.ends import CAP, LayerPlan, Pairs
 from meshwind.filament.joining import Joining, join, passes
 from meshwind.filament.lift import Hung, hung
 from meshwind.filament.pattern import Pattern
-from meshwind.filament.settling import lay, settle
+from meshwind.filament.settling import lay
 from meshwind.filament.turnaround import Turnaround
 from meshwind.path import Paths
 from meshwind.surface.rims import rim
@@ -91,8 +91,7 @@ def close_layer(surface: Surface, plan: LayerPlan) -> ClosedLayer:
     """
     if CAP in plan.turns:
         return _on_caps(surface, plan)
-    settled = settle(surface, plan)
-    kept, left_out = lay(surface, settled)
+    settled, kept, left_out = lay(surface, plan)
     pairs = [end.pairs(kept) for end in settled.ends]
     joining = _joined(pairs)
     fibres = _hung(kept, pairs)

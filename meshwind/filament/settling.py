@@ -32,6 +32,8 @@ _FEW = 3
 """Paths by which a small number may grow all the same."""
 _MET = np.radians(0.3)
 """How near an angle is to be met; half a degree is asked for, and these few paths tell it to 0.2."""
+_ENOUGH = np.radians(0.5)
+"""How near the angle of all is to be."""
 _BACK = 0.99
 """Share of the revolutions that is tried where paths do not come to rest with a little more than were asked for."""
 
@@ -56,32 +58,48 @@ class Settled:
         return self.revolutions >= 0.0 and abs(self.revolutions - self.plan.revolutions) <= _FAR / self.plan.paths
 
 
-def lay(surface: Surface, settled: Settled) -> tuple[Paths, int]:
-    """All paths of a layer in equilibrium, as many of each family, and how many are left out."""
+def lay(surface: Surface, plan: LayerPlan) -> tuple[Settled, Paths, int]:
+    """What was settled on, all paths of a layer in equilibrium, as many of each family, and how many are left out.
+
+    Where some of the paths come to rest in one place or another, a few tell the angle of all badly: if it is not met
+    then, all are asked.
+    """
+    settled = settle(surface, plan)
+    kept, left_out = _laid(surface, settled)
+    off = abs(_off(settled, kept))
+    if off > _ENOUGH:
+        other = settle(surface, plan, None)
+        nearer, more = _laid(surface, other)
+        if more <= left_out and abs(_off(other, nearer)) < off:
+            return other, nearer, more
+    return settled, kept, left_out
+
+
+def _laid(surface: Surface, settled: Settled) -> tuple[Paths, int]:
     plan = settled.plan
     return _some(_solved(surface, plan, plan.paths, settled.revolutions, -settled.dwells[0]))
 
 
-def settle(surface: Surface, plan: LayerPlan) -> Settled:
+def settle(surface: Surface, plan: LayerPlan, angled: int | None = _ANGLED) -> Settled:
     """The pattern next to what was asked for, with dwells that are long enough at the revolutions that it leaves.
 
     Where that does not exist, or not within the angle that was asked for, the revolutions stay as they are, or as the
     angle needs them, and the filament waits as hoops until it closes.  Raises BadInputError where no path of a family
     is at rest, or a turnaround cannot be made.
     """
-    scouts, lost = _some(_scouts(surface, plan, plan.revolutions, 0.0))
+    scouts, lost = _some(_scouts(surface, plan, plan.revolutions, 0.0, angled))
     ends, needed = _needed(surface, plan, scouts)
     counted = _counted(plan, 2.0 * plan.revolutions + sum(needed))
     if counted.paths != plan.paths:
         plan = counted
         ends, needed = _needed(surface, plan, scouts)
-    found = _nearest(surface, plan, ends, needed)
+    found = _nearest(surface, Settled(plan, ends, 0, needed), angled)
     if found is not None:
         settled, tried, more_lost = found
         if more_lost <= lost and abs(_off(settled, tried)) <= _MET:
             return settled
     settled = _waiting(plan, ends, needed)
-    return settled if plan.angle is None else _at_angle(surface, settled, needed, lost)
+    return settled if plan.angle is None else _at_angle(surface, settled, needed, (lost, angled))
 
 
 def _counted(plan: LayerPlan, turns: float) -> LayerPlan:
@@ -100,20 +118,19 @@ def _needed(surface: Surface, plan: LayerPlan, scouts: Paths) -> tuple[tuple[End
     return (start, end), (start.pairs(scouts).least_dwell(), end.pairs(scouts).least_dwell())
 
 
-def _nearest(
-    surface: Surface, plan: LayerPlan, ends: tuple[End, End], needed: tuple[float, float]
-) -> tuple[Settled, Paths, int] | None:
+def _nearest(surface: Surface, first: Settled, angled: int | None) -> tuple[Settled, Paths, int] | None:
     """The pattern next to what was asked for, its scouts, and how many of them are left out; None if none settles.
 
     Longer dwells leave fewer revolutions, with which collars need still longer ones: the secant of the two gives where
     they meet.
     """
-    pattern = nearest_pattern(plan.paths, 2.0 * plan.revolutions + sum(needed))
-    settled, short = Settled(plan, ends, pattern.turns, needed), np.inf
+    plan, ends = first.plan, first.ends
+    pattern = nearest_pattern(plan.paths, 2.0 * plan.revolutions + sum(first.dwells))
+    settled, short = replace(first, turns=pattern.turns), np.inf
     for _ in range(_SETTLED_IN):
         if not settled.near:
             break
-        rest = _at_rest(_scouts(surface, plan, settled.revolutions, -settled.dwells[0]))
+        rest = _at_rest(_scouts(surface, plan, settled.revolutions, -settled.dwells[0], angled))
         if rest is None:
             break
         tried, lost = rest
@@ -136,12 +153,18 @@ def _waiting(plan: LayerPlan, ends: tuple[End, End], needed: tuple[float, float]
     return Settled(plan, ends, pattern.turns, (start, min(needed[1] + more, pattern.turns / plan.paths - start)))
 
 
-def _at_angle(surface: Surface, settled: Settled, needed: tuple[float, float], lost: int) -> Settled:
-    """The pattern with the revolutions that the angle takes, with its circuits, where these are."""
+def _at_angle(
+    surface: Surface, settled: Settled, needed: tuple[float, float], scouts: tuple[int, int | None]
+) -> Settled:
+    """The pattern with the revolutions that the angle takes, with its circuits, where these are.
+
+    scouts: how many of them may be left out, and how many a family there are.
+    """
+    lost, angled = scouts
     plan, ends, best, least = settled.plan, settled.ends, settled, np.inf
     assert plan.angle is not None
     for _ in range(_SETTLED_IN):
-        rest = _at_rest(_scouts(surface, plan, settled.revolutions, -settled.dwells[0]))
+        rest = _at_rest(_scouts(surface, plan, settled.revolutions, -settled.dwells[0], angled))
         if rest is None or rest[1] > lost:
             settled = _waiting(replace(plan, revolutions=_BACK * settled.revolutions), ends, needed)
             continue
@@ -168,9 +191,11 @@ def _off(settled: Settled, scouts: Paths) -> float:
     return median_angle(scouts, plan.angle.v, plan.paths, -settled.dwells[0]) - plan.angle.wanted
 
 
-def _scouts(surface: Surface, plan: LayerPlan, revolutions: float, phase: float) -> Paths:
+def _scouts(surface: Surface, plan: LayerPlan, revolutions: float, phase: float, angled: int | None) -> Paths:
+    if angled is None:
+        return _solved(surface, plan, plan.paths, revolutions, phase)
     few = replace(plan, particles=min(plan.particles or PARTICLES, _PARTICLES))
-    count = min(plan.paths, _SCOUTS if plan.angle is None else _ANGLED)
+    count = min(plan.paths, _SCOUTS if plan.angle is None else angled)
     return _solved(surface, few, count, revolutions, phase)
 
 

@@ -80,12 +80,13 @@ class Turned:
     def moved(self, paths: Paths) -> tuple[Note, ...]:
         """Note on the angle that paths have at the place, where it is another one as a filament closes with it."""
         now = float(np.nanmedian(angles_at(paths, np.array([self.v]))))
-        if abs(now - self.reached) <= _ENOUGH:
+        wanted = self.asked if self.met else self.reached
+        if abs(now - wanted) <= _ENOUGH:
             return ()
         return (
             Note(
                 f"the filament closes at {np.degrees(now):.2f} degrees at v={self.v:.3g} instead of "
-                f"{np.degrees(self.reached):.2f}; give another number of paths, or one of the patterns above",
+                f"{np.degrees(wanted):.2f}; give another number of paths, or one of the patterns above",
                 warning=True,
             ),
         )
