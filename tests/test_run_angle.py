@@ -184,7 +184,7 @@ def test_what_cannot_be_asked_for(options: dict[str, object], line: str) -> None
 
 
 def test_a_filament_meets_its_angle_where_the_median_leaps() -> None:
-    """On the cast paths come to rest in one place or another: 24 of them tell the angle of all by up to a degree off."""
+    """On the cast paths come to rest in one place or another: 24 of them tell the angle of all a degree off."""
     surface = mw.fit(mw.flatten(mw.annulus(mw.read("data/cast.ply"))))
     wish = Wish(0.19853, radians(20.0))
     closed = close_layer(surface, ClosingPlan(54, 0.2184, grows=True, angle=wish))
