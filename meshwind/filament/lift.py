@@ -28,8 +28,10 @@ _SAME = 1e-9
 """Heights that differ by less than this share of the hull's perimeter are the same."""
 _LEAST = 2
 """Particles on the way from part to prism at least, so that one of them is in the air."""
-_WINDOW = 32
-"""Particles next to a rim through which splines are laid at first: most fibres leave among the nearer half of them."""
+_WINDOW = 1 / 8
+"""Share of a path next to a rim through which splines are laid at first: most fibres leave from its nearer half."""
+_FEWEST = 32
+"""Particles that this is at least."""
 _ROUNDS = 48
 """Most rounds in which the place where a fibre leaves is found; ten do where the part is smooth."""
 _HALVED = 4
@@ -47,7 +49,8 @@ def legs_over(turn: Turnaround, paths: Paths, family: int) -> Legs:
     crossing = legs(on, paths, family)
     if isinstance(on, PartEdge):
         return crossing
-    rays = _Rays.of(on, paths, family, _WINDOW)
+    window = max(int(_WINDOW * paths.points.shape[1]), _FEWEST)
+    rays = _Rays.of(on, paths, family, window)
     point, ahead = rays.at(np.zeros(len(crossing)))
     corner = (ahead * on.normals(crossing.around, crossing.height)).sum(axis=1) < -_FLUSH
     if not corner.any():
@@ -55,7 +58,7 @@ def legs_over(turn: Turnaround, paths: Paths, family: int) -> Legs:
     which = np.flatnonzero(corner)
     rays = rays.chosen(which)
     last = (paths.points.shape[1] - 1) / 2.0  # the other end of a path has the other half to leave from
-    place, found = _first(rays, on, catch, min(last, 0.5 * _WINDOW))
+    place, found = _first(rays, on, catch, min(last, 0.5 * window))
     if not found.all():
         rays = _Rays.of(on, paths, family).chosen(which)
         place, found = _first(rays, on, catch, last)
@@ -202,7 +205,7 @@ def _first(rays: _Rays, on: Edge, catch: Catch, last: float) -> tuple[Floats, Bo
     for turn in range(_ROUNDS):
         span = above - under
         share = np.divide(-under, span, out=np.full(count, 0.5), where=(under < 0.0) & np.isfinite(span) & (span > 0.0))
-        middle = low + (0.5 if turn % _HALVED == 0 else share) * (high - low)
+        middle = low + (0.5 if turn % _HALVED == _HALVED - 1 else share) * (high - low)
         value = beyond(middle)
         there = value >= 0.0
         under = np.where(there, np.where(stayed > 0.0, 0.5 * under, under), value)
