@@ -121,7 +121,7 @@ def measure(name: str, part: Part, circuits: int, particles: int) -> dict[str, A
     work = Work(tuple(filaments_of(layer)), part.surface, float(np.linalg.norm(np.ptp(points, axis=0))), "mm", name)
     with TemporaryDirectory() as folder:
         writing, made = timed(lambda: programmed(work, Path(folder)))
-    again, found = timed(lambda: rewind(made, Ground((part.surface,), (BAND,), part.friction)))
+    again, found = timed(lambda: rewind(made, Ground((part.surface,), (BAND,), (part.friction,))))
     row: dict[str, Any] = {"part": name, "circuits": circuits, "particles": particles, "blocks": len(made.blocks)}
     for key, cost in zip(("solving", *BARS), (solving, closing, writing, again), strict=True):
         row |= {key: cost.seconds, f"{key} work": cost.work}
