@@ -59,6 +59,8 @@ def resolve(solver: Solver, batch: Batch, curves: Floats) -> None:
     What has no equilibrium then has none.
     """
     index, n = np.flatnonzero(batch.status == CUT), batch.particles
+    if not len(index):
+        return
     fine = batch.rows(index)
     for _ in range(FINER):
         if not len(index):
