@@ -137,7 +137,8 @@ def program_lines(figures: dict[str, Any]) -> list[str]:
     slowest = max(figures["limits"], key=figures["limits"].__getitem__)
     layers = figures["seconds_of_layers"]
     each = f" (layers {', '.join(duration(seconds) for seconds in layers)})" if len(layers) > 1 else ""
-    near = f"; in hollows {figures['nearest']:.2g} {unit}" if figures["nearest"] < 0.99 * figures["clearance"] else ""
+    hollows = 0.0 <= figures["nearest"] < 0.99 * figures["clearance"]
+    near = f"; in hollows {figures['nearest']:.2g} {unit}" if hollows else ""
     lines = [
         f"machine   {figures['machine']['name']}: {figures['machine']['words']}",
         f"program   {figures['blocks']} blocks, {figures['turns']:.6g} turns, {duration(figures['seconds'])}{each}; "
