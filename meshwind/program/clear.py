@@ -12,7 +12,7 @@ from meshwind.program.mandrel import Mandrel
 from meshwind.surface.evaluate import SU, SV
 from meshwind.surface.grid import Grid
 
-SKIN = 1e-3
+_SKIN = 1e-3
 """Depth, over the part's diagonal, to which a span may dip below the surface: it starts along it."""
 _SIDES = 36
 """Sides of the shaft, whose radius it then has to 0.4 %."""
@@ -49,14 +49,14 @@ class Shaft:
 def obstacle(on: Grid, diagonal: float, mandrel: Mandrel, shaft: Shaft) -> Obstacle:
     """The obstacle that a part of a diagonal, sampled on a grid, and the shaft in it are."""
     trees = []
-    for depth in (SKIN * diagonal, 0.0):
+    for depth in (_SKIN * diagonal, 0.0):
         points, faces = skin_below(on, depth)
         if shaft.radius > depth:
             round_, sides = rod(shaft.radius - depth, shaft.ends)
             faces = np.concatenate([faces, sides + len(points)])
-            points = np.concatenate([points, mandrel.origin + round_ @ mandrel.frame])
+            points = np.concatenate([points, mandrel.outside(round_)])
         trees.append(FacetTree.of(frozen(points), frozen(faces)))
-    return Obstacle(trees[0], trees[1], SKIN * diagonal)
+    return Obstacle(trees[0], trees[1], _SKIN * diagonal)
 
 
 def skin_below(on: Grid, depth: float) -> tuple[Floats, Ints]:

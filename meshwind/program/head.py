@@ -101,12 +101,16 @@ def frames(blocks: Blocks, mandrel: Mandrel, machine: Machine) -> Floats:
 
     At roll and yaw 0 x leads round the axis, y along it, and z from it.  The roll turns x to the axis, the yaw from it.
     """
-    out = mandrel.towards(blocks.mandrel)
+    roll, yaw = (getattr(blocks, moves) * (machine.axis(moves) is not None) for moves in ("roll", "yaw"))
+    return frames_at(mandrel, blocks.mandrel, roll, yaw)
+
+
+def frames_at(mandrel: Mandrel, turned: Floats, roll: Floats, yaw: Floats) -> Floats:
+    """The same at angles (n,) of mandrel, roll and yaw in degrees."""
+    out = mandrel.towards(turned)
     along = np.broadcast_to(mandrel.direction, out.shape)
     round_ = np.cross(along, out)
-    roll, yaw = (
-        np.radians(getattr(blocks, moves))[:, None] * (machine.axis(moves) is not None) for moves in ("roll", "yaw")
-    )
+    roll, yaw = np.radians(roll)[:, None], np.radians(yaw)[:, None]
     ahead = np.cos(roll) * round_ + np.sin(roll) * along
     roller = np.cos(roll) * along - np.sin(roll) * round_
     x = np.cos(yaw) * ahead + np.sin(yaw) * out

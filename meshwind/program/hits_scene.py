@@ -78,7 +78,7 @@ def _with_shaft(made: Program, stands: Gear) -> Gear:
     points, sides = rod(radius, (float(made.body.x[0]), float(made.body.x[-1])))
     quads = sides[:, [0, 1, 2, 2]] + len(stands.points)
     return replace(
-        stands, points=np.concatenate([stands.points, made.mandrel.origin + points @ made.mandrel.frame]),
+        stands, points=np.concatenate([stands.points, made.mandrel.outside(points)]),
         held=np.concatenate([stands.held, quads]),
         held_words=f"{stands.held_words}, shaft" if stands.held_words else "shaft",
     )  # fmt: skip

@@ -199,7 +199,7 @@ def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
                 f"{work.diagonal * work.scale:.4g} mm; give less, or wind with other --units"
             )
     share = CLEARANCE * work.diagonal
-    way = Way(share if machine.clearance is None else machine.clearance / millimetres(work.units))
+    way = Way(share if machine.clearance is None else machine.clearance / work.scale)
     best = _wound(work, machine, way)
     tried: list[str] = []
     for wanted, words, change in (
@@ -226,7 +226,7 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
     """The program that winds in one way."""
     points = np.concatenate([each.course.points[:: -1 if way.backwards else 1] for each in work.filaments])
     mandrel = mandrel_of(work.surface, points)
-    scale = millimetres(work.units)
+    scale = work.scale
     shaft = machine.shaft / scale
     body = _body(work, mandrel, points, (shaft, way.clearance))
     blocked = obstacle(work.skin, work.diagonal, mandrel, Shaft(shaft, (float(body.x[0]), float(body.x[-1]))))
@@ -275,11 +275,11 @@ def _spans(machine: Machine, body: Body, work: Work) -> tuple[Spans, float | Non
     """The free spans of a machine, and the radius at which its eye stays if it has no cross-feed."""
     if machine.axis("cross") is not None:
         return on_body(body), None
-    radius = body.radius if machine.eye_radius is None else machine.eye_radius / millimetres(work.units)
+    radius = body.radius if machine.eye_radius is None else machine.eye_radius / work.scale
     if radius < body.radius - 1e-9 * body.size:
         raise BadInputError(
-            f"the eye of {machine.name} stays {radius * millimetres(work.units):.6g} mm from the axis, but the part "
-            f"with its clearance needs {body.radius * millimetres(work.units):.6g} mm; give a larger eye_radius, or a "
+            f"the eye of {machine.name} stays {radius * work.scale:.6g} mm from the axis, but the part "
+            f"with its clearance needs {body.radius * work.scale:.6g} mm; give a larger eye_radius, or a "
             "smaller clearance"
         )
     return at_radius(radius, LONGEST * body.size), radius

@@ -11,6 +11,7 @@ import numpy as np
 from meshwind.core.cast import Floats, frozen
 from meshwind.program.blocks import TRAVEL, Blocks
 from meshwind.program.body import Body
+from meshwind.program.head import frames_at
 from meshwind.program.mandrel import Mandrel
 from meshwind.program.stepping import Steps
 from meshwind.program.track import swung
@@ -43,9 +44,7 @@ def _side(blocks: Blocks, k: int, mandrel: Mandrel) -> float:
 
 def _ahead(mandrel: Mandrel, turned: Floats, roll: Floats, yaw: Floats, side: float) -> Floats:
     """The fibre's directions (n, 3) at angles (n,) in degrees of mandrel, roll and yaw."""
-    out, b, c = mandrel.towards(turned), np.radians(roll)[:, None], np.radians(yaw)[:, None]
-    round_ = np.cos(b) * np.cross(mandrel.direction, out) + np.sin(b) * mandrel.direction
-    return np.asarray(side * np.cos(c) * round_ + np.sin(c) * out)
+    return np.asarray(frames_at(mandrel, turned, roll + 90.0 * (1.0 - side), yaw)[:, :, 0])
 
 
 def _travel(ends: tuple[Blocks, Blocks], mandrel: Mandrel, body: Body | None, steps: Steps, side: float) -> Blocks:
