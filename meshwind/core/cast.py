@@ -14,9 +14,8 @@ Bools: TypeAlias = NDArray[np.bool_]
 
 def frozen(array: NDArray[Any]) -> NDArray[Any]:
     """Return a C-contiguous, read-only view or copy of `array`, as results are immutable."""
-    array = np.ascontiguousarray(array)
-    view = array.view()
-    view.flags.writeable = False
+    view = np.ascontiguousarray(array).view()
+    view.setflags(write=False)
     return view
 
 
@@ -26,7 +25,7 @@ def floats(values: ArrayLike, name: str, *shape: int) -> Floats:
     if array.ndim != len(shape) or any(want not in (-1, got) for want, got in zip(shape, array.shape, strict=True)):
         wanted = ", ".join("n" if want < 0 else str(want) for want in shape)
         raise BadInputError(f"{name} has shape {array.shape}; give an array of shape ({wanted})")
-    if not np.isfinite(array).all():
+    if np.count_nonzero(np.isfinite(array)) < array.size:
         raise BadInputError(f"{name} holds NaN or infinite values; remove them first")
     return array
 

@@ -20,7 +20,7 @@ def parallel_for(kernel: Callable[..., Any], count: int, least: int, *arguments:
 
     kernel must be compiled with nogil=True.  The number of threads is that of Numba (NUMBA_NUM_THREADS).
     """
-    threads = numba.get_num_threads()
+    threads = numba.get_num_threads() if count > least else 1
     size = max(least, -(-count // (threads * BLOCKS)))
     if threads == 1 or count <= size:
         kernel(0, count, *arguments)

@@ -126,17 +126,21 @@ def _where_it_bends(X: Floats, count: int, a_radian: float) -> Ints:
 def fresh(starts: Floats, particles: int) -> Batch:
     """A batch that is yet to begin on its starting curves (p, m, 2)."""
     shape = len(starts), particles
+    touching, required, residual = np.empty(shape, np.bool_), np.empty(shape), np.empty(len(starts))
+    touching.fill(True)
+    required.fill(np.nan)
+    residual.fill(np.inf)
     return Batch(
         starts=starts.copy(),
         X=np.empty((*shape, 3)),
         uv=np.empty((*shape, 2)),
         normal=np.zeros((*shape, 3)),
-        touching=np.ones(shape, np.bool_),
+        touching=touching,
         gap=np.zeros(shape),
-        required=np.full(shape, np.nan),
+        required=required,
         anchor=np.zeros(shape),
         mode=np.zeros(shape, np.int8),
-        residual=np.full(len(starts), np.inf),
+        residual=residual,
         status=np.zeros(len(starts), np.int64),
         counters=np.zeros((len(starts), 4), np.int64),
     )

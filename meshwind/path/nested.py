@@ -33,7 +33,8 @@ def solve_nested(solver: Solver, curves: Floats, particles: int | None, accuracy
     batch = solve_with(solver, curves, particles)
     if not solver.friction.none:
         slide_finer(solver, batch, curves)
-    resolve(solver, batch, curves)
+    if np.count_nonzero(batch.status):
+        resolve(solver, batch, curves)
     return batch
 
 
@@ -43,9 +44,9 @@ def solve_with(solver: Solver, curves: Floats, particles: int) -> Batch:
     rest = np.arange(len(curves))
     if solver.friction.none:
         solver.solve_simple(batch)
-        rest = np.flatnonzero(failing(batch))
-        if not len(rest):
+        if not np.count_nonzero(batch.status):
             return batch
+        rest = np.flatnonzero(failing(batch))
     levels = np.array([halvings(curve, particles) for curve in curves[rest]], np.int64)
     for level in np.unique(levels):
         index = rest[levels == level]

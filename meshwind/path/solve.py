@@ -19,6 +19,8 @@ from meshwind.surface.surface import Surface
 TOLERANCE = 1e-10
 """Largest unbalanced force at rest, over the tension (an angle in radians)."""
 ITERATIONS = 1000
+STILL = 1e-9
+"""Extent in u and v up to which a curve stays in one place."""
 ACCURACY = 1e-5
 """Error of a length, relative, for which particles are chosen where their number is left open."""
 
@@ -43,7 +45,11 @@ def check_share(value: float, name: str) -> None:
 
 def check_curves(curves: Floats) -> None:
     """Raise BadInputError where a curve of curves (p, k, 2) stays in one place."""
-    nowhere = np.flatnonzero((np.ptp(curves, axis=1) <= 1e-9).all(axis=1)) if curves.shape[1] else [0]
+    if curves.size:
+        apart = np.abs(curves[:, -1] - curves[:, 0])
+        if not np.count_nonzero(np.maximum(apart[:, 0], apart[:, 1]) <= STILL):
+            return
+    nowhere = np.flatnonzero((np.ptp(curves, axis=1) <= STILL).all(axis=1)) if curves.shape[1] else [0]
     if len(nowhere):
         raise BadInputError(f"path {nowhere[0]} ends where it starts; give it two ends, or a curve as initial")
 
@@ -51,7 +57,9 @@ def check_curves(curves: Floats) -> None:
 def straight(start: Floats, end: Floats, particles: int) -> Floats:
     """Straight lines in the parametric plane (6.2): curves (p, particles, 2) from start to end (p, 2)."""
     if particles == 2:
-        return np.stack([start, end], axis=1)
+        ends = np.empty((len(start), 2, 2))
+        ends[:, 0], ends[:, 1] = start, end
+        return ends
     t = np.linspace(0.0, 1.0, particles)[None, :, None]
     return np.asarray((1.0 - t) * start[:, None] + t * end[:, None])
 
@@ -144,36 +152,38 @@ def solve(  # noqa: PLR0913
     first, last = floats(start, "start", -1, 2), floats(end, "end", -1, 2)
     if len(first) != len(last):
         raise BadInputError(f"{len(first)} start points but {len(last)} end points; give as many of each")
-    for name, point in (("start", first), ("end", last)):
-        if point.size and (point[:, 1].min() < 0.0 or point[:, 1].max() > 1.0):
-            raise BadInputError(f"a {name} point has v outside [0, 1]; v runs from rim to rim")
-    curves = straight(first, last, 2) if initial is None else floats(initial, "initial", len(first), -1, 2)
+    ends = straight(first, last, 2)
+    heights = ends[..., 1]
+    if heights.size and (heights.min() < 0.0 or heights.max() > 1.0):
+        name = "start" if ((first[:, 1] < 0.0) | (first[:, 1] > 1.0)).any() else "end"
+        raise BadInputError(f"a {name} point has v outside [0, 1]; v runs from rim to rim")
+    curves = ends if initial is None else floats(initial, "initial", len(first), -1, 2)
     check_curves(curves)
-    count = len(curves)
-    sense = np.where(last[:, 0] >= first[:, 0], 1, -1) if family is None else ints(family, "family", count)
+    sense = np.where(last[:, 0] >= first[:, 0], 1, -1) if family is None else ints(family, "family", len(first))
     solver = Solver(surface, friction_of(surface, friction), bridging, tolerance, iterations)
     batch = solve_nested(solver, curves, particles, accuracy)
     options = Options(solver.friction, particles, bridging, accuracy, tolerance, iterations)
     given = None if initial is None else frozen(curves.copy())
-    asked = Asked(solve, frozen(first.copy()), frozen(last.copy()), frozen(sense.copy()), given, options)
+    asked = Asked(solve, frozen(ends[:, 0]), frozen(ends[:, 1]), frozen(sense), given, options)
     return as_paths(solver, batch, sense, asked)
 
 
 def as_paths(solver: Solver, batch: Batch, sense: ArrayLike, asked: Asked | None = None) -> Paths:
-    """The public form of a solved batch, with what was asked for where that is known."""
-    total = batch.counters.sum(axis=0)
+    """The public form of a solved batch, which becomes read-only, with what was asked for where that is known."""
+    for array in batch:
+        array.setflags(write=False)
     return Paths(
         surface=solver.surface,
         points=frozen(batch.X + solver.surface.middle),
-        uv=frozen(batch.uv),
-        on_surface=frozen(batch.touching),
-        gap=frozen(batch.gap),
-        normal=frozen(batch.normal),
-        slip=frozen(batch.required),
+        uv=batch.uv,
+        on_surface=batch.touching,
+        gap=batch.gap,
+        normal=batch.normal,
+        slip=batch.required,
         family=frozen(np.asarray(sense, dtype=np.int64)),
-        status=frozen(batch.status),
-        residual=frozen(batch.residual),
+        status=batch.status,
+        residual=batch.residual,
         friction=solver.friction.largest,
-        counters=Counters(*(int(total[k]) for k in range(4))),
+        counters=Counters(*batch.counters.sum(axis=0).tolist()),
         asked=asked,
     )

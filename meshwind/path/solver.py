@@ -57,8 +57,7 @@ class Solver:
             self._solve_simple(batch, surface.body)
             return
         self._solve_simple(batch, surface.body_without_tree)
-        lifted = np.flatnonzero(batch.status == NEEDS_TREE)
-        if len(lifted):
+        if np.count_nonzero(batch.status) and len(lifted := np.flatnonzero(batch.status == NEEDS_TREE)):
             part = fresh(batch.starts[lifted], batch.particles)  # counted as if the tree had been there
             self._solve_simple(part, surface.body)
             batch.put(lifted, part)

@@ -33,7 +33,7 @@ def solve_without_friction(first, last, body, limits, rough, batch):
     for p in range(first, last):
         curve, state = batch.starts[p], state_of(batch, p, frames)
         required, counters = batch.required[p], batch.counters[p]
-        residual, found = solve_on_surface(body, limits, curve, state, factors, required, counters)
+        residual, found = solve_on_surface(body, limits, rough, curve, state, factors, required, counters)
         status = CONVERGED
         if not found:
             residual, status = solve_nested(body, limits, rough, curve, state, required, counters)
@@ -41,7 +41,7 @@ def solve_without_friction(first, last, body, limits, rough, batch):
 
 
 @njit(cache=True)
-def solve_on_surface(body, limits, curve, state, factors, required, counters):
+def solve_on_surface(body, limits, rough, curve, state, factors, required, counters):
     """Solve from a starting curve (m, 2) into `state` on the surface; returns the residual and whether that does."""
     X, uv, frames, normal = state.X, state.uv, state.frames, state.normal
     spline, n = body.spline, len(uv)
@@ -50,7 +50,7 @@ def solve_on_surface(body, limits, curve, state, factors, required, counters):
     if 2 * few < n:
         coarse = np.empty((few, 2))
         spread_along(spline, curve, coarse, frames[:few], counters)
-        first = Limits(limits.pull_off, limits.tolerance, steps)
+        first = Limits(limits.pull_off, rough, steps)
         residual, found = glide(spline, first, coarse, frames[:few], factors, counters)
         if not found:
             return residual, False
