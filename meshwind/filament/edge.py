@@ -183,11 +183,11 @@ def edge(surface: Surface, v: float, end: int | None = None) -> Edge:
     area = np.cross(rim - middle, np.roll(rim, -1, axis=0) - middle).sum(axis=0)
     if not np.linalg.norm(area) > 0.0:
         raise BadInputError("a rim without an area has no turnaround; open the part further inside")
-    axis = unit(area[None])[0]
-    axis = axis if (along @ axis).sum() > 0.0 else -axis
+    # by the sense of u, as a flat end meets its rim square to the axis
+    axis = unit(area[None])[0] * (1.0 if end else -1.0)
     first = unit(np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])[None])[0]
     second = np.cross(axis, first)
-    second = second if area @ axis > 0.0 else -second  # u turns against the clock as seen in these two
+    second = second if end else -second  # u turns against the clock as seen in these two
     across = np.stack([first, second])
     flat = (rim - middle) @ across.T
     corners = np.sort(ConvexHull(flat).vertices)

@@ -133,6 +133,13 @@ class Pairs:
         return np.asarray(self.leaving.around[out] + turns * self.end.edge.hull.perimeter)
 
     @property
+    def _other(self) -> str:
+        """What to give instead of a turnaround that takes too long."""
+        if self.end.turnaround.name == "collar":
+            return "give pins or a shaft, more friction, or a larger angle"
+        return "fibres come to it nearly as hoops: give fewer revolutions, or open the part further inside"
+
+    @property
     def surplus(self) -> Surplus:
         """What each dwell has to spare."""
         return lambda into, out, dwell: self.end.turnaround.surplus(
@@ -166,7 +173,7 @@ class Pairs:
             if not dwell < _LONGEST_DWELL:
                 raise BadInputError(
                     f"the turnaround at the {'end' if edge_.end else 'start'} ({self.end.turnaround.name}) would take "
-                    f"more than {_LONGEST_DWELL:g} turns; give pins or a shaft, more friction, or a larger angle"
+                    f"more than {_LONGEST_DWELL:g} turns; {self._other}"
                 )
         return dwell + 2.0 * ROOM
 

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from meshwind.core.cast import Bools, Floats, Ints, frozen
-from meshwind.core.vectors import unit
+from meshwind.core.vectors import TINY, unit
 from meshwind.filament.edge import Edge, Legs, Lift, legs
 from meshwind.filament.part_edge import PartEdge
 from meshwind.filament.section import Meeting
@@ -36,6 +36,8 @@ _ROUNDS = 48
 """Most rounds in which the place where a fibre leaves is found; ten do where the part is smooth."""
 _HALVED = 4
 """Rounds of which one halves the way that is left, however the others get on."""
+_LEAP = 1e-6
+"""Length over the hull's by which no ray that grazes the prism passes it by."""
 _NEAR = 1e-12
 """Numbers of a particle, and lengths over the hull's, that are round-off."""
 
@@ -173,48 +175,86 @@ def _met(on: Edge, point: Floats, ahead: Floats) -> Meeting:
     return on.hull.met((point - on.origin) @ on.across.T, ahead @ on.across.T)
 
 
-def _first(rays: _Rays, on: Edge, catch: Catch, last: float) -> tuple[Floats, Bools]:
-    """Places (n,) nearest to the rim from which rays pass the prism by or meet it at the pins, and which have one.
+def _touch(on: Edge, point: Floats, ahead: Floats, sense: int) -> tuple[Floats, Floats]:
+    """Length (n,) along the hull where rays that pass the prism by touch it, or come nearest, and (n,) how far off.
 
-    last: the farthest place that is looked at.
+    There its normal is square to the ray.
     """
+    way = ahead @ on.across.T
+    grazed = on.hull.passed_at(np.arctan2(-sense * way[:, 0], sense * way[:, 1]))
+    short = on.hull.at(grazed) - (point - on.origin) @ on.across.T
+    return grazed, (short * way).sum(axis=1) / np.maximum((way**2).sum(axis=1), TINY)
 
-    def beyond(place: Floats) -> Floats:
-        """Lengths (n,), over the hull's, by which rays pass the prism by, or meet it above the pins."""
-        point, ahead = rays.at(place)
-        met = _met(on, point, ahead)
-        height = (point - on.origin) @ on.axis + np.where(np.isfinite(met.length), met.length, 0.0) * (ahead @ on.axis)
-        # one that has the prism behind it passes by as well
-        over = np.where(np.isfinite(met.length), height - catch.height, np.abs(met.depth))
-        return np.asarray(np.maximum(-met.depth, over) / on.hull.perimeter)
 
+def _beyond(rays: _Rays, on: Edge, catch: Catch, place: Floats) -> Floats:
+    """Lengths (n,), over the hull's, by which rays at places pass the prism by, or meet it above the pins."""
+    point, ahead = rays.at(place)
+    met = _met(on, point, ahead)
+    height = (point - on.origin) @ on.axis + np.where(np.isfinite(met.length), met.length, 0.0) * (ahead @ on.axis)
+    # one that has the prism behind it passes by as well
+    over = np.where(np.isfinite(met.length), height - catch.height, np.abs(met.depth))
+    past = np.maximum(-met.depth, over)
+    # but beside a notch it may touch what would be the prism within the part
+    touched = point + _touch(on, point, ahead, rays.sense)[1][:, None] * ahead
+    within = ((touched - on.origin) @ on.axis < on.lowest) & ~np.isfinite(met.length)
+    return np.asarray(np.where(within, -np.abs(past), past) / on.hull.perimeter)
+
+
+def _bracketed(rays: _Rays, on: Edge, catch: Catch, last: float) -> tuple[Floats, Floats, Floats, Floats, Bools]:
+    """Places (n,) between which rays come beyond first, by how much they are there, and which do.
+
+    Rays are tried ever further from the rim; of those that are not beyond there, as it goes back again, all are tried.
+    """
     count = len(rays.points)
     low, high, found = np.zeros(count), np.zeros(count), np.zeros(count, dtype=bool)
     under, above = np.zeros(count), np.zeros(count)
     step = 1.0
     while not found.all() and step < 2.0 * last:
         tried = np.full(count, min(step, last))
-        value = beyond(tried)
+        value = _beyond(rays, on, catch, tried)
         now = (value >= 0.0) & ~found
         high, above = np.where(now, tried, high), np.where(now, value, above)
         more = ~found & ~now
         low, under = np.where(more, tried, low), np.where(more, value, under)
         found, step = found | now, 2.0 * step
+    missed = np.flatnonzero(~found)
+    if len(missed):
+        places = np.arange(1.0, last + 1.0)
+        each = rays.chosen(np.repeat(missed, len(places)))
+        value = _beyond(each, on, catch, np.tile(places, len(missed))).reshape(len(missed), -1)
+        first, row = (value >= 0.0).argmax(axis=1), np.arange(len(missed))
+        found[missed] = value[row, first] >= 0.0
+        high[missed], above[missed] = places[first], value[row, first]
+        low[missed], under[missed] = places[first] - 1.0, np.where(first > 0, value[row, first - 1], 0.0)
+    return low, high, under, above, found
+
+
+def _first(rays: _Rays, on: Edge, catch: Catch, last: float) -> tuple[Floats, Bools]:
+    """Places (n,) nearest to the rim from which rays pass the prism by or meet it at the pins, and which have one.
+
+    last: the farthest place that is looked at.
+    """
+    low, high, under, above, found = _bracketed(rays, on, catch, last)
+    value, middle, passes = above, high, above
     # false position as in the Illinois method: an end that stays counts half
-    stayed = np.zeros(count)
+    stayed = np.zeros(len(low))
     for turn in range(_ROUNDS):
         span = above - under
-        share = np.divide(-under, span, out=np.full(count, 0.5), where=(under < 0.0) & np.isfinite(span) & (span > 0.0))
+        share = np.divide(
+            -under, span, out=np.full_like(low, 0.5), where=(under < 0.0) & np.isfinite(span) & (span > 0.0)
+        )
         middle = low + (0.5 if turn % _HALVED == _HALVED - 1 else share) * (high - low)
-        value = beyond(middle)
+        value = _beyond(rays, on, catch, middle)
         there = value >= 0.0
+        passes = np.where(there, value, passes)
         under = np.where(there, np.where(stayed > 0.0, 0.5 * under, under), value)
         above = np.where(there, value, np.where(stayed < 0.0, 0.5 * above, above))
         low, high = np.where(there, low, middle), np.where(there, middle, high)
         stayed = np.where(there, 1.0, -1.0)
         if (np.minimum(high - low, np.abs(value)) < _NEAR).all():
             break
-    return np.where(np.abs(value) < _NEAR, middle, high), found
+    # on a rough part what is beyond may begin with a leap, where no fibre lies on both
+    return np.where(np.abs(value) < _NEAR, middle, high), found & (np.minimum(passes, np.abs(value)) < _LEAP)
 
 
 def _lifted(crossing: Legs, which: Ints, rays: _Rays, found: tuple[Edge, Catch, Floats]) -> Legs:
@@ -225,12 +265,8 @@ def _lifted(crossing: Legs, which: Ints, rays: _Rays, found: tuple[Edge, Catch, 
     length, hits = met.length, np.isfinite(met.length)  # or grazes, but for round-off
     level = (off - on.origin) @ on.axis + np.where(hits, length, 0.0) * (ahead @ on.axis)
     held = hits & (level >= catch.height - _SAME * on.hull.perimeter)
-    # a fibre that passes by touches the prism where its normal is square to the fibre
-    way = ahead @ on.across.T
-    turned = np.arctan2(-rays.sense * way[:, 0], rays.sense * way[:, 1])
-    near = on.hull.normal_angle(crossing.around[which])
-    grazed = on.hull.passed_at(turned + 2.0 * np.pi * np.round((near - turned) / (2.0 * np.pi)))
-    touch = ((on.hull.at(grazed) - (off - on.origin) @ on.across.T) * way).sum(axis=1) / (way**2).sum(axis=1)
+    grazed, touch = _touch(on, off, ahead, rays.sense)
+    grazed += on.hull.perimeter * np.round((crossing.around[which] - grazed) / on.hull.perimeter)
     length = np.where(held, length, touch)
     corner = off + length[:, None] * ahead
     turns = np.round((crossing.around[which] - met.passed) / on.hull.perimeter)
