@@ -246,3 +246,41 @@ def test_a_fibre_that_lands_beside_its_pin_never_goes_back() -> None:
         step /= np.linalg.norm(step, axis=1, keepdims=True)
         assert np.degrees(np.arccos((step[1:] * step[:-1]).sum(axis=1))).max() < 10.0
         assert ((points - on.origin) @ on.axis).max() == pytest.approx(on.highest + pins.reach)
+
+
+def drum(dish: float, notch: float = 0.0) -> Surface:
+    """The outer half of a torus, whose rims lie in flat ends, or in dishes; or with a notch in the rims."""
+
+    def place(u: Floats, v: Floats) -> Floats:
+        t, z = 2.0 * pi * u, -1.5 * np.cos(pi * v) - dish * np.sin(2.0 * pi * v)
+        radius = 0.3 + 0.7 * np.sin(pi * v)
+        z = z - notch * np.cos(pi * v) ** 9 * np.exp(-((30.0 * np.sin(pi * u)) ** 2))
+        return np.stack([radius * np.cos(t), radius * np.sin(t), z], axis=-1)
+
+    return interpolate(place, (384, 48))
+
+
+@pytest.mark.parametrize("dish", [0.0, 1e-3, -1e-3, 0.06])
+def test_flat_and_dished_ends_face_away_from_the_part(dish: float) -> None:
+    surface = drum(dish)
+    for v, way in ((0.0, -1.0), (1.0, 1.0)):
+        assert edge(surface, v).axis == pytest.approx([0.0, 0.0, way], abs=1e-9)
+        # a fibre comes straight along the end to its pins, and turns on them
+        assert np.degrees(edge(surface, v).crease) == pytest.approx(-90.0, abs=20.0)
+    layer = close_layer(surface, LayerPlan(12, 0.3, 0.0, 201))
+    assert {turn.name for turn in layer.turnarounds} == {"pins"}
+    for turn in layer.turnarounds:
+        for family in (1, -1):
+            legs = legs_over(turn, layer.paths, family)  # type: ignore[arg-type]
+            assert legs.lift is not None and legs.lift.held.all()
+    assert max(layer.joining.start_dwell.max(), layer.joining.end_dwell.max()) < 0.7
+
+
+def test_a_notch_in_a_rim_is_no_rim_along_the_axis() -> None:
+    """Its sides are steeper than 78 degrees, as some of a scan's rims have them."""
+    on = edge(drum(0.0, 0.4), 1.0)
+    assert on.highest - on.lowest == pytest.approx(0.4, rel=0.01)
+    layer = close_layer(drum(0.0, 0.4), LayerPlan(12, 0.3, 0.0, 201))
+    filament = layer.filaments[0]
+    assert len(layer.filaments) == 1
+    assert np.linalg.norm(filament.points[0] - filament.points[-1]) < 1e-9

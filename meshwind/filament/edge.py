@@ -20,7 +20,9 @@ from meshwind.surface.surface import Surface
 _SAMPLES = 1440
 """Points of the rim, a quarter of a degree apart: chords between them are shorter than the arc by 8e-7."""
 _SLANTED = 0.98
-"""Sine of the largest slope of a rim against the plane square to its axis that still unrolls."""
+"""Sine of the largest slope of a rim against the plane square to its axis that still unrolls, ..."""
+_STEEP = 0.05
+"""... and the share of a rim that may be steeper: a scan's rim has notches."""
 _ONE_SIDED = np.array([11.0, -18.0, 9.0, -2.0]) / 6.0
 """Derivative at the end of a row of even steps, of third order."""
 
@@ -194,7 +196,7 @@ def edge(surface: Surface, v: float, end: int | None = None) -> Edge:
     height = (rim - middle) @ axis
     hull = section(flat[corners])
     slope = unit(frames[:, SU]) @ axis
-    if np.abs(slope).max() > _SLANTED:
+    if (np.abs(slope) > _SLANTED).mean() > _STEEP:
         raise BadInputError("a rim that runs along its own axis has no turnaround; open the part by a plane")
     made = Edge(
         frozen(middle), frozen(axis), frozen(across), hull, frozen(u[corners]), float(height.min()),
