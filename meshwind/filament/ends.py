@@ -13,7 +13,7 @@ from meshwind.core.parsing import AUTO
 from meshwind.filament.collar_turn import Collar
 from meshwind.filament.edge import Edge, Legs, edge
 from meshwind.filament.joining import Surplus
-from meshwind.filament.lift import legs_over
+from meshwind.filament.lift import legs_of_all
 from meshwind.filament.part_edge import part_edge
 from meshwind.filament.part_turn import Bend
 from meshwind.filament.pin_turn import Pins, Shaft
@@ -107,7 +107,7 @@ class End:
     def pairs(self, paths: Paths) -> "Pairs":
         """The legs that arrive and those that leave."""
         families_ = (1, -1) if self.edge.end else (-1, 1)
-        into, out = (legs_over(self.turnaround, paths, family) for family in families_)
+        into, out = legs_of_all(self.turnaround, paths, families_)
         if np.isinf(into.height).any() or np.isinf(out.height).any():
             raise BadInputError(
                 f"the turnaround at the {'end' if self.edge.end else 'start'} ({self.turnaround.name}) stands up from "
@@ -187,7 +187,7 @@ def choose_end(surface: Surface, end: int, plan: LayerPlan, word: str, scouts: P
     friction = float(held.table[:, -end].min())
     pitch = on.hull.perimeter / plan.paths
     pins = Pins(on, _PIN_HIGH * pitch, _PIN_WIDE * pitch, pitch)
-    if any(legs_over(pins, scouts, family).lift is not None for family in (1, -1)):
+    if any(legs.lift is not None for legs in legs_of_all(pins, scouts)):
         pins = replace(pins, height=_PIN_HIGHER * pitch)
     if word == "pins":
         return End(surface, v, on, pins)
@@ -205,7 +205,7 @@ def choose_end(surface: Surface, end: int, plan: LayerPlan, word: str, scouts: P
 
 def _top(collar: Collar, scouts: Paths) -> float:
     """Height over the rim up to which a collar must reach; infinite where no collar is long enough."""
-    each = [legs_over(collar, scouts, family) for family in (1, -1)]
+    each = legs_of_all(collar, scouts)
     if any(np.isinf(legs.height).any() for legs in each):
         return np.inf
     tops = [collar.reached(legs, np.zeros(len(legs)))[1].max() for legs in each]

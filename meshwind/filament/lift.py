@@ -9,13 +9,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from meshwind.core.cast import Bools, Floats, Ints, frozen
-from meshwind.core.vectors import TINY, unit
+from meshwind.core.vectors import unit
 from meshwind.filament.edge import Edge, Legs, Lift, legs
+from meshwind.filament.leaving import Rays, first, met, touch
 from meshwind.filament.part_edge import PartEdge
-from meshwind.filament.section import Meeting
 from meshwind.filament.turnaround import Catch, Turnaround
 from meshwind.path.paths import Paths
 from meshwind.path.winding_angle import winding_angle
@@ -32,14 +31,6 @@ _WINDOW = 1 / 8
 """Share of a path next to a rim through which splines are laid at first: most fibres leave from its nearer half."""
 _FEWEST = 32
 """Particles that this is at least."""
-_ROUNDS = 48
-"""Most rounds in which the place where a fibre leaves is found; ten do where the part is smooth."""
-_HALVED = 4
-"""Rounds of which one halves the way that is left, however the others get on."""
-_LEAP = 1e-6
-"""Length over the hull's by which no ray that grazes the prism passes it by."""
-_NEAR = 1e-12
-"""Numbers of a particle, and lengths over the hull's, that are round-off."""
 
 
 def legs_over(turn: Turnaround, paths: Paths, family: int) -> Legs:
@@ -47,29 +38,41 @@ def legs_over(turn: Turnaround, paths: Paths, family: int) -> Legs:
 
     The height of those is infinite that slide up the prism without end, as they aim at its axis and no pins stop them.
     """
+    return legs_of_all(turn, paths, (family,))[0]
+
+
+def legs_of_all(turn: Turnaround, paths: Paths, families: tuple[int, ...] = (1, -1)) -> list[Legs]:
+    """The same of some families, found at once."""
     on, catch = turn.edge, turn.catch
-    crossing = legs(on, paths, family)
+    crossing = [legs(on, paths, family) for family in families]
     if isinstance(on, PartEdge):
         return crossing
+    rows = np.concatenate([np.flatnonzero(paths.family == family) for family in families])
+    around, height = (np.concatenate([getattr(each, name) for each in crossing]) for name in ("around", "height"))
     window = max(int(_WINDOW * paths.points.shape[1]), _FEWEST)
-    rays = _Rays.of(on, paths, family, window)
-    point, ahead = rays.at(np.zeros(len(crossing)))
-    corner = (ahead * on.normals(crossing.around, crossing.height)).sum(axis=1) < -_FLUSH
-    if not corner.any():
+    rays = Rays.of(on, paths, rows, window)
+    _, ahead = rays.at(np.zeros(len(rows)))
+    which = np.flatnonzero((ahead * on.normals(around, height)).sum(axis=1) < -_FLUSH)
+    if not len(which):
         return crossing
-    which = np.flatnonzero(corner)
     rays = rays.chosen(which)
     last = (paths.points.shape[1] - 1) / 2.0  # the other end of a path has the other half to leave from
-    place, found = _first(rays, on, catch, min(last, 0.5 * window))
+    place, found = first(rays, on, catch, min(last, 0.5 * window))
     if not found.all():
-        rays = _Rays.of(on, paths, family).chosen(which)
-        place, found = _first(rays, on, catch, last)
-    legs_ = _lifted(crossing, which[found], rays.chosen(found), (on, catch, place[found])) if found.any() else crossing
-    if np.isfinite(catch.height):
-        return legs_
-    height = np.where(legs_.height > on.highest + _ENDLESS * on.hull.perimeter, np.inf, legs_.height)
-    height[which[~found]] = np.inf
-    return replace(legs_, height=frozen(height))
+        rays = Rays.of(on, paths, rows[which])
+        place, found = first(rays, on, catch, last)
+    made = []
+    begin = np.cumsum([0, *(len(each) for each in crossing)])
+    for each, start, end in zip(crossing, begin[:-1], begin[1:], strict=True):
+        mine = np.flatnonzero((which >= start) & (which < end))
+        held = mine[found[mine]]
+        one = _lifted(each, which[held] - start, rays.chosen(held), (on, catch, place[held])) if len(held) else each
+        if not np.isfinite(catch.height):
+            up = np.where(one.height > on.highest + _ENDLESS * on.hull.perimeter, np.inf, one.height)
+            up[which[mine[~found[mine]]] - start] = np.inf
+            one = replace(one, height=frozen(up))
+        made.append(one)
+    return made
 
 
 def leaning(turn: Turnaround, paths: Paths, family: int) -> float:
@@ -78,7 +81,7 @@ def leaning(turn: Turnaround, paths: Paths, family: int) -> float:
     So much of their pull goes along the pins, outwards.  Fibres that come to lie on the prism below them do not count.
     """
     on, over = turn.edge, legs_over(turn, paths, family)
-    ahead = _Rays.of(on, paths, family).at(np.zeros(len(over)))[1]
+    ahead = Rays.of(on, paths, np.flatnonzero(paths.family == family)).at(np.zeros(len(over)))[1]
     if over.lift is not None:
         ahead = np.where(over.lift.aloft[:, None] > 0, over.lift.ahead, ahead)
     inwards = -(ahead * on.normals(over.around, over.height)).sum(axis=1)
@@ -141,138 +144,22 @@ def hung(paths: Paths, over: Sequence[tuple[Legs, int, int]]) -> Hung:
     return Hung(frozen(points), frozen(normals), frozen(angle), frozen(aloft), (before[0], before[1]))
 
 
-@dataclass(frozen=True)
-class _Rays:
-    """Rays along n fibres: their points (n, k, 3) from the rim inwards, and splines through these."""
-
-    points: Floats
-    coefficients: Floats
-    sense: int
-
-    @staticmethod
-    def of(on: Edge, paths: Paths, family: int, window: int | None = None) -> "_Rays":
-        """Those of a family at an edge, as far as some particles from there."""
-        rows = np.flatnonzero(paths.family == family)
-        points = paths.points[rows][:, :: -1 if on.end else 1]
-        near = points[:, :window]
-        spline = CubicSpline(np.arange(near.shape[1]), near, axis=1)
-        return _Rays(points, spline.c, family if on.end else -family)
-
-    def chosen(self, index: Ints | Bools) -> "_Rays":
-        """Some of them."""
-        return _Rays(self.points[index], self.coefficients[:, :, index], self.sense)
-
-    def at(self, place: Floats) -> tuple[Floats, Floats]:
-        """Points and outward unit tangents (n, 3) at places (n,): numbers of particles from the rim, with fractions."""
-        index = np.clip(place.astype(np.int64), 0, self.coefficients.shape[1] - 1)
-        a, b, c, d = self.coefficients[:, index, np.arange(len(place))]
-        s = (place - index)[:, None]
-        return d + s * (c + s * (b + s * a)), -unit(c + s * (2.0 * b + 3.0 * s * a))
-
-
-def _met(on: Edge, point: Floats, ahead: Floats) -> Meeting:
-    """Where rays from points (n, 3) meet the prism."""
-    return on.hull.met((point - on.origin) @ on.across.T, ahead @ on.across.T)
-
-
-def _touch(on: Edge, point: Floats, ahead: Floats, sense: int) -> tuple[Floats, Floats]:
-    """Length (n,) along the hull where rays that pass the prism by touch it, or come nearest, and (n,) how far off.
-
-    There its normal is square to the ray.
-    """
-    way = ahead @ on.across.T
-    grazed = on.hull.passed_at(np.arctan2(-sense * way[:, 0], sense * way[:, 1]))
-    short = on.hull.at(grazed) - (point - on.origin) @ on.across.T
-    return grazed, (short * way).sum(axis=1) / np.maximum((way**2).sum(axis=1), TINY)
-
-
-def _beyond(rays: _Rays, on: Edge, catch: Catch, place: Floats) -> Floats:
-    """Lengths (n,), over the hull's, by which rays at places pass the prism by, or meet it above the pins."""
-    point, ahead = rays.at(place)
-    met = _met(on, point, ahead)
-    height = (point - on.origin) @ on.axis + np.where(np.isfinite(met.length), met.length, 0.0) * (ahead @ on.axis)
-    # one that has the prism behind it passes by as well
-    over = np.where(np.isfinite(met.length), height - catch.height, np.abs(met.depth))
-    past = np.maximum(-met.depth, over)
-    # but beside a notch it may touch what would be the prism within the part
-    touched = point + _touch(on, point, ahead, rays.sense)[1][:, None] * ahead
-    within = ((touched - on.origin) @ on.axis < on.lowest) & ~np.isfinite(met.length)
-    return np.asarray(np.where(within, -np.abs(past), past) / on.hull.perimeter)
-
-
-def _bracketed(rays: _Rays, on: Edge, catch: Catch, last: float) -> tuple[Floats, Floats, Floats, Floats, Bools]:
-    """Places (n,) between which rays come beyond first, by how much they are there, and which do.
-
-    Rays are tried ever further from the rim; of those that are not beyond there, as it goes back again, all are tried.
-    """
-    count = len(rays.points)
-    low, high, found = np.zeros(count), np.zeros(count), np.zeros(count, dtype=bool)
-    under, above = np.zeros(count), np.zeros(count)
-    step = 1.0
-    while not found.all() and step < 2.0 * last:
-        tried = np.full(count, min(step, last))
-        value = _beyond(rays, on, catch, tried)
-        now = (value >= 0.0) & ~found
-        high, above = np.where(now, tried, high), np.where(now, value, above)
-        more = ~found & ~now
-        low, under = np.where(more, tried, low), np.where(more, value, under)
-        found, step = found | now, 2.0 * step
-    missed = np.flatnonzero(~found)
-    if len(missed):
-        places = np.arange(1.0, last + 1.0)
-        each = rays.chosen(np.repeat(missed, len(places)))
-        value = _beyond(each, on, catch, np.tile(places, len(missed))).reshape(len(missed), -1)
-        first, row = (value >= 0.0).argmax(axis=1), np.arange(len(missed))
-        found[missed] = value[row, first] >= 0.0
-        high[missed], above[missed] = places[first], value[row, first]
-        low[missed], under[missed] = places[first] - 1.0, np.where(first > 0, value[row, first - 1], 0.0)
-    return low, high, under, above, found
-
-
-def _first(rays: _Rays, on: Edge, catch: Catch, last: float) -> tuple[Floats, Bools]:
-    """Places (n,) nearest to the rim from which rays pass the prism by or meet it at the pins, and which have one.
-
-    last: the farthest place that is looked at.
-    """
-    low, high, under, above, found = _bracketed(rays, on, catch, last)
-    value, middle, passes = above, high, above
-    # false position as in the Illinois method: an end that stays counts half
-    stayed = np.zeros(len(low))
-    for turn in range(_ROUNDS):
-        span = above - under
-        share = np.divide(
-            -under, span, out=np.full_like(low, 0.5), where=(under < 0.0) & np.isfinite(span) & (span > 0.0)
-        )
-        middle = low + (0.5 if turn % _HALVED == _HALVED - 1 else share) * (high - low)
-        value = _beyond(rays, on, catch, middle)
-        there = value >= 0.0
-        passes = np.where(there, value, passes)
-        under = np.where(there, np.where(stayed > 0.0, 0.5 * under, under), value)
-        above = np.where(there, value, np.where(stayed < 0.0, 0.5 * above, above))
-        low, high = np.where(there, low, middle), np.where(there, middle, high)
-        stayed = np.where(there, 1.0, -1.0)
-        if (np.minimum(high - low, np.abs(value)) < _NEAR).all():
-            break
-    # on a rough part what is beyond may begin with a leap, where no fibre lies on both
-    return np.where(np.abs(value) < _NEAR, middle, high), found & (np.minimum(passes, np.abs(value)) < _LEAP)
-
-
-def _lifted(crossing: Legs, which: Ints, rays: _Rays, found: tuple[Edge, Catch, Floats]) -> Legs:
+def _lifted(crossing: Legs, which: Ints, rays: Rays, found: tuple[Edge, Catch, Floats]) -> Legs:
     """Legs of which some leave the part at places."""
     on, catch, place = found
     off, ahead = rays.at(place)
-    met = _met(on, off, ahead)
-    length, hits = met.length, np.isfinite(met.length)  # or grazes, but for round-off
+    there = met(on, off, ahead)
+    length, hits = there.length, np.isfinite(there.length)  # or grazes, but for round-off
     level = (off - on.origin) @ on.axis + np.where(hits, length, 0.0) * (ahead @ on.axis)
     held = hits & (level >= catch.height - _SAME * on.hull.perimeter)
-    grazed, touch = _touch(on, off, ahead, rays.sense)
+    grazed, reach = touch(on, off, ahead, rays.sense)
     grazed += on.hull.perimeter * np.round((crossing.around[which] - grazed) / on.hull.perimeter)
-    length = np.where(held, length, touch)
+    length = np.where(held, length, reach)
     corner = off + length[:, None] * ahead
-    turns = np.round((crossing.around[which] - met.passed) / on.hull.perimeter)
-    around = np.where(held, met.passed + on.hull.perimeter * turns, grazed)
+    turns = np.round((crossing.around[which] - there.passed) / on.hull.perimeter)
+    around = np.where(held, there.passed + on.hull.perimeter * turns, grazed)
     height = (corner - on.origin) @ on.axis
-    hoop = rays.sense * on.tangents(around)
+    hoop = rays.sense[:, None] * on.tangents(around)
     # of a fibre that pins hold, the angle that it turns by on its pin is what counts
     leans = np.arccos(np.clip(ahead @ on.axis, 0.0, 1.0))
     angle = np.where(held, np.arcsin(np.clip((ahead * hoop).sum(axis=1), -1.0, 1.0)), leans)

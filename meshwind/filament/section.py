@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshwind.core.cast import Bools, Floats, Ints, floats, frozen
+from meshwind.core.cast import Floats, Ints, floats, frozen
 from meshwind.core.errors import BadInputError
 
 _HOLLOW = 1e-9
@@ -68,29 +68,45 @@ class Section:
         high = np.searchsorted(facing, ahead + np.pi, side="left")
         left = self._left(start, way, low), self._left(start, way, high)
         depth = np.minimum(left[0], -left[1]) / np.hypot(way[:, 0], way[:, 1])
-        for _ in range(count.bit_length()):
+        side, off = self._crossed(start, way, low, high)
+        along = ((start + off[:, None] * way - self.points[side]) * self._sides[side]).sum(axis=1) / self._sizes[side]
+        through = depth > 0.0
+        length = np.where(through & (off > 0.0), off, np.inf)
+        behind = np.flatnonzero(through & ~(off > 0.0))
+        if len(behind):
+            # of lines that came in before, those that have not gone out again are inside
+            out = self._crossed(start[behind], -way[behind], high[behind], low[behind] + count)[1]
+            length[behind[out < 0.0]] = 0.0
+        return Meeting(length, self.passed[side] + along, depth)
+
+    def _crossed(self, start: Floats, way: Floats, low: Ints, high: Ints) -> tuple[Ints, Floats]:
+        """The edges (n,), between two corners each, on which these come to the left of lines, and how far along."""
+        count = len(self.points)
+        x, y = self._corners
+        level = way[:, 0] * start[:, 1] - way[:, 1] * start[:, 0]
+        for _ in range(int((high - low).max(initial=1)).bit_length()):
             middle = (low + high) // 2
-            there = self._left(start, way, middle) >= 0.0
+            there = way[:, 0] * y[middle] - way[:, 1] * x[middle] >= level
             low, high = np.where(there, middle, low), np.where(there, high, np.maximum(middle, low + 1))
-        corner, side = self.points[low % count], self._sides[low % count]
-        cross = side[:, 1] * way[:, 0] - side[:, 0] * way[:, 1]
-        off = (side[:, 1] * (corner - start)[:, 0] - side[:, 0] * (corner - start)[:, 1]) / cross
-        along = ((start + off[:, None] * way - corner) * side).sum(axis=1) / np.hypot(side[:, 0], side[:, 1])
-        ahead_of = off > 0.0
-        behind = np.flatnonzero(~ahead_of & (depth > 0.0))
-        ahead_of[behind] = self._inside(start[behind])
-        length = np.where((depth > 0.0) & ahead_of, np.maximum(off, 0.0), np.inf)
-        return Meeting(length, self.passed[low % count] + along, depth)
+        side = low % count
+        corner, edge = self.points[side], self._sides[side]
+        cross = edge[:, 1] * way[:, 0] - edge[:, 0] * way[:, 1]
+        return side, (edge[:, 1] * (corner - start)[:, 0] - edge[:, 0] * (corner - start)[:, 1]) / cross
 
     def _left(self, start: Floats, way: Floats, corner: Ints) -> Floats:
         """How far corners (n,) lie to the left of lines, times the size of their directions."""
         off = self.points[corner % len(self.points)] - start
         return np.asarray(way[:, 0] * off[:, 1] - way[:, 1] * off[:, 0])
 
-    def _inside(self, points: Floats) -> Bools:
-        """Whether points (n, 2) lie inside."""
-        off = self.points - points[:, None]
-        return np.asarray((off[..., 0] * self._sides[:, 1] > off[..., 1] * self._sides[:, 0]).all(axis=1))
+    @cached_property
+    def _corners(self) -> tuple[Floats, Floats]:
+        """Both coordinates of the points, in four loops."""
+        return np.tile(self.points[:, 0], 4), np.tile(self.points[:, 1], 4)
+
+    @cached_property
+    def _sizes(self) -> Floats:
+        """Lengths (n,) of the edges."""
+        return np.hypot(self._sides[:, 0], self._sides[:, 1])
 
     @cached_property
     def _sides(self) -> Floats:
