@@ -1,18 +1,20 @@
 """Where along its path a fibre leaves the part: the place next to the rim whose ray grazes the prism beyond it."""
 
 from dataclasses import dataclass
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
-from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.vectors import TINY, unit
 from meshwind.filament.edge import Edge
 from meshwind.filament.section import Meeting
 from meshwind.filament.turnaround import Catch
 from meshwind.path.paths import Paths
 
+_STENCIL = 5
+"""Points in a row whose polynomial gives a tangent: with these it is of fourth order."""
 _SHARES = np.linspace(0.0, 1.0, 9)
 """Places, over the way between two, all of which are tried at once."""
 _ROUNDS = 48
@@ -27,36 +29,63 @@ _LEAP = 1e-6
 
 @dataclass(frozen=True)
 class Rays:
-    """Rays along n fibres: their points (n, k, 3) from the rim inwards, splines through these, and their senses (n,).
+    """Rays along n fibres, through whose particles they run as cubics with tangents of fourth order.
 
-    The sense is +1 for fibres that arrive at the rim in the sense of turning, and -1 for those that leave it.
+    points (m, k, 3): those of all paths, from the rim inwards; rows, sense (n,): whose the rays are, and +1 for fibres
+    that arrive at the rim in the sense of turning, -1 for those that leave it.
     """
 
     points: Floats
-    coefficients: Floats
+    rows: Ints
     sense: Ints
 
     @staticmethod
-    def of(on: Edge, paths: Paths, rows: Ints, window: int | None = None) -> "Rays":
-        """Those of some paths at an edge, as far as some particles from there."""
-        points = paths.points[rows, :: -1 if on.end else 1]
-        near = points[:, :window]
-        spline = CubicSpline(np.arange(near.shape[1]), near, axis=1)
-        return Rays(points, spline.c, paths.family[rows] if on.end else -paths.family[rows])
+    def of(on: Edge, paths: Paths, rows: Ints) -> "Rays":
+        """Those of some paths at an edge."""
+        return Rays(paths.points[:, :: -1 if on.end else 1], rows, (1 if on.end else -1) * paths.family[rows])
 
     def chosen(self, index: Ints | Bools) -> "Rays":
         """Some of them."""
-        return Rays(self.points[index], self.coefficients[:, :, index], self.sense[index])
+        return Rays(self.points, self.rows[index], self.sense[index])
 
     def at(self, place: Floats, which: Ints | None = None) -> tuple[Floats, Floats]:
         """Points and outward unit tangents (m, 3) at places (m,): numbers of particles from the rim, with fractions.
 
         which: the rays that these are on; by default each is on its own.
         """
-        index = np.minimum(place.astype(np.int64), self.coefficients.shape[1] - 1)
-        a, b, c, d = self.coefficients[:, index, np.arange(len(place)) if which is None else which]
-        s = (place - index)[:, None]
-        return d + s * (c + s * (b + s * a)), -unit(c + s * (2.0 * b + 3.0 * s * a))
+        rows, many = self.rows if which is None else self.rows[which], self.points.shape[1]
+        wide = min(_STENCIL, many - 1)
+        index = np.minimum(place.astype(np.int64), many - 2)
+        begin = np.clip(index - (wide - 1) // 2, 0, many - wide - 1)
+        near = self.points[rows[:, None], begin[:, None] + np.arange(wide + 1)]
+        one, two = _hermite(place - index, index - begin, wide)
+        return np.einsum("ij,ijk->ik", one, near), -unit(np.einsum("ij,ijk->ik", two, near))
+
+
+def _hermite(share: Floats, at: Ints, wide: int) -> tuple[Floats, Floats]:
+    """Weights (m, wide + 1) of points in a row for the place, and the tangent, a share (m,) from point `at` (m,) on."""
+    here, row = _slopes(wide), np.arange(len(at))
+    s = share[:, None]
+    # the tangents at both ends, from the first points and from the last but the first
+    left, right = np.zeros((len(at), wide + 1)), np.zeros((len(at), wide + 1))
+    left[:, :wide], right[:, 1:] = here[np.minimum(at, wide - 1)], here[at]
+    place = (s**3 - 2.0 * s**2 + s) * left + (s**3 - s**2) * right
+    tangent = (3.0 * s**2 - 4.0 * s + 1.0) * left + (3.0 * s**2 - 2.0 * s) * right
+    blend, rise = (3.0 - 2.0 * share) * share**2, 6.0 * share * (1.0 - share)
+    place[row, at] += 1.0 - blend
+    place[row, at + 1] += blend
+    tangent[row, at] -= rise
+    tangent[row, at + 1] += rise
+    return place, tangent
+
+
+@cache
+def _slopes(many: int) -> Floats:
+    """Weights (many, many) of points in a row for the derivative at each of them, exact for polynomials."""
+    powers = np.arange(many)
+    values = np.vander(powers.astype(float), increasing=True)
+    rates = np.where(powers > 0, powers * np.power(powers[:, None], np.maximum(powers - 1, 0), dtype=float), 0.0)
+    return frozen(np.linalg.solve(values.T, rates.T).T)
 
 
 def met(on: Edge, point: Floats, ahead: Floats) -> Meeting:
@@ -141,7 +170,7 @@ class _Search:
     def bracketed(self, last: float) -> _Between:
         """The same anywhere; rays are tried ever further from the rim."""
         places = np.append(0.0, np.minimum(2.0 ** np.arange(np.ceil(np.log2(last)) + 1.0), last))
-        made = self.crossed(np.tile(places, (len(self.rays.points), 1)))
+        made = self.crossed(np.tile(places, (len(self.rays.rows), 1)))
         lost = np.flatnonzero(made.lost)
         if len(lost):
             every = np.arange(np.ceil(last) + 1.0)

@@ -27,10 +27,6 @@ _SAME = 1e-9
 """Heights that differ by less than this share of the hull's perimeter are the same."""
 _LEAST = 2
 """Particles on the way from part to prism at least, so that one of them is in the air."""
-_WINDOW = 1 / 8
-"""Share of a path next to a rim through which splines are laid at first: most fibres leave from its nearer half."""
-_FEWEST = 32
-"""Particles that this is at least."""
 
 
 def legs_over(turn: Turnaround, paths: Paths, family: int) -> Legs:
@@ -49,18 +45,14 @@ def legs_of_all(turn: Turnaround, paths: Paths, families: tuple[int, ...] = (1, 
         return crossing
     rows = np.concatenate([np.flatnonzero(paths.family == family) for family in families])
     around, height = (np.concatenate([getattr(each, name) for each in crossing]) for name in ("around", "height"))
-    window = max(int(_WINDOW * paths.points.shape[1]), _FEWEST)
-    rays = Rays.of(on, paths, rows, window)
+    rays = Rays.of(on, paths, rows)
     _, ahead = rays.at(np.zeros(len(rows)))
     which = np.flatnonzero((ahead * on.normals(around, height)).sum(axis=1) < -_FLUSH)
     if not len(which):
         return crossing
     rays = rays.chosen(which)
     last = (paths.points.shape[1] - 1) / 2.0  # the other end of a path has the other half to leave from
-    place, found = first(rays, on, catch, min(last, 0.5 * window))
-    if not found.all():
-        rays = Rays.of(on, paths, rows[which])
-        place, found = first(rays, on, catch, last)
+    place, found = first(rays, on, catch, last)
     made = []
     begin = np.cumsum([0, *(len(each) for each in crossing)])
     for each, start, end in zip(crossing, begin[:-1], begin[1:], strict=True):
@@ -168,7 +160,7 @@ def _lifted(crossing: Legs, which: Ints, rays: Rays, found: tuple[Edge, Catch, F
     last = max((rays.points.shape[1] - 1) // 2, 1)
     aloft = np.clip(np.round(place), min(_LEAST, last), last).astype(np.int64)
     index, row = place.astype(np.int64), np.arange(len(which))
-    steps = np.linalg.norm(np.diff(rays.points[:, : index.max(initial=0) + 2], axis=1), axis=2)
+    steps = np.linalg.norm(np.diff(rays.points[rays.rows, : index.max(initial=0) + 2], axis=1), axis=2)
     passed = np.concatenate([np.zeros((len(which), 1)), np.cumsum(steps, axis=1)], axis=1)
     before = passed[row, index] + (place - index) * steps[row, np.minimum(index, steps.shape[1] - 1)]
     full = [np.array(values) for values in (crossing.around, crossing.height, crossing.angle, crossing.points)]

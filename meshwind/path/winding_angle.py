@@ -3,7 +3,10 @@
 import numpy as np
 
 from meshwind.core.cast import Floats
+from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import TINY, unit
+from meshwind.path.kernels import heading
+from meshwind.path.kernels.heading import ALONG, AROUND, SIZE
 from meshwind.path.paths import Paths
 from meshwind.surface.evaluate import SU, SV
 from meshwind.surface.surface import Surface
@@ -24,11 +27,9 @@ def winding_angle(paths: Paths) -> Floats:
     ndarray of float, shape (p, n)
         Angles in radians, from 0, along the part, to pi/2, a hoop.
     """
-    frames = _frames(paths)
-    way, around = _directions(paths, frames), frames[:, SU]
-    size = np.sqrt(np.einsum("ij,ij->i", way, way) * np.einsum("ij,ij->i", around, around))
-    share = np.abs(np.einsum("ij,ij->i", way, around)) / np.maximum(size, TINY)
-    return np.asarray(np.arcsin(np.minimum(share, 1.0)).reshape(paths.gap.shape))
+    made = _headings(paths)
+    share = np.abs(made[..., AROUND]) / np.maximum(made[..., SIZE], TINY)
+    return np.asarray(np.arcsin(np.minimum(share, 1.0)))
 
 
 def axes(surface: Surface, uv: Floats) -> tuple[Floats, Floats, Floats]:
@@ -41,34 +42,15 @@ def axes(surface: Surface, uv: Floats) -> tuple[Floats, Floats, Floats]:
 
 def headings(paths: Paths) -> tuple[Floats, Floats]:
     """Components (p n,) of the fibres' directions along the part and around it, at the particles or their feet."""
-    frames = _frames(paths)
-    way = _directions(paths, frames)
-    along, around, _ = _axes(frames)
-    return (way * along).sum(axis=1), (way * around).sum(axis=1)
+    made = _headings(paths).reshape(-1, 3)
+    return made[:, ALONG], made[:, AROUND]
 
 
-def _frames(paths: Paths) -> Floats:
-    """The surface's frames (p n, 6, 3) at the particles or their feet."""
-    return paths.surface.frames(np.ascontiguousarray(paths.uv.reshape(-1, 2)))
-
-
-def _directions(paths: Paths, frames: Floats) -> Floats:
-    """Directions (p n, 3) of the fibres, of any length.
-
-    On the surface they are taken by the parameters, as chords of many turns cut their corners; in the air from the
-    fibre itself.
-    """
-    rate, lifted = _gradient(paths.uv), ~paths.on_surface.ravel()
-    way = frames[:, SU] * rate[:, :1] + frames[:, SV] * rate[:, 1:]
-    if lifted.any():
-        way[lifted] = _gradient(paths.points)[lifted]
-    return np.asarray(way)
-
-
-def _gradient(values: Floats) -> Floats:
-    """Change (p n, m) of values (p, n, m) from particle to particle, as central differences."""
-    rate = np.gradient(values, axis=1, edge_order=2 if values.shape[1] > 2 else 1)
-    return np.asarray(rate).reshape(-1, values.shape[2])
+def _headings(paths: Paths) -> Floats:
+    """Directions (p, n, 3) of the fibres, as the columns of `kernels.heading` have them."""
+    out = np.empty_like(paths.points)
+    parallel_for(heading.headings, len(paths), 1, paths.surface.spline, paths.uv, paths.points, paths.on_surface, out)
+    return out
 
 
 def _axes(frames: Floats) -> tuple[Floats, Floats, Floats]:
