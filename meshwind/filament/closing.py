@@ -7,7 +7,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.filament.cap_turn import Cap, ends_with_caps, joined_on_caps, passes_on_caps
-from meshwind.filament.course import Course, Courses, Kind, in_a_row, runs
+from meshwind.filament.course import Course, Courses, Kind, Stretch, in_line
 from meshwind.filament.ends import CAP, LayerPlan, Pairs
 from meshwind.filament.joining import Joining, join, passes
 from meshwind.filament.lift import Hung, hung
@@ -150,34 +150,31 @@ def _filaments(
 ) -> tuple[Course, ...]:
     """The courses of all filaments: each path there, the turn at the end, the path back, and the turn at the start."""
     (over_start, over_end), ways = turns, [np.flatnonzero(families_ == family) for family in (1, -1)]
-    sources = [laid, *(turn for turn in (over_end, over_start) if turn is not None)]
-    whole = in_a_row([each.course for each in sources])
-    base = np.cumsum([0, *(len(each.course) for each in sources)])
     found, done = [], 0
     for there in joining.filaments:
         back = joining.back[there]
-        stretches = [_run(laid, ways[0][there]), _run(laid, ways[1][back], step=-1)]
+        stretches = [_stretches(laid, ways[0][there]), _stretches(laid, ways[1][back], backwards=True)]
         passed = [0, 1]
         if over_end is not None:
-            stretches.insert(1, _run(over_end, there, base=base[1]))
+            stretches.insert(1, _stretches(over_end, there))
             passed.insert(1, 0)
         if over_start is not None:
-            stretches.append(_run(over_start, back, base=base[-2]))
+            stretches.append(_stretches(over_start, back))
             passed.append(1)
-        first, count, step = (np.stack(each, axis=1).ravel() for each in zip(*stretches, strict=True))
-        first[1:] += step[1:]  # the stretch before has this point already
-        count[1:] -= 1
+        course, count = in_line([each for circuit in zip(*stretches, strict=True) for each in circuit])
         number = np.repeat((2 * (done + np.arange(len(there)))[:, None] + passed).ravel(), count)
-        course = whole.chosen(runs(first, count, step))
         found.append(replace(course, circuit=frozen(number // 2), passed=frozen(number)))
         done += len(there)
     return tuple(found)
 
 
-def _run(courses: Courses, rows: Ints, step: int = 1, base: int = 0) -> tuple[Ints, Ints, Ints]:
-    """The first point (n,) of rows (n,), from a base on, how many it has, and the step to the next: 1 or -1."""
-    first, count = courses.first[rows] + base, courses.count[rows]
-    return (first if step > 0 else first + count - 1), count, np.full_like(count, step)
+def _stretches(courses: Courses, rows: Ints, *, backwards: bool = False) -> list[Stretch]:
+    """Some of the courses, each from its first point to its last or backwards."""
+    first = courses.first[rows]
+    ends = zip(first.tolist(), (first + courses.count[rows]).tolist(), strict=True)
+    if backwards:
+        return [Stretch(courses.course, slice(end - 1, begin - 1 if begin else None, -1)) for begin, end in ends]
+    return [Stretch(courses.course, slice(begin, end)) for begin, end in ends]
 
 
 def _turns(pairs: Sequence[Pairs | None], joining: Joining) -> tuple[Courses | None, Courses | None]:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -81,12 +82,34 @@ def joined(courses: Sequence[Course]) -> Course:
 
     The first point of each stretch but the first is left out, as the stretch before it has it already.
     """
-    return in_a_row([courses[0], *(each.chosen(slice(1, None)) for each in courses[1:])])
+    return in_line([Stretch(each, slice(0, len(each))) for each in courses])[0]
 
 
 def in_a_row(courses: Sequence[Course]) -> Course:
     """One course from several, from each of which the fibre goes straight to the next."""
     return Course(*(frozen(np.concatenate([getattr(one, each.name) for one in courses])) for each in fields(Course)))
+
+
+class Stretch(NamedTuple):
+    """A stretch of a course: points one after the other, forwards or backwards."""
+
+    course: Course
+    part: slice
+
+
+def in_line(stretches: Sequence[Stretch]) -> tuple[Course, Ints]:
+    """One course from stretches, each of which starts where the one before ends, and how many points each gives.
+
+    The first point of each stretch but the first is left out, as the stretch before it has it already.
+    """
+    whole = [
+        Stretch(one, part if k == 0 else slice(part.start + (part.step or 1), part.stop, part.step))
+        for k, (one, part) in enumerate(stretches)
+    ]
+    made = Course(
+        *(frozen(np.concatenate([getattr(one, each.name)[part] for one, part in whole])) for each in fields(Course))
+    )
+    return made, np.array([len(one.kind[part]) for one, part in whole])
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,8 @@ _HALVED = 4
 """Rounds of which one halves the way that is left, however the others get on."""
 _NEAR = 1e-10
 """Numbers of a particle, and lengths over the hull's, beyond which no fit is right."""
+_WITHIN = 0.02
+"""Depth below the rim, over the hull's perimeter, of what would be the prism within the part."""
 _LEAP = 1e-6
 """Length over the hull's by which no ray that grazes the prism passes it by."""
 
@@ -155,7 +157,7 @@ class _Search:
         if len(by):
             sense = self.rays.sense[by if which is None else which[by]]
             touched = point[by] + touch(on, point[by], ahead[by], sense)[1][:, None] * ahead[by]
-            past[by[(touched - on.origin) @ on.axis < on.lowest]] = -np.inf
+            past[by[(touched - on.origin) @ on.axis < on.lowest - _WITHIN * on.hull.perimeter]] = -np.inf
         return np.asarray(past / on.hull.perimeter)
 
     def crossed(self, places: Floats, which: Ints | None = None) -> _Between:
