@@ -14,6 +14,7 @@ import numpy as np
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
+from meshwind.core.vectors import unit
 from meshwind.filament.pattern import Pattern
 from meshwind.filament.polar_hollow import hollow
 from meshwind.filament.polar_legs import End, Half, halves, opening
@@ -23,7 +24,7 @@ from meshwind.filament.polar_rows import Rows, Stretch, evenly
 from meshwind.march.traced import Stop
 from meshwind.path.paths import Counters, Paths, Status
 from meshwind.path.solve import check_count
-from meshwind.surface.evaluate import SU, SV
+from meshwind.surface.evaluate import SU, SV, S
 from meshwind.surface.surface import Surface
 
 Side: TypeAlias = Literal["start", "end"]
@@ -302,8 +303,9 @@ def _as_paths(
     uv = rows.uv.copy()
     uv[:, :, 0] -= np.floor(uv[:, :1, 0])
     shape = uv.shape[:2]
-    flat = uv.reshape(-1, 2)
-    points, normal = surface.points(flat).reshape(*shape, 3), surface.normals(flat).reshape(*shape, 3)
+    frames = surface.frames(uv.reshape(-1, 2))
+    points = np.ascontiguousarray(frames[:, S]).reshape(*shape, 3)
+    normal = unit(np.cross(frames[:, SU], frames[:, SV])).reshape(*shape, 3)
     slip = np.abs([[stretch.slip for stretch in fibre] for fibre in fibres])
     at = np.take_along_axis(slip, rows.stretch, axis=1)
     at[:, [0, -1]] = np.nan

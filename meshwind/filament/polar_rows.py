@@ -68,9 +68,9 @@ def evenly(surface: Surface, fibres: Sequence[Sequence[Stretch]], points: int) -
     row = np.searchsorted(key, (wanted + base[:, None]).ravel(), side="right").reshape(wanted.shape) - 1
     row = np.clip(row, first[:-1, None], first[1:, None] - 2)
     k = row.ravel()
-    span = s[k + 1] - s[k]
-    at = np.clip((wanted.ravel() - s[k]) / np.where(span > 0.0, span, 1.0), 0.0, 1.0)
-    found = _quintic(at, span, (uv[k], rate[k], bend[k]), (uv[k + 1], rate[k + 1], bend[k + 1]))
+    span = np.diff(s, append=s[-1])
+    at = np.clip((wanted.ravel() - s[k]) / np.where(span > 0.0, span, 1.0)[k], 0.0, 1.0)
+    found = _quintic(np.maximum(span, 0.0), (uv, rate, bend), k, at)
     on = np.repeat(np.tile(np.arange(many), len(fibres)), count.ravel())[k]
     found = found.reshape(len(fibres), points, 2)
     found[:, 0], found[:, -1] = uv[first[:-1]], uv[first[1:] - 1]
@@ -89,12 +89,23 @@ def _second(surface: Surface, uv: Floats, rate: Floats, slip: Floats) -> Floats:
     return components(frames, (slip * press)[:, None] * left - bend)
 
 
-def _quintic(x: Floats, h: Floats, start: tuple[Floats, Floats, Floats], end: tuple[Floats, Floats, Floats]) -> Floats:
-    """Values (m, 2) at shares x (m,) of steps h (m,) between values with two derivatives."""
-    x, h = x[:, None], h[:, None]
-    y = x - 1.0
-    a, da, dda = start[0], h * start[1], h * h * start[2]
-    b, db, ddb = end[0], h * end[1], h * h * end[2]
-    at_start = a + x * (da + 3.0 * a) + x * x * (0.5 * dda + 3.0 * da + 6.0 * a)
-    at_end = b + y * (db - 3.0 * b) + y * y * (0.5 * ddb - 3.0 * db + 6.0 * b)
-    return np.asarray(-(y**3) * at_start + x**3 * at_end)
+def _quintic(span: Floats, rows: tuple[Floats, Floats, Floats], k: Ints, share: Floats) -> Floats:
+    """Values (n, 2) at shares (n,) of the ways of lengths `span` (m,) from rows k (n,) to the next.
+
+    rows: values (m, 2) with two derivatives.  The polynomials are those of the m ways, of which there are fewer.
+    """
+    h = span[:, None]
+    a, da, dda = rows[0], h * rows[1], h * h * rows[2]
+    b, db, ddb = (np.roll(each, -1, axis=0) for each in (rows[0], rows[1], rows[2]))
+    db, ddb = h * db, h * h * ddb
+    rise = b - a - da - 0.5 * dda
+    slope, bend = db - da - dda, ddb - dda
+    terms = (
+        6.0 * rise - 3.0 * slope + 0.5 * bend, -15.0 * rise + 7.0 * slope - bend,
+        10.0 * rise - 4.0 * slope + 0.5 * bend, 0.5 * dda, da, a,
+    )  # fmt: skip
+    found, x = terms[0][k], share[:, None]
+    for term in terms[1:]:
+        found *= x
+        found += term[k]
+    return found
