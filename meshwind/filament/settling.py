@@ -18,6 +18,8 @@ _SCOUTS, _ANGLED = 12, 24
 """Paths per family that turnarounds and dwells are planned with, and those from which an angle is told as well."""
 _PARTICLES = 101
 """Their particles: dwells of pins are then right to 1e-4 turns."""
+SCOUTS_PER_TURN = 40
+"""Particles per turn that they have at least: with 20 paths round the edges of a flat spar do not come to rest."""
 _SETTLED_IN = 8
 """Rounds in which revolutions and dwells are to suit one another."""
 _FAR = 1.0
@@ -194,7 +196,8 @@ def _off(settled: Settled, scouts: Paths) -> float:
 def _scouts(surface: Surface, plan: LayerPlan, revolutions: float, phase: float, angled: int | None) -> Paths:
     if angled is None:
         return _solved(surface, plan, plan.paths, revolutions, phase)
-    few = replace(plan, particles=min(plan.particles or PARTICLES, _PARTICLES))
+    least = max(_PARTICLES, int(np.ceil(SCOUTS_PER_TURN * revolutions)))
+    few = replace(plan, particles=min(plan.particles or PARTICLES, least))
     count = min(plan.paths, _SCOUTS if plan.angle is None else angled)
     return _solved(surface, few, count, revolutions, phase)
 

@@ -23,6 +23,12 @@ _BACKWARDS = 7
 """Trials on the way back: up to most of the revolutions."""
 
 
+_SPREAD = 25
+"""Trials all over the revolutions, about a quarter apart, ..."""
+_NARROWED, _WITHIN = 4, 3
+"""... and rounds of trials between two of them, and trials of a round: the way becomes a quarter each time."""
+
+
 class Hunt(NamedTuple):
     """What a search found.
 
@@ -67,6 +73,43 @@ def hunt(measure: Callable[[float], float | None], wanted: float, start: float, 
             break
         turns = step
     return Hunt(best, reached, lost, steepest >= wanted - near)
+
+
+def survey(
+    measure: Callable[[float], float | None], wanted: float, near: float, span: tuple[float, float], best: Hunt
+) -> Hunt:
+    """The best that `hunt` found, or better from trials all over a span of revolutions.
+
+    On bent parts the angle does not grow with every turn: it has lows, and ranges where no path comes to rest.
+    """
+    turns = np.geomspace(*span, _SPREAD)
+    angles = [measure(float(each)) for each in turns]
+    off = np.array([np.nan if each is None else each - wanted for each in angles])
+    if np.isnan(off).all():
+        return best
+    across = np.flatnonzero(off[:-1] * off[1:] <= 0.0)
+    if len(across):
+        low, high = turns[across[0]], turns[across[0] + 1]
+    else:
+        least = int(np.nanargmin(np.abs(off)))
+        low, high = turns[max(least - 1, 0)], turns[min(least + 1, len(turns) - 1)]
+    tried = [*zip(turns.tolist(), off.tolist(), strict=True), (best.revolutions, best.reached - wanted)]
+    for _ in range(_NARROWED):
+        inner = np.linspace(low, high, _WITHIN + 2)
+        found = [measure(float(each)) for each in inner[1:-1]]
+        here = np.array([np.nan if each is None else each - wanted for each in found])
+        tried += zip(inner[1:-1].tolist(), here.tolist(), strict=True)
+        known = sorted((turn, each) for turn, each in tried if low <= turn <= high and np.isfinite(each))
+        crossed = [k for k in range(len(known) - 1) if known[k][1] * known[k + 1][1] <= 0.0]
+        least = crossed[0] if crossed else int(np.argmin([abs(each) for _, each in known])) if known else -1
+        if least < 0 or min(abs(each) for _, each in known) <= near:
+            break
+        if crossed:
+            low, high = known[least][0], known[least + 1][0]
+        else:
+            low, high = known[max(least - 1, 0)][0], known[min(least + 1, len(known) - 1)][0]
+    at, least_off = min((each for each in tried if np.isfinite(each[1])), key=lambda each: abs(each[1]))
+    return Hunt(at, wanted + least_off, best.lost, best.within or len(across) > 0)
 
 
 def last_held(held: Callable[[float], bool], high: float) -> tuple[float, float]:

@@ -9,12 +9,13 @@ from meshwind.core.cast import Bools
 from meshwind.core.errors import BadInputError
 from meshwind.filament.ends import Wish
 from meshwind.filament.levels import Levels, station
+from meshwind.filament.settling import SCOUTS_PER_TURN
 from meshwind.filament.stations import angles_at, circuits_to_cover, median_angle
 from meshwind.path import Paths, Status, solve
 from meshwind.path.friction import Friction
 from meshwind.planning.families import families
 from meshwind.surface import Surface
-from meshwind.workflow.angle_search import back_to_held, hunt, last_held
+from meshwind.workflow.angle_search import back_to_held, hunt, last_held, survey
 from meshwind.workflow.notes import Note
 
 _TRIAL_PATHS, _TRIAL_PARTICLES = 24, 101
@@ -28,6 +29,10 @@ _FURTHEST = 4.0
 
 A fibre that needs more winds on and on at a narrow place, and hardly gets steeper at the widest.
 """
+_FEWEST = 1 / 200
+"""Share of these that is tried at the least where the angle is not met: nearly none, along the part."""
+_ABOUT = 1.3
+"""Factor about the revolutions of a few paths within which those of more paths are looked for."""
 _AS_WIDE = 1e-6
 """Share by which level lines may be shorter than the longest and still count as the widest place."""
 _NEAR, _ROUGHLY = np.radians(0.05), np.radians(0.2)
@@ -66,7 +71,7 @@ class Turned:
         if self.met:
             return ""
         if self.reached > self.asked:
-            why = f"fewer revolutions than {self.revolutions:.4g} bring it no nearer"
+            why = "neither fewer revolutions nor more bring it nearer"
         elif np.isfinite(self.lost):
             why = f"at {self.lost:.4g} paths slide off or are unstable"
         else:
@@ -120,9 +125,13 @@ class Helices:
 
     def tried(self, revolutions: float, paths: int, particles: int = _TRIAL_PARTICLES) -> Paths | None:
         """Trial paths, so many a family, or None where none of them comes to rest."""
-        laid = self.laid(paths, revolutions, particles)
+        laid = self._on_trial(paths, revolutions, particles)
         held = laid.status == Status.CONVERGED
         return laid.subset(held) if held.any() else None
+
+    def _on_trial(self, paths: int, revolutions: float, particles: int) -> Paths:
+        """Lay both families with so many particles, or some a turn."""
+        return self.laid(paths, revolutions, max(particles, int(np.ceil(SCOUTS_PER_TURN * revolutions))))
 
     def settled(
         self, angle: float | None, revolutions: float | str | None, paths: int | str, width: float
@@ -156,10 +165,20 @@ class Helices:
             trial = self.tried(turns, min(self.paths, paths), particles)
             return None if trial is None else median_angle(trial, v, self.paths)
 
-        found = hunt(lambda turns: measured(turns, _ROUGH_PATHS, _ROUGH_PARTICLES), angle, tube, _ROUGHLY, most)
-        if found.within:
+        def rough(turns: float) -> float | None:
+            return measured(turns, _ROUGH_PATHS, _ROUGH_PARTICLES)
+
+        def fine(turns: float) -> float | None:
+            return measured(turns, _TRIAL_PATHS, _TRIAL_PARTICLES)
+
+        found = hunt(rough, angle, tube, _ROUGHLY, most)
+        if not abs(found.reached - angle) <= _ENOUGH:
+            found = survey(rough, angle, _ROUGHLY, (_FEWEST * most, most), found)
+        if found.within or found.reached > angle:
             start = found.revolutions
-            found = hunt(lambda turns: measured(turns, _TRIAL_PATHS, _TRIAL_PARTICLES), angle, start, _NEAR, most)
+            found = hunt(fine, angle, start, _NEAR, most)
+            if not abs(found.reached - angle) <= _ENOUGH:
+                found = survey(fine, angle, _NEAR, (start / _ABOUT, start * _ABOUT), found)
         if not np.isfinite(found.reached):
             raise BadInputError(f"no path comes to rest at {found.lost:.4g} revolutions and below; give more friction")
         turned = Turned(found.revolutions, v, angle, found.reached, found.lost)
@@ -192,10 +211,12 @@ class Helices:
         sure: list[Paths] = []
 
         def held(turns: float, paths: int, particles: int) -> bool:
-            laid = self.laid(min(self.paths, paths), turns, particles)
+            laid = self._on_trial(min(self.paths, paths), turns, particles)
             sure[:] = [laid]
             return bool((laid.status == Status.CONVERGED).all())
 
+        if not np.isfinite(found.lost) and held(found.revolutions, _TRIAL_PATHS, _TRIAL_PARTICLES):
+            return found
         most, lost = last_held(lambda turns: held(turns, _ROUGH_PATHS, _ROUGH_PARTICLES), found.revolutions)
         turns = back_to_held(lambda turns: held(turns, _TRIAL_PATHS, _TRIAL_PARTICLES), most)
         if not turns > 0.0:
