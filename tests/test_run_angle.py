@@ -9,6 +9,7 @@ import pyvista as pv
 from layup_shapes import drawn
 
 import meshwind as mw
+from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.filament.closing import close_layer
 from meshwind.filament.ends import LayerPlan as ClosingPlan
@@ -19,7 +20,7 @@ from meshwind.layup.direction import directions
 from meshwind.layup.direction import winding_angle as angle_map
 from meshwind.surface import Surface
 from meshwind.surface.interpolate import interpolate
-from meshwind.workflow.angle_search import back_to_held, hunt, last_held
+from meshwind.workflow.angle_search import Hunt, back_to_held, hunt, last_held, survey
 from meshwind.workflow.helices import Helices, Turned
 
 
@@ -195,3 +196,34 @@ def test_a_filament_meets_its_angle_where_the_median_leaps() -> None:
     assert turned.moved(closed.paths) == ()
     (note,) = Turned(closed.revolutions, wish.v, wish.wanted - radians(1.0), radians(19.0)).moved(closed.paths)
     assert "instead of 19.00" in note.text
+
+
+def test_a_long_cone_of_a_flat_spar_has_its_angle() -> None:
+    """Half axes 60 and 25 that taper to 0.7: about sin(a) = 0.7 is the most, after many turns round sharp edges."""
+
+    def place(u: Floats, v: Floats) -> Floats:
+        t, share = 2.0 * pi * u, 1.0 - 0.3 * v
+        return np.stack([60.0 * share * np.cos(t), 25.0 * share * np.sin(t), 900.0 * v], axis=-1)
+
+    spar = helices(interpolate(place, (96, 24)))
+    turned = spar.turned_to(radians(40.0))
+    assert turned.met and turned.revolutions > 4.0
+    laid = spar.laid(12, turned.revolutions, 401)
+    assert (laid.status == 0).all()
+    assert degrees(median_angle(laid, turned.v, 96)) == pytest.approx(40.0, abs=0.5)
+
+
+def test_angles_that_fall_at_first_are_looked_for_all_over() -> None:
+    def measure(turns: float) -> float | None:
+        return None if turns > 2.0 else radians(19.0 + 8.0 * abs(turns - 0.2))
+
+    nothing = Hunt(0.5, radians(21.4), np.inf, False)
+    low = survey(measure, radians(18.0), 1e-3, (0.005, 1.0), nothing)
+    assert low.revolutions == pytest.approx(0.2, abs=0.01) and degrees(low.reached) == pytest.approx(19.0, abs=0.1)
+    met = survey(measure, radians(20.0), 1e-3, (0.005, 1.0), nothing)
+    assert abs(met.reached - radians(20.0)) <= 1e-3 and met.within
+    assert measure(met.revolutions) == pytest.approx(met.reached)
+    # past ranges where no path comes to rest
+    past = survey(lambda r: None if r < 0.5 else radians(20.0 * r), radians(30.0), 1e-3, (0.01, 4.0), nothing)
+    assert past.revolutions == pytest.approx(1.5, abs=0.01)
+    assert survey(lambda _: None, radians(30.0), 1e-3, (0.01, 4.0), nothing) == nothing
