@@ -114,3 +114,16 @@ def test_a_result_shows_itself_in_one_line() -> None:
     result = mw.wind(Path(__file__).parents[1] / "data" / "tank.ply", paths=2, revolutions=0.25)
     assert repr(result) == "<meshwind Result: tank.ply, 4 of 4 paths at rest>"
     assert result.report()["winding"]["revolutions"] == 0.25
+
+
+def test_long_stages_say_how_they_go_on(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr("meshwind.workflow.clock._EVERY", -1.0)
+    said: list[str] = []
+    mw.wind(
+        "data/elbow.obj", angle=30.0, paths=5, particles=101, continuous=True, render=False, out=tmp_path / "out",
+        progress=said.append,
+    )  # fmt: skip
+    stages = [each for each in said if "," not in each]
+    assert {"choose", "wind"} < set(stages)
+    for stage, words in (("choose", "revolutions"), ("wind", "a pattern near"), ("wind", "5 paths a family")):
+        assert any(each.startswith(f"{stage}, ") and words in each for each in said)

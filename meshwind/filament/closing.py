@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.progress import Say, silent
 from meshwind.filament.cap_turn import Cap, ends_with_caps, joined_on_caps, passes_on_caps
 from meshwind.filament.course import Course, Courses, Kind, Stretch, in_line
 from meshwind.filament.ends import CAP, LayerPlan, Pairs
@@ -66,7 +67,7 @@ class ClosedLayer:
         return float(sum(each.arc_length[-1] for each in self.filaments))
 
 
-def close_layer(surface: Surface, plan: LayerPlan) -> ClosedLayer:
+def close_layer(surface: Surface, plan: LayerPlan, say: Say = silent) -> ClosedLayer:
     """Wind a layer as one closed filament.
 
     The revolutions are moved to R = (M/N - d_A - d_B) / 2, d_A and d_B being the dwells that the turnarounds need and M
@@ -78,6 +79,8 @@ def close_layer(surface: Surface, plan: LayerPlan) -> ClosedLayer:
         Surface that closes in u.
     plan : LayerPlan
         What is to be wound.
+    say : callable, default silent
+        Called with a few words as it goes on.
 
     Returns
     -------
@@ -91,7 +94,7 @@ def close_layer(surface: Surface, plan: LayerPlan) -> ClosedLayer:
     """
     if CAP in plan.turns:
         return _on_caps(surface, plan)
-    settled, kept, left_out = lay(surface, plan)
+    settled, kept, left_out = lay(surface, plan, say)
     pairs = [end.pairs(kept) for end in settled.ends]
     joining = _joined(pairs)
     fibres = _hung(kept, pairs)

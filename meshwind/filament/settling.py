@@ -7,6 +7,7 @@ import numpy as np
 from meshwind.core.cast import Bools
 from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
+from meshwind.core.progress import Say, silent
 from meshwind.filament.ends import ROOM, End, LayerPlan, choose_end
 from meshwind.filament.pattern import nearest_pattern, patterns
 from meshwind.filament.stations import median_angle
@@ -60,17 +61,18 @@ class Settled:
         return self.revolutions >= 0.0 and abs(self.revolutions - self.plan.revolutions) <= _FAR / self.plan.paths
 
 
-def lay(surface: Surface, plan: LayerPlan) -> tuple[Settled, Paths, int]:
+def lay(surface: Surface, plan: LayerPlan, say: Say = silent) -> tuple[Settled, Paths, int]:
     """What was settled on, all paths of a layer in equilibrium, as many of each family, and how many are left out.
 
     Where some of the paths come to rest in one place or another, a few tell the angle of all badly: if it is not met
     then, all are asked.
     """
-    settled = settle(surface, plan)
+    settled = settle(surface, plan, _ANGLED, say)
+    say(f"{settled.plan.paths} paths a family at {settled.revolutions:.4g} revolutions")
     kept, left_out = _laid(surface, settled)
     off = abs(_off(settled, kept))
     if off > _ENOUGH:
-        other = settle(surface, plan, None)
+        other = settle(surface, plan, None, say)
         nearer, more = _laid(surface, other)
         if more <= left_out and abs(_off(other, nearer)) < off:
             return other, nearer, more
@@ -82,13 +84,14 @@ def _laid(surface: Surface, settled: Settled) -> tuple[Paths, int]:
     return _some(_solved(surface, plan, plan.paths, settled.revolutions, -settled.dwells[0]))
 
 
-def settle(surface: Surface, plan: LayerPlan, angled: int | None = _ANGLED) -> Settled:
+def settle(surface: Surface, plan: LayerPlan, angled: int | None = _ANGLED, say: Say = silent) -> Settled:
     """The pattern next to what was asked for, with dwells that are long enough at the revolutions that it leaves.
 
     Where that does not exist, or not within the angle that was asked for, the revolutions stay as they are, or as the
     angle needs them, and the filament waits as hoops until it closes.  Raises BadInputError where no path of a family
     is at rest, or a turnaround cannot be made.
     """
+    say(f"a pattern near {plan.revolutions:.4g} revolutions")
     scouts, lost = _some(_scouts(surface, plan, plan.revolutions, 0.0, angled))
     ends, needed = _needed(surface, plan, scouts)
     counted = _counted(plan, 2.0 * plan.revolutions + sum(needed))
@@ -101,7 +104,7 @@ def settle(surface: Surface, plan: LayerPlan, angled: int | None = _ANGLED) -> S
         if more_lost <= lost and abs(_off(settled, tried)) <= _MET:
             return settled
     settled = _waiting(plan, ends, needed)
-    return settled if plan.angle is None else _at_angle(surface, settled, needed, (lost, angled))
+    return settled if plan.angle is None else _at_angle(surface, settled, needed, (lost, angled), say)
 
 
 def _counted(plan: LayerPlan, turns: float) -> LayerPlan:
@@ -156,7 +159,11 @@ def _waiting(plan: LayerPlan, ends: tuple[End, End], needed: tuple[float, float]
 
 
 def _at_angle(
-    surface: Surface, settled: Settled, needed: tuple[float, float], scouts: tuple[int, int | None]
+    surface: Surface,
+    settled: Settled,
+    needed: tuple[float, float],
+    scouts: tuple[int, int | None],
+    say: Say,
 ) -> Settled:
     """The pattern with the revolutions that the angle takes, with its circuits, where these are.
 
@@ -166,6 +173,7 @@ def _at_angle(
     plan, ends, best, least = settled.plan, settled.ends, settled, np.inf
     assert plan.angle is not None
     for _ in range(_SETTLED_IN):
+        say(f"the angle at {settled.revolutions:.4g} revolutions")
         rest = _at_rest(_scouts(surface, plan, settled.revolutions, -settled.dwells[0], angled))
         if rest is None or rest[1] > lost:
             settled = _waiting(replace(plan, revolutions=_BACK * settled.revolutions), ends, needed)

@@ -8,6 +8,7 @@ import numpy as np
 from meshwind.core.cast import Floats
 from meshwind.core.defaults import PARTICLES, STEPS_PER_TURN
 from meshwind.core.errors import BadInputError
+from meshwind.core.progress import Say, silent
 from meshwind.path.friction import Friction
 from meshwind.path.limit import Way
 from meshwind.path.solve import check_count
@@ -94,6 +95,7 @@ def choose_revolutions(
     friction: float | Friction = 0.0,
     most: float | None = None,
     further: bool = True,
+    say: Say = silent,
 ) -> Revolutions:
     """Choose the number of revolutions.
 
@@ -115,6 +117,8 @@ def choose_revolutions(
         Largest number of revolutions.  By default that of a hoop winding, and no more than `particles` can follow.
     further : bool, default True
         Whether to find what more friction and wider openings would allow as well.
+    say : callable, default silent
+        Called with a few words as it goes on.
 
     Returns
     -------
@@ -143,19 +147,26 @@ def choose_revolutions(
     elif not 0.0 < most < np.inf:
         raise BadInputError(f"most is {most}; give a largest number of revolutions above 0")
     tried = min(paths, _TRIED)
+    say("which hold")
     feasible = feasible_revolutions(surface, friction, most, paths, particles)
     square = square_revolutions(surface)
     pressed = pressing(surface)
     top = min(feasible.high, most)
     common = pressed.most_common(feasible.low, top)
     share = max((float(pressed.share(np.array([_inside(*each)]))[0]) for each in common), default=0.0)
-    candidates = [trial(surface, float(turns), friction, tried) for turns in _candidates(feasible, top, paths)]
+
+    def tell(turns: float) -> float:
+        say(f"{turns:.4g} revolutions")
+        return turns
+
+    candidates = [trial(surface, tell(float(turns)), friction, tried) for turns in _candidates(feasible, top, paths)]
     order = _order(candidates, feasible, common, square)
-    checked = _wind_best(order, lambda turns: full_trial(surface, turns, friction, paths, particles), 0.5 / paths)
+    checked = _wind_best(order, lambda turns: full_trial(surface, tell(turns), friction, paths, particles), 0.5 / paths)
     trials = [*feasible.trials, *candidates, *checked]
     chosen = _least_bridging(checked or [each for each in trials if each.revolutions > 0.0])
     gains = 0.0, 0.0
     if further and feasible.any and np.isfinite(feasible.high):
+        say("what more friction and wider openings allow")
         gains = alternatives(spread(surface, friction, paths, particles), feasible, most)
     trials.sort(key=lambda each: each.revolutions)
     return Revolutions(chosen, pressed, common, share, feasible, tuple(trials), square, *gains)

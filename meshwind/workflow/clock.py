@@ -5,7 +5,9 @@ from contextlib import contextmanager
 from time import perf_counter
 
 Progress = Callable[[str], None]
-"""Called with the name of a stage as it starts."""
+"""Called with the name of a stage as it starts, and as it goes on: "choose, 0.42 revolutions"."""
+_EVERY = 2.0
+"""Seconds between two of these at least."""
 
 
 class Clock:
@@ -14,6 +16,7 @@ class Clock:
     def __init__(self, progress: Progress | None = None) -> None:
         self.progress = progress
         self.seconds: dict[str, float] = {}
+        self._stage, self._told = "", 0.0
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
@@ -21,5 +24,12 @@ class Clock:
         if self.progress is not None:
             self.progress(name)
         start = perf_counter()
+        self._stage, self._told = name, start
         yield
         self.seconds[name] = self.seconds.get(name, 0.0) + perf_counter() - start
+
+    def tell(self, words: str) -> None:
+        """Report how the stage goes on, unless that was only just done."""
+        if self.progress is not None and perf_counter() - self._told > _EVERY:
+            self._told = perf_counter()
+            self.progress(f"{self._stage}, {words}")

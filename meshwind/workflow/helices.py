@@ -7,6 +7,7 @@ import numpy as np
 
 from meshwind.core.cast import Bools
 from meshwind.core.errors import BadInputError
+from meshwind.core.progress import Say, silent
 from meshwind.filament.ends import Wish
 from meshwind.filament.levels import Levels, station
 from meshwind.filament.settling import SCOUTS_PER_TURN
@@ -108,13 +109,15 @@ class Settled(NamedTuple):
 
 @dataclass(frozen=True)
 class Helices:
-    """The helical paths of a layer, with any number of them and any revolutions; paths: those of the angle."""
+    """The helical paths of a layer, with any number of them and any revolutions; paths: those of the angle; say: told
+    of each trial."""
 
     surface: Surface
     between: tuple[float, float]
     friction: float | Friction
     lines: Levels
     paths: int = _COUNTED_PATHS
+    say: Say = silent
 
     def laid(self, paths: int, revolutions: float, particles: int | None) -> Paths:
         """Lay both families."""
@@ -131,6 +134,7 @@ class Helices:
 
     def _on_trial(self, paths: int, revolutions: float, particles: int) -> Paths:
         """Lay both families with so many particles, or some a turn."""
+        self.say(f"{revolutions:.4g} revolutions")
         return self.laid(paths, revolutions, max(particles, int(np.ceil(SCOUTS_PER_TURN * revolutions))))
 
     def settled(

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from meshwind.appearance.words import quantity
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import AUTO
+from meshwind.core.progress import Say, silent
 from meshwind.filament.closing import close_layer
 from meshwind.filament.ends import LayerPlan as ClosingPlan
 from meshwind.filament.hoop import HoopPlan, hoop
@@ -40,7 +42,9 @@ class Layered:
     first: Settled | None = None
 
 
-def lay_layers(surface: Surface, asked: LayersFile, options: Options, units: str) -> tuple[Layered, tuple[Note, ...]]:
+def lay_layers(
+    surface: Surface, asked: LayersFile, options: Options, units: str, say: Say = silent
+) -> tuple[Layered, tuple[Note, ...]]:
     """Wind layers on a surface, each on the one below, with notes on what does not hold.
 
     Raises BadInputError, naming the layer, where one cannot be wound.
@@ -54,12 +58,19 @@ def lay_layers(surface: Surface, asked: LayersFile, options: Options, units: str
             plies.append(plan.ply(options, units))
     for number, (plan, ply) in enumerate(zip(asked.plans, plies, strict=True), 1):
         for _ in range(plan.repeat):
+            now = f"layer {len(layers) + 1}"
+            say(now)
             with _naming(number):
-                layer, last = _lay(_Below.of(layers, surface), plan, ply, options)
+                layer, last = _lay(_Below.of(layers, surface), plan, ply, options, partial(_say_of, say, now))
             first = first if layers else last
             layers.append(layer)
             notes += [Note(f"layer {len(layers)}: {line}", warning=True) for line in _faults(layer)]
     return Layered(Laminate(tuple(layers)), asked.file, options, first), tuple(dict.fromkeys(notes))
+
+
+def _say_of(say: Say, layer: str, words: str) -> None:
+    """Say something of a layer."""
+    say(f"{layer}, {words}")
 
 
 @contextmanager
@@ -114,7 +125,7 @@ class _Below:
         return cls(last.raised.surface, None if last.strand is None else last.strand.tail)
 
 
-def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options) -> tuple[LaidLayer, Settled | None]:
+def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options, say: Say) -> tuple[LaidLayer, Settled | None]:
     """Wind one layer on a surface; with what was settled on for it, if it is helical."""
     surface = below.surface
     lines = levels(surface)
@@ -129,7 +140,7 @@ def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options) -> tuple[La
         return hoop_layer(surface, laid, ply, lines, replace(strand, cut=plan.cut)), None
     if not between[0] < between[1]:
         raise BadInputError(f"it starts at v={between[0]:g} and ends at v={between[1]:g}; give its places in order")
-    helices = Helices(surface, between, ply.friction, lines)
+    helices = Helices(surface, between, ply.friction, lines, say=say)
     if isinstance(plan.paths, int):
         helices = replace(helices, paths=plan.paths)
     settled = helices.settled(plan.angle, plan.revolutions, plan.paths, ply.laying.width)
@@ -144,7 +155,7 @@ def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options) -> tuple[La
     def lay(count: int) -> Laid:
         if closing is None:
             return Laid(helices.laid(count, settled.revolutions, options.particles))
-        closed = close_layer(surface, replace(closing, paths=count))
+        closed = close_layer(surface, replace(closing, paths=count), say)
         return Laid(closed.paths, closed)
 
     wound = lay(settled.paths) if plan.paths != AUTO else lay_until_covered(lay, settled.paths, ply.laying.width)[0]

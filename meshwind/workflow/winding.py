@@ -9,6 +9,7 @@ import numpy as np
 from meshwind.chart import Chart
 from meshwind.core.defaults import PATHS
 from meshwind.core.parsing import AUTO
+from meshwind.core.progress import Say
 from meshwind.filament.closing import ClosedLayer, close_layer
 from meshwind.filament.ends import LayerPlan
 from meshwind.filament.filament import Filament, filament_of_layers, filaments_of
@@ -83,7 +84,7 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: 
     layered, about = None, tuple[Note, ...]()
     if layers is not None:
         with clock.stage("layers"):
-            layered, about = lay_layers(surface, layers, options, units)
+            layered, about = lay_layers(surface, layers, options, units, clock.tell)
             options = first_helical(layers.plans, layered, surface, units)
     with clock.stage("fit"):
         notes = (
@@ -97,7 +98,7 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: 
     given, turned = options, None
     if options.angle is not None or options.paths is None:
         with clock.stage("choose"):
-            options, turned, more = _planned(surface, options, revolutions, friction)
+            options, turned, more = _planned(surface, options, revolutions, friction, clock.tell)
             notes = (*notes, *more)
         revolutions = float(options.turns)
     notes = (*notes, *about)
@@ -105,7 +106,7 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: 
     with clock.stage("wind"):
         closing = options.continuous and layered is None
         plan = _closing(options, revolutions, friction, turned, given.paths is None) if closing else None
-        wound = partial(_wound, surface, options, revolutions, friction, plan)
+        wound = partial(_wound, surface, options, revolutions, friction, (plan, clock.tell))
         if first is not None:
             laid_ = Laid(first.paths, first)
         elif given.paths is None and options.band_width is not None:
@@ -141,13 +142,14 @@ def _wound(
     options: Options,
     revolutions: float,
     friction: float | Friction,
-    closing: LayerPlan | None,
+    close: tuple[LayerPlan | None, Say],
     paths: int,
 ) -> Laid:
     """So many paths a family, as one filament if they are to close, and then a few more where the plan lets them."""
+    closing, say = close
     if closing is None:
         return Laid(lay(surface, replace(options, paths=paths), revolutions, friction))
-    closed = close_layer(surface, replace(closing, paths=paths))
+    closed = close_layer(surface, replace(closing, paths=paths), say)
     return Laid(closed.paths, closed)
 
 
@@ -161,10 +163,10 @@ def lay(surface: Surface, options: Options, revolutions: float, friction: float 
 
 
 def _planned(
-    surface: Surface, options: Options, revolutions: float, friction: float | Friction
+    surface: Surface, options: Options, revolutions: float, friction: float | Friction, say: Say
 ) -> tuple[Options, Turned | None, tuple[Note, ...]]:
     """The options with the revolutions of their angle, if any, and with as many paths as cover the part."""
-    helices = Helices(surface, (0.0, 1.0), friction, levels(surface))
+    helices = Helices(surface, (0.0, 1.0), friction, levels(surface), say=say)
     turned, notes = None, []
     if options.paths is not None:
         helices = replace(helices, paths=options.paths)
@@ -225,4 +227,6 @@ def chosen_revolutions(
         return None
     paths, particles = options.paths or PATHS, options.particles
     with clock.stage("choose"):
-        return choose_revolutions(surface, paths=paths, particles=particles, friction=friction, further=further)
+        return choose_revolutions(
+            surface, paths=paths, particles=particles, friction=friction, further=further, say=clock.tell
+        )
