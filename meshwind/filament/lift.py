@@ -111,7 +111,7 @@ def hung(paths: Paths, over: Sequence[tuple[Legs, int, int]]) -> Hung:
     The particle next to where a fibre leaves the part is moved there, those between it and the rim to the straight way
     to the prism, and the last to where that ends.
     """
-    points, normals, angle = np.array(paths.points), np.array(paths.normal), np.array(winding_angle(paths))
+    points, normals, angle = np.array(paths.points), np.array(paths.normal), winding_angle(paths)
     aloft, before = np.zeros(points.shape[:2], dtype=bool), [0.0, 0.0]
     many = points.shape[1]
     for legs_, end, family in over:

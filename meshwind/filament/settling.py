@@ -27,6 +27,8 @@ _FAR = 1.0
 """Revolutions times the circuits by which those that close may differ from those asked for; they are 1/2 apart."""
 _CONTRACTS = 0.95
 """Share of a shortage of dwell that may be left after a round for the secant to be taken."""
+_SPARE = 1e-5
+"""Turns by which dwells are taken longer than a round shows: a few paths do not tell them better."""
 _NEAR = 0.0175
 """Share by which revolutions may move: the angle changes by sin(2 angle) / 2 times that, half a degree at most."""
 _GROWTH = 1.05
@@ -144,7 +146,7 @@ def _nearest(surface: Surface, first: Settled, angled: int | None) -> tuple[Sett
             return settled, tried, lost
         factor = 1.0 / (1.0 - now.sum() / short) if now.sum() < _CONTRACTS * short else 1.0
         short = now.sum()
-        start, end = np.array(settled.dwells) + factor * now
+        start, end = np.array(settled.dwells) + factor * now + _SPARE
         settled = replace(settled, dwells=(float(start), float(end)))
     return None
 

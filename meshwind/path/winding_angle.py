@@ -4,9 +4,9 @@ import numpy as np
 
 from meshwind.core.cast import Floats
 from meshwind.core.threads import parallel_for
-from meshwind.core.vectors import TINY, unit
+from meshwind.core.vectors import unit
 from meshwind.path.kernels import heading
-from meshwind.path.kernels.heading import ALONG, AROUND, SIZE
+from meshwind.path.kernels.heading import ALONG, ANGLE, AROUND
 from meshwind.path.paths import Paths
 from meshwind.surface.evaluate import SU, SV
 from meshwind.surface.surface import Surface
@@ -27,9 +27,7 @@ def winding_angle(paths: Paths) -> Floats:
     ndarray of float, shape (p, n)
         Angles in radians, from 0, along the part, to pi/2, a hoop.
     """
-    made = _headings(paths)
-    share = np.abs(made[..., AROUND]) / np.maximum(made[..., SIZE], TINY)
-    return np.asarray(np.arcsin(np.minimum(share, 1.0)))
+    return np.ascontiguousarray(_headings(paths)[..., ANGLE])
 
 
 def axes(surface: Surface, uv: Floats) -> tuple[Floats, Floats, Floats]:

@@ -76,7 +76,7 @@ class Turned:
         elif np.isfinite(self.lost):
             why = f"at {self.lost:.4g} paths slide off or are unstable"
         else:
-            why = "more bring it no nearer"
+            why = f"up to {_FURTHEST:g} times the revolutions of a tube were tried"
         return (
             f"its angle of {np.degrees(self.asked):g} degrees is out of reach at v={self.v:.3g}: wound at "
             f"{np.degrees(self.reached):.2f} degrees with {self.revolutions:.4g} revolutions, the nearest found; "

@@ -1,6 +1,6 @@
 """Compiled directions of fibres, by the surface's own directions along the part and around it."""
 
-from math import sqrt
+from math import asin, sqrt
 
 import numpy as np
 from numba import njit
@@ -8,8 +8,8 @@ from numba import njit
 from meshwind.core.vectors import TINY
 from meshwind.surface.evaluate import SU, SV, tangents
 
-ALONG, AROUND, SIZE = range(3)
-"""Columns of a heading: the components of a direction along the part and around it, and its size."""
+ALONG, AROUND, ANGLE = range(3)
+"""Columns of a heading: components of a direction along the part and around it, and its angle from along, to pi/2."""
 
 
 @njit(inline="always", cache=True)
@@ -56,4 +56,5 @@ def headings(first, last, spline, uv, points, touching, out):
                 size += along * along
             out[p, i, ALONG] = wl / max(sqrt(size), TINY)
             out[p, i, AROUND] = wa / max(sqrt(aa), TINY)
-            out[p, i, SIZE] = sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2])
+            whole = sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2])
+            out[p, i, ANGLE] = asin(min(abs(out[p, i, AROUND]) / max(whole, TINY), 1.0))
