@@ -16,9 +16,11 @@ from meshwind.filament.course import Kind
 from meshwind.filament.edge import Edge, Legs, edge
 from meshwind.filament.ends import LayerPlan, choose_end
 from meshwind.filament.filament import filaments_of
+from meshwind.filament.leaving import Rays
 from meshwind.filament.lift import leaning, legs_over
 from meshwind.filament.pin_turn import Pins
 from meshwind.filament.section import section
+from meshwind.path.winding_angle import axes, headings, winding_angle
 from meshwind.program.faults import SPAN
 from meshwind.program.machine import read_machine
 from meshwind.program.program import Work, program
@@ -284,3 +286,40 @@ def test_a_notch_in_a_rim_is_no_rim_along_the_axis() -> None:
     filament = layer.filaments[0]
     assert len(layer.filaments) == 1
     assert np.linalg.norm(filament.points[0] - filament.points[-1]) < 1e-9
+
+
+def test_rays_have_points_and_tangents_of_fourth_order() -> None:
+    """Along a helix, from its end, between particles and at them."""
+    off = []
+    for many in (21, 41, 81):
+        t = np.linspace(0.0, 2.0, many)
+        points = np.stack([np.cos(t), np.sin(t), 0.3 * t], axis=1)[None, ::-1]
+        rays = Rays(points, np.array([0]), np.array([1]))
+        share = np.linspace(0.0, 0.8, 41)
+        at, ahead = rays.at(share * (many - 1), np.zeros(41, dtype=int))
+        s = 2.0 * (1.0 - share)
+        exact = np.stack([np.cos(s), np.sin(s), 0.3 * s], axis=1)
+        way = np.stack([-np.sin(s), np.cos(s), np.full_like(s, 0.3)], axis=1) / hypot(1.0, 0.3)
+        off.append([np.abs(at - exact).max(), np.abs(ahead - way).max()])
+    order = np.log2(np.divide(off[:-1], off[1:]))
+    assert (order[:, 0] > 3.6).all() and (order[:, 1] > 2.7).all()
+    assert off[-1][1] < 2e-6
+
+
+def test_headings_are_those_by_the_frames() -> None:
+    """The compiled loop against the axes of the surface, on the part and in the air."""
+    surface = barrel(-0.6, 0.2, 0.05)
+    paths = wound(surface, 4, 0.12, 201)
+    assert not paths.on_surface.all()
+    flat = paths.uv.reshape(-1, 2)
+    along, around, _ = axes(surface, flat)
+    frames = surface.frames(flat)
+    rate, chord = (
+        np.gradient(each, axis=1, edge_order=2).reshape(-1, k) for each, k in ((paths.uv, 2), (paths.points, 3))
+    )
+    way = np.where(paths.on_surface.reshape(-1, 1), frames[:, 1] * rate[:, :1] + frames[:, 2] * rate[:, 1:], chord)
+    made = headings(paths)
+    assert made[0] == pytest.approx((way * along).sum(axis=1), abs=1e-12)
+    assert made[1] == pytest.approx((way * around).sum(axis=1), abs=1e-12)
+    share = np.abs(made[1]) / np.linalg.norm(way, axis=1)
+    assert np.sin(winding_angle(paths)).ravel() == pytest.approx(share, abs=1e-12)
