@@ -15,6 +15,7 @@ from numba import njit
 from meshwind.core.cast import Bools, Floats, frozen
 from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import TINY
+from meshwind.path.kernels.geometry import dot, minus, row
 from meshwind.path.kernels.state import EVALUATIONS, FEET, State, distance
 from meshwind.path.kernels.survey import blank_survey, seen, survey
 from meshwind.path.kernels.touchdown import touchdown
@@ -255,10 +256,22 @@ def fibre_length(spline, state, rise):
         if before + after <= chord and straight - chord <= first + last + ROUNDED * chord:
             total += straight
             error += LANDED * abs(straight - chord)
-            error += (first if before == 0.0 else 0.0) + (last if after == 0.0 else 0.0)
-            over = (first if before > 0.0 else 0.0) + (last if after > 0.0 else 0.0)
-            error += max(over - EXPLAINED * abs(straight - chord), 0.0)  # what they land on does not explain
+            error += unexplained(first, before, here, row(X, i), chord)
+            error += unexplained(last, after, there, row(X, j), chord)
         else:  # the ends lie beyond one another, or further round than the surface stands out
             total += chord
             error += first + last + max(straight - chord, 0.0)
     return total, error
+
+
+@njit(cache=True)
+def unexplained(way_round, landing, point, end, chord):
+    """What of the way round all that stands out of a bridge's first or last segment is left as an error.
+
+    Where the fibre leaves later than at its particle, the arc on the way there stands out, and adds to the length what
+    `landing` as far as `point` does.  Where it leaves sooner, or at its particle, something else stands out.
+    """
+    if landing <= 0.0:
+        return way_round
+    rest = minus((point[0], point[1], point[2]), end)
+    return max(way_round - EXPLAINED * abs(landing + np.sqrt(dot(rest, rest)) - chord), 0.0)
