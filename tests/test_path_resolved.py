@@ -116,6 +116,15 @@ def test_a_low_rib_that_the_end_of_a_bridge_passes_through_is_in_the_stated_erro
     assert meridian(surface, 51).length_error[0] < 1e-4 * LENGTH
 
 
+def test_a_low_rib_ahead_of_where_a_bridge_leaves_too_late_is_in_the_stated_error() -> None:
+    """The fibre leaves the body before the particle: what stands out behind that is not the arc it lands on."""
+    at, width = [192.60528612, 20.5926557, 246.42028667], [0.94651481, 0.76710333, 1.97800364]
+    ribs = bumps(np.array(at), np.array(width), np.array([0.07535749, 1.40644149, 2.49528211]))
+    surface = revolved(lambda z: ribs(z) + 14.583766740586679 * np.sin(np.pi * z / LENGTH), 2346)
+    check(surface, 51)
+    assert meridian(surface, 51).length_error[0] < 2e-5 * LENGTH
+
+
 def test_the_top_of_a_rib_between_samples_is_in_the_stated_error() -> None:
     surface = revolved(bumps(np.array([77.1]), np.array([0.25]), np.array([3.0])), 2048)
     v = np.linspace(0.0, 1.0, 200001)
