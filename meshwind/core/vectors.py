@@ -1,4 +1,4 @@
-"""Arithmetic on rows of vectors."""
+"""Arithmetic on rows of vectors, component by component: sums over so short an axis cost several times as much."""
 
 import numpy as np
 
@@ -8,7 +8,20 @@ TINY = 1e-300
 """Keeps a quotient finite where the divisor may vanish."""
 
 
+def dots(one: Floats, other: Floats) -> Floats:
+    """Inner products (...) of vectors (..., d)."""
+    found = one[..., 0] * other[..., 0]
+    for k in range(1, one.shape[-1]):
+        found = found + one[..., k] * other[..., k]
+    return np.asarray(found)
+
+
+def sizes(vectors: Floats) -> Floats:
+    """Lengths (...) of vectors (..., d)."""
+    return np.asarray(np.sqrt(dots(vectors, vectors)))
+
+
 def unit(vectors: Floats) -> Floats:
     """Vectors (..., d) over their lengths; those without a length stay zero."""
-    size = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0.0)
+    size = sizes(vectors)[..., None]
+    return np.asarray(vectors / np.where(size > 0.0, size, 1.0))

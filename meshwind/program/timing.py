@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.core.cast import Floats, Ints
 
 FIBRE = "fibre"
 """Name of the fibre's speed among what limits a program."""
@@ -39,12 +39,11 @@ class Timing:
 
 
 class _Changes(NamedTuple):
-    """At nodes between steps: acceleration over the limit, its number, and whether the steps on its sides are fast."""
+    """Nodes (n,) at which an axis changes its speed too fast, the ratio to what it may, and which axis it is."""
 
+    nodes: Ints
     ratio: Floats
     limit: Ints
-    before: Bools
-    after: Bools
 
 
 def timed(moves: Floats, limits: Limits) -> Timing:
@@ -59,40 +58,52 @@ def timed(moves: Floats, limits: Limits) -> Timing:
     going = np.flatnonzero(seconds > 0.0)
     if not len(going):
         return Timing(seconds, limit, 0.0)
-    move, time, under = moves[going], seconds[going], limit[going]
-    nodes, ratio = np.arange(len(move) + 1), np.zeros(len(move) + 1)
+    # rest comes before the first step and after the last; node i lies between steps i and i + 1
+    speed, time, under = _at_rest(moves[going].T), _at_rest(seconds[going]), _at_rest(limit[going])
+    speed[:, 1:-1] /= time[1:-1]
+    nodes, ratio = np.arange(len(going) + 1), np.zeros(len(going) + 1)
     for _ in range(_ROUNDS):
-        found = _changes(move, time, limits.acceleration, nodes)
-        ratio[nodes] = found.ratio
-        over = found.ratio > 1.0 + _OVER
-        if not over.any():
+        found = _changes(speed, time, limits.acceleration, nodes, ratio)
+        if not len(found.nodes):
             break
-        stretch = np.ones(len(move))
+        before, after = speed[found.limit, found.nodes], speed[found.limit, found.nodes + 1]
+        turns = before * after < 0.0
+        stretch, by = np.ones(len(time)), found.ratio**_POWER
         # a step that is stretched for both of its nodes takes the larger factor
-        for side, shift in ((found.before, -1), (found.after, 0)):
-            steps = nodes[over & side] + shift
-            np.maximum.at(stretch, steps, found.ratio[over & side] ** _POWER)
-            under[steps] = found.limit[over & side]
+        for shift, faster, slower in ((0, before, after), (1, after, before)):
+            side = (np.abs(faster) >= np.abs(slower)) | turns
+            steps = found.nodes[side] + shift
+            stretch[steps] = np.maximum(stretch[steps], by[side])
+            under[steps] = found.limit[side]
+        stretch[[0, -1]] = 1.0
+        time *= stretch
+        speed /= stretch
         changed = stretch > 1.0
-        time[changed] *= stretch[changed]
-        nodes = np.flatnonzero(np.append(changed, False) | np.append(False, changed))
-    seconds[going], limit[going] = time, under
+        nodes = np.flatnonzero(changed[1:] | changed[:-1])
+    seconds[going], limit[going] = time[1:-1], under[1:-1]
     worst = float(ratio.max())
     return Timing(seconds, limit, worst - 1.0 if worst > 1.0 + _OVER else 0.0)
 
 
-def _changes(move: Floats, time: Floats, acceleration: Floats, nodes: Ints) -> _Changes:
-    """What changes at nodes (n,): node i lies before step i, and beyond both ends there is rest."""
-    last = len(move) - 1
-    one, two = np.maximum(nodes - 1, 0), np.minimum(nodes, last)
-    first, end = nodes == 0, nodes > last
-    before = np.where(first[:, None], 0.0, move[one] / time[one][:, None])
-    after = np.where(end[:, None], 0.0, move[two] / time[two][:, None])
-    mean = 0.5 * (np.where(first, 0.0, time[one]) + np.where(end, 0.0, time[two]))
-    ratios = np.abs(after - before) / (mean[:, None] * acceleration)
-    limit = ratios.argmax(axis=1)
-    rows = np.arange(len(nodes))
-    u, w = before[rows, limit], after[rows, limit]
-    turns = u * w < 0.0
-    fast_before, fast_after = (np.abs(u) >= np.abs(w)) | turns, (np.abs(w) >= np.abs(u)) | turns
-    return _Changes(ratios[rows, limit], limit, fast_before & ~first, fast_after & ~end)
+def _at_rest(values: Floats) -> Floats:
+    """Values (..., m) of steps with 0 before the first and after the last."""
+    return np.pad(np.ascontiguousarray(values), [*[(0, 0)] * (values.ndim - 1), (1, 1)])
+
+
+def _changes(speed: Floats, time: Floats, acceleration: Floats, nodes: Ints, ratio: Floats) -> _Changes:
+    """What changes too fast at nodes (n,) between steps of speeds (k, m) and times (m,); `ratio` is renewed there."""
+    if 2 * len(nodes) > len(ratio):  # slices cost a fraction of chosen columns
+        nodes = np.arange(len(ratio))
+        changes, sums = np.abs(speed[:, 1:] - speed[:, :-1]), time[1:] + time[:-1]
+    else:
+        changes = np.abs(speed.take(nodes + 1, axis=1) - speed.take(nodes, axis=1))
+        sums = time[nodes + 1] + time[nodes]
+    changes *= 2.0 / acceleration[:, None]
+    most = changes.max(axis=0)
+    ratios = most / sums
+    ratio[nodes] = ratios
+    over = np.flatnonzero(ratios > 1.0 + _OVER)
+    limit = np.zeros(len(over), dtype=np.int64)
+    for k in range(len(changes) - 1, -1, -1):  # the first of those that are equal
+        limit[changes[k, over] == most[over]] = k
+    return _Changes(nodes[over], ratios[over], limit)

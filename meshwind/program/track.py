@@ -1,11 +1,12 @@
 """The fibre as the machine lays it: pieces that are laid, spans that land at once, and turns at a fixed point."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
-from meshwind.core.vectors import TINY, unit
+from meshwind.core.vectors import TINY, dots, sizes, unit
 from meshwind.filament.course import Kind
 from meshwind.filament.filament import Filament
 
@@ -54,7 +55,7 @@ class Track:
     def __len__(self) -> int:
         return len(self.motion)
 
-    @property
+    @cached_property
     def corner(self) -> Floats:
         """Turn (m,) of the tangent over each piece, in radians."""
         return _turn(self.tangents[:, 0], self.tangents[:, 1])
@@ -71,7 +72,7 @@ class Track:
         p0, p1 = self.points[index, 0], self.points[index, 1]
         t0, t1 = self.tangents[index, 0], self.tangents[index, 1]
         chord = p1 - p0
-        size = np.sqrt((chord**2).sum(axis=1))[:, None]
+        size = sizes(chord)[:, None]
         d0, d1 = size * t0, size * t1
         bend, twist = 3.0 * chord - 2.0 * d0 - d1, d0 + d1 - 2.0 * chord
         lay = self.motion[index] == LAY
@@ -105,43 +106,39 @@ def track(filament: Filament, backwards: bool = False) -> Track:
         held = held[::-1]
     points = course.points[held]
     step, chord = _steps(points)
-    kind = course.kind[held]
     # what a step does is told by its later point in order of winding; a bridge has points in the air at both or one end
     later = course.kind[held[:-1] if backwards else held[1:]]
     air = _bridged(course.kind, held)
     arc = course.arc_length[held]
     arc = arc[0] - arc if backwards else arc
     before, after = _tangents(step, chord, air, _apart(chord, later, air, filament.layer[held]))
-    turns = _turn(before[1:-1], after[1:-1]) > _SAME
-    at = np.flatnonzero(turns) + 1  # vertices about which the span turns
-    first = np.arange(len(held) - 1)
-    order = np.argsort(np.concatenate([first, at - 0.5]), kind="stable")
-
-    def woven(of_steps: Floats | Ints, of_turns: Floats | Ints) -> Floats:
-        return np.concatenate([of_steps, of_turns])[order]
-
-    def ends(values: Floats) -> Floats:
-        return woven(np.stack([values[:-1], values[1:]], axis=1), np.stack([values[at], values[at]], axis=1))
+    turns = np.zeros(len(step), dtype=np.int64)  # at the start of a step, the span turns about the vertex
+    turns[1:] = _turned(before[1:-1], after[1:-1], _SAME)
+    start = np.repeat(np.arange(len(step)), 1 + turns)
+    pivot = np.append(start[1:] == start[:-1], False)
+    end, told = start + 1 - pivot, start - pivot
+    at = np.flatnonzero(pivot)
+    leaving, arriving = after.take(start, axis=0), before.take(end, axis=0)
+    leaving[at], arriving[at] = before[start[at]], after[start[at]]
+    both = np.stack([start, end], axis=1)
 
     def of_step(values: Ints) -> Ints:
         on = values[held]
-        chosen = on[:-1] if backwards else on[1:]
-        return woven(chosen, chosen[np.maximum(at - 1, 0)]).astype(np.int64)
+        return (on[:-1] if backwards else on[1:])[told].astype(np.int64)
 
     kinds = np.where(air, Kind.BRIDGE, np.where(later == Kind.BRIDGE, Kind.LAID, later))
-    del kind
     return Track(
-        motion=woven(np.where(air, AIR, LAY), np.full(len(at), PIVOT)).astype(np.int64),
-        points=ends(points),
-        tangents=woven(np.stack([after[:-1], before[1:]], axis=1), np.stack([before[at], after[at]], axis=1)),
-        normals=ends(course.normal[held]),
-        arc=ends(arc),
-        slip=ends(course.slip[held]),
+        motion=np.where(pivot, PIVOT, np.where(air, AIR, LAY)[start]).astype(np.int64),
+        points=points.take(both, axis=0),
+        tangents=np.stack([leaving, arriving], axis=1),
+        normals=course.normal.take(held[both], axis=0),
+        arc=arc.take(both),
+        slip=course.slip.take(held[both]),
         layer=of_step(filament.layer),
         circuit=of_step(course.circuit),
         passed=of_step(course.passed),
         path=of_step(course.path),
-        kind=woven(kinds, kinds[np.maximum(at - 1, 0)]).astype(np.int64),
+        kind=kinds[told].astype(np.int64),
     )
 
 
@@ -157,7 +154,7 @@ def _held(points: Floats, kind: Ints) -> Bools:
 
 def _twice(points: Floats) -> Ints:
     """Points that lie where the one before does."""
-    step = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    step = sizes(np.diff(points, axis=0))
     return np.flatnonzero(step <= _NO_STEP * step.sum()) + 1
 
 
@@ -166,8 +163,11 @@ def _zigzag(points: Floats) -> Ints:
     step = unit(np.diff(points, axis=0))
     if len(step) < 3:
         return np.empty(0, dtype=np.int64)
-    aside = np.minimum(_turn(step[:-2], step[1:-1]), _turn(step[1:-1], step[2:]))
-    return np.flatnonzero((aside > _ZIGZAG) & (_turn(step[:-2], step[2:]) < 0.5 * aside)) + 2
+    sharp = _turned(step[:-1], step[1:], _ZIGZAG)
+    near = np.flatnonzero(sharp[:-1] & sharp[1:])
+    one, two, three = step[near], step[near + 1], step[near + 2]
+    aside = np.minimum(_turn(one, two), _turn(two, three))
+    return near[_turn(one, three) < 0.5 * aside] + 2
 
 
 def _bridged(kind: Ints, held: Ints) -> Bools:
@@ -180,7 +180,8 @@ def _bridged(kind: Ints, held: Ints) -> Bools:
 def _steps(points: Floats) -> tuple[Floats, Floats]:
     """Unit vectors (n - 1, 3) from point to point, and the lengths (n - 1,)."""
     move = np.diff(points, axis=0)
-    return unit(move), np.linalg.norm(move, axis=1)
+    chord = sizes(move)
+    return move / np.where(chord > 0.0, chord, 1.0)[:, None], chord
 
 
 def _apart(chord: Floats, kind: Ints, air: Bools, layer: Ints) -> Bools:
@@ -195,21 +196,19 @@ def _apart(chord: Floats, kind: Ints, air: Bools, layer: Ints) -> Bools:
 
 def _tangents(step: Floats, chord: Floats, air: Bools, apart: Bools) -> tuple[Floats, Floats]:
     """Unit tangents (n, 3) of arriving at and leaving from each point: those of parabolas, the chord in the air."""
-    apart = apart | (_turn(step[:-1], step[1:]) > _SMOOTH)
-    h0, h1 = chord[:-1, None], chord[1:, None]
-    both = unit((h1 * step[:-1] + h0 * step[1:]) / (h0 + h1))
-    before, after = np.concatenate([step[:1], step]), np.concatenate([step, step[-1:]])
-    smooth = np.flatnonzero(~apart) + 1
-    before[smooth] = after[smooth] = both[smooth - 1]
     # at a corner or an end, the parabola through the points on one side, if the next of them is smooth
     inner = np.zeros(len(step) + 1, dtype=bool)
-    inner[smooth] = True
+    inner[1:-1] = ~(apart | _turned(step[:-1], step[1:], _SMOOTH))
+    before = np.concatenate([step[:1], step])
+    before[1:-1] = unit(chord[1:, None] * step[:-1] + chord[:-1, None] * step[1:])
+    after, corners = before.copy(), np.flatnonzero(~inner)
+    before[corners], after[corners] = step[np.maximum(corners - 1, 0)], step[np.minimum(corners, len(step) - 1)]
     start = np.flatnonzero(~inner[:-1] & inner[1:])  # steps whose start is a corner
     after[start] = _mirrored(step[start], after[start + 1])
     end = np.flatnonzero(inner[:-1] & ~inner[1:])
     before[end + 1] = _mirrored(step[end], before[end])
     after[:-1][air], before[1:][air] = step[air], step[air]
-    small = np.flatnonzero(_turn(before, after) <= _SAME)
+    small = corners[~_turned(before[corners], after[corners], _SAME)]
     mean = unit(before[small] + after[small])
     lands, lifts = np.append(False, air)[small], np.append(air, False)[small]
     mean = np.where(lands[:, None], before[small], np.where(lifts[:, None], after[small], mean))
@@ -220,12 +219,17 @@ def _tangents(step: Floats, chord: Floats, air: Bools, apart: Bools) -> tuple[Fl
 
 def _mirrored(chord: Floats, tangent: Floats) -> Floats:
     """The tangents (n, 3) at one end of chords, by those at the other: of a circle."""
-    return unit(2.0 * (chord * tangent).sum(axis=1, keepdims=True) * chord - tangent)
+    return unit(2.0 * dots(chord, tangent)[:, None] * chord - tangent)
 
 
 def _turn(one: Floats, other: Floats) -> Floats:
     """Angles (n,) between unit vectors (n, 3)."""
-    return np.asarray(2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(other - one, axis=1), 1.0)))
+    return np.asarray(2.0 * np.arcsin(np.minimum(0.5 * sizes(other - one), 1.0)))
+
+
+def _turned(one: Floats, other: Floats, angle: float) -> Bools:
+    """Whether unit vectors (n, 3) are more than an angle apart."""
+    return np.asarray(sizes(other - one) > 2.0 * np.sin(0.5 * angle))
 
 
 def swung(one: Floats, other: Floats, share: Floats) -> Floats:
