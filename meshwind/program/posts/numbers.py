@@ -15,14 +15,18 @@ def steps(values: Floats, decimals: int) -> Ints:
     return np.rint(values * 10.0**decimals).astype(np.int64)
 
 
-def number(count: int, decimals: int) -> str:
-    """A whole number of the last decimal as text."""
-    whole, part = divmod(abs(count), 10**decimals)
-    text = f"{whole}.{part:0{decimals}d}".rstrip("0") if decimals else f"{whole}"
-    return f"{'-' if count < 0 else ''}{text}{'0' if text.endswith('.') else ''}"
+def numbers(counts: Ints, decimals: int) -> list[str]:
+    """Whole numbers (n,) of the last decimal as texts."""
+    form = f"%.{decimals}f"
+    texts = [form % value for value in (counts / 10**decimals).tolist()]
+    return [_point(text.rstrip("0")) if text[-1] == "0" else text for text in texts] if decimals else texts
 
 
 def figures(value: float) -> str:
     """A positive value as text with `FIGURES` figures."""
-    text = f"{value:.{max(1, FIGURES - 1 - math.floor(math.log10(value)))}f}".rstrip("0")
-    return f"{text}0" if text.endswith(".") else text
+    return _point(f"{value:.{max(1, FIGURES - 1 - math.floor(math.log10(value)))}f}".rstrip("0"))
+
+
+def _point(text: str) -> str:
+    """A number without zeros at its end, but for one after the point."""
+    return f"{text}0" if text[-1] == "." else text

@@ -10,10 +10,11 @@ from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.program.axes import moved
 from meshwind.program.blocks import Blocks
-from meshwind.program.machine import Axis, Machine
-from meshwind.program.posts.dialect import ALL_INCREMENTS, INCREMENTS, RESET, Dialect, fitted
+from meshwind.program.machine import Machine
+from meshwind.program.posts.axis_words import AxisWords
+from meshwind.program.posts.dialect import RESET, Dialect, fitted
 from meshwind.program.posts.header import Job, comments, header
-from meshwind.program.posts.numbers import figures, number, steps
+from meshwind.program.posts.numbers import figures, numbers, steps
 
 _TURN = 360.0
 _LEAST_WAIT = 1e-3
@@ -54,18 +55,18 @@ class _Writer:
         zero = round(machine.axes[self.mandrel].zero * self.unit)
         # the part does not know how often it was turned before: whole turns at the start are left out
         at[:, self.mandrel] -= turn * int(np.fix((at[0, self.mandrel] - zero) / turn))
-        self.at: list[list[int]] = at.tolist()
         self.time: list[float] = blocks.time.tolist()
         changes = np.flatnonzero((np.diff(blocks.circuit) != 0) | (np.diff(blocks.layer) != 0)) + 1
         self.circuits = set(changes.tolist())
+        self.axes = AxisWords(at, machine, dialect, changes.tolist())
+        self.at = self.axes.at
         self.layers = set((np.flatnonzero(np.diff(blocks.layer) != 0) + 1).tolist())
         self.cuts = {cut + 1: (number, tied) for number, (cut, tied) in enumerate(blocks.travels.tolist(), 1)}
         self.ties = {tied: number for number, tied in self.cuts.values()}
         self.tensions = set((np.flatnonzero(np.diff(blocks.tension) != 0) + 1).tolist()) if machine.tension else set()
+        self.events = self.circuits | self.layers | self.tensions | self.cuts.keys() | self.ties.keys()
         self.lines: list[str] = []
         self.last = 0
-        self.stands = list(self.at[0])
-        self.count = 0
         self.said = self.time[0]
 
     def filled(self, lines: Sequence[str]) -> list[str]:
@@ -80,16 +81,14 @@ class _Writer:
         axis, first = self.machine.axes[self.mandrel], self.at[0]
         zero = round(axis.zero * self.unit)
         if self.dialect.turning == RESET and not axis.modulo:
-            self.lines.append(self.dialect.reset.format(axes=self._word(axis, zero)))
-        turns = self._by_increments(axis)
+            self.lines.append(self.dialect.reset.format(axes=self.axes.counted(self.mandrel, zero)))
+        turns = self.axes.by_increments(axis)
         for chosen, stop in self._stops(turns):
-            words = [self._told(k, stop[k], stop[k], absolute=True) for k in chosen]
+            words = [self.axes.placed(k, stop[k]) for k in chosen]
             speed = 60.0 * _APPROACH * min(each.speed for each in self.machine.axes)
             self._say(self.dialect.rapid.format(axes=self._joined(words), rapid=figures(speed)))
         if turns and first[self.mandrel] != zero:
-            word = self.dialect.increment.format(
-                letter=axis.letter, value=number(first[self.mandrel] - zero, self.dialect.decimals)
-            )
+            word = self.axes.increment(self.mandrel, first[self.mandrel] - zero)
             self.lines.append(self.dialect.rapid_turn.format(axes=word))
         self.lines += [self.dialect.pause, *self.filled(self.dialect.ready)]
         self._layer(0)
@@ -113,15 +112,9 @@ class _Writer:
 
     def block(self, index: int) -> None:
         """The lines of a block, none where no axis moves by a last decimal."""
+        if index in self.events:
+            self._event(index)
         now, stood = self.at[index], self.at[self.last]
-        if index in self.cuts or index in self.ties:
-            self._stop(index)
-        if index in self.layers:
-            self._layer(index)
-        if index in self.circuits:
-            self._count_again()
-        if index in self.tensions - self.cuts.keys() - self.ties.keys():
-            self._tension(index)
         end = index == len(self.at) - 1
         if now == stood:
             if end:
@@ -134,6 +127,17 @@ class _Writer:
             return
         self._move(index, max(seconds, _LEAST_TIME))
         self.last = index
+
+    def _event(self, index: int) -> None:
+        """The lines before a block with which something begins."""
+        if index in self.cuts or index in self.ties:
+            self._stop(index)
+        if index in self.layers:
+            self._layer(index)
+        if index in self.circuits:
+            self._count_again()
+        if index in self.tensions - self.cuts.keys() - self.ties.keys():
+            self._tension(index)
 
     def _move(self, index: int, seconds: float) -> None:
         """A move to a block that takes some seconds."""
@@ -148,7 +152,7 @@ class _Writer:
             text = figures(seconds)
             feed, told = f"F{text}", float(text)
         chosen = [k for k, move in enumerate(moves) if move or self.dialect.whole]
-        words = [self._told(k, now[k], moves[k]) for k in chosen]
+        words = [self.axes.told(k, index, self.last) for k in chosen]
         self._say(self.dialect.move.format(axes=self._joined(words), feed=feed))
         self.said += told
 
@@ -173,7 +177,7 @@ class _Writer:
         if wait < _LEAST_WAIT:
             return
         count = round(wait / self.dialect.dwell_unit * 10**self.dialect.dwell_decimals)
-        self._say(self.dialect.dwell.format(wait=number(count, self.dialect.dwell_decimals)))
+        self._say(self.dialect.dwell.format(wait=numbers(np.array([count]), self.dialect.dwell_decimals)[0]))
         self.said += count * self.dialect.dwell_unit / 10**self.dialect.dwell_decimals
 
     def _count_again(self) -> None:
@@ -181,11 +185,11 @@ class _Writer:
         axis = self.machine.axes[self.mandrel]
         if self.dialect.turning != RESET or axis.modulo:
             return
-        turn, now = round(_TURN) * self.unit, self.at[self.last][self.mandrel] - self.count
+        turn, now = round(_TURN) * self.unit, self.at[self.last][self.mandrel] - self.axes.count
         if abs(now) >= turn:
             taken = turn * int(math.copysign(abs(now) // turn, now))
-            self.count += taken
-            self._say(self.dialect.reset.format(axes=self._word(axis, now - taken)))
+            self.axes.set_back(taken)
+            self._say(self.dialect.reset.format(axes=self.axes.counted(self.mandrel, now - taken)))
 
     def _stop(self, index: int) -> None:
         """The stops at which the operator cuts the fibre, with no pull on it any more, and ties it on again."""
@@ -208,27 +212,6 @@ class _Writer:
 
     def _layer(self, index: int) -> None:
         self.lines += comments(f"layer {int(self.blocks.layer[index]) + 1}", self.dialect)
-
-    def _by_increments(self, axis: Axis) -> bool:
-        if self.dialect.turning == ALL_INCREMENTS:
-            return True
-        return self.dialect.turning == INCREMENTS and axis.moves == "mandrel" and not axis.modulo
-
-    def _told(self, k: int, value: int, move: int, absolute: bool = False) -> str:
-        """The word of an axis that moves to a value; `absolute` is one that must not be an increment."""
-        axis = self.machine.axes[k]
-        if self._by_increments(axis) and not absolute:
-            return self.dialect.increment.format(letter=axis.letter, value=number(move, self.dialect.decimals))
-        if axis.modulo:
-            value %= round(axis.modulo * self.unit)
-            if self.dialect.turned and self.dialect.turning != ALL_INCREMENTS:
-                text = number(value, self.dialect.decimals)
-                return self.dialect.turned[0 if move >= 0 else 1].format(letter=axis.letter, value=text)
-            return self._word(axis, value)
-        return self._word(axis, value - (self.count if k == self.mandrel else 0))
-
-    def _word(self, axis: Axis, value: int) -> str:
-        return self.dialect.word.format(letter=axis.letter, value=number(value, self.dialect.decimals))
 
     def _joined(self, words: list[str]) -> str:
         """The words of axes; with the fixed ones, and in the dialect's order, where it names all."""
