@@ -54,11 +54,16 @@ class Interpreter(ABC):
         self.running = self.over = False
         self.start = [math.nan] * len(machine.axes)
         self.tension = math.nan
-        self.rows: list[tuple[int, list[float], float, float]] = []
+        # of each move or wait: line, seconds, tension, and the values of all axes in a row
+        self.line: list[int] = []
+        self.seconds: list[float] = []
+        self.tensions: list[float] = []
+        self.values: list[float] = []
         self.stops: list[tuple[int, int]] = []
         self.faults: list[tuple[int, str]] = []
         before, _, after = machine.tension.partition("{")
         tension = re.escape(before) + f"({NUMBER})" + re.escape(after.partition("}")[2])
+        self._comment = re.compile(controller.comment)
         self._tension = re.compile(tension) if machine.tension else None
 
     @abstractmethod
@@ -71,7 +76,7 @@ class Interpreter(ABC):
             self.fault(number, f"{len(line)} characters, of which {self.controller.longest} are read")
         if not line.isascii():
             self.fault(number, "a character that is not ASCII")
-        text = re.sub(self.controller.comment, "", line.strip()).strip()
+        text = self._comment.sub("", line.strip()).strip()
         if not text:
             return
         if self.over:
@@ -88,13 +93,16 @@ class Interpreter(ABC):
     def stop(self, number: int, values: list[float]) -> None:
         """Wait for the operator; the program begins with the first time."""
         if self.running:
-            self.stops.append((number, len(self.rows)))
+            self.stops.append((number, len(self.line)))
         else:
             self.running, self.start = True, values
 
     def done(self, number: int, values: list[float], seconds: float) -> None:
         """Note a move or a wait."""
-        self.rows.append((number, values, seconds, self.tension))
+        self.line.append(number)
+        self.seconds.append(seconds)
+        self.tensions.append(self.tension)
+        self.values.extend(values)
 
     def reading(self, lines: int) -> Reading:
         """What was read in so many lines."""
@@ -102,13 +110,12 @@ class Interpreter(ABC):
             self.fault(lines, f"no {' or '.join(self.controller.ends)} ends the program")
         if not self.running:
             self.fault(1, "no stop before the program, at which the fibre is tied on")
-        line, values, seconds, tension = zip(*self.rows, strict=True) if self.rows else ((), (), (), ())
         return Reading(
             start=np.array(self.start),
-            line=np.array(line, dtype=np.int64),
-            values=np.array(values, dtype=float).reshape(len(line), len(self.start)),
-            seconds=np.array(seconds, dtype=float),
-            tension=np.array(tension, dtype=float),
+            line=np.array(self.line, dtype=np.int64),
+            values=np.array(self.values, dtype=float).reshape(len(self.line), len(self.start)),
+            seconds=np.array(self.seconds, dtype=float),
+            tension=np.array(self.tensions, dtype=float),
             stops=tuple(self.stops),
             faults=tuple(sorted(self.faults)),
         )

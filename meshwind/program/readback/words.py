@@ -7,9 +7,11 @@ from meshwind.program.machine import Machine
 from meshwind.program.readback.controllers import Controller
 from meshwind.program.readback.reading import NUMBER, Interpreter
 
-_WORD = re.compile(
-    rf"(?P<name>[A-Z]\d*)=(?:(?P<way>IC|ACP|ACN)\()?(?P<value>{NUMBER})(?(way)\))|(?P<letter>[A-Z])\s*(?P<plain>{NUMBER})"
-)
+_ADDRESS = rf"([A-Z]\d*)=(?:(IC|ACP|ACN)\(({NUMBER})\)|({NUMBER}))|([A-Z])\s*({NUMBER})"
+_WORD = re.compile(_ADDRESS)
+"""A word: its name, how it is approached, the value by that or as it is; or its letter and its value."""
+_WORDS = re.compile(rf"(?:(?>[A-Z]\d*=(?:(?:IC|ACP|ACN)\({NUMBER}\)|{NUMBER})|[A-Z]\s*{NUMBER})\s*+)*+")
+"""Words in a row, in which each is read as it stands: trying to read it otherwise would take ages."""
 _MODES = {"G0": "rapid", "G1": "feed"}
 _SILENT = {"G17", "G21", "G40", "G49", "G64", "G80", "G710"}
 """Words that move nothing and whose state the program does not depend on; all lengths are in mm."""
@@ -31,30 +33,27 @@ class Words(Interpreter):
 
     def carry_out(self, number: int, text: str) -> None:
         """Carry out a line."""
-        if re.sub(_WORD, "", text).strip():
+        if not _WORDS.fullmatch(text):
             self.fault(number, f"{text!r} is not understood")
-        else:
-            self._words(number, list(_WORD.finditer(text)))
-
-    def _words(self, number: int, words: list[re.Match[str]]) -> None:
-        """Carry out the words of a line."""
-        codes, moves, others = [], [], {}
-        for word in words:
-            name, value = word["name"] or word["letter"], word["value"] or word["plain"]
-            if name in "GM":
-                codes.append(f"{name}{float(value):g}")
-            elif name in self.axes:
-                moves.append((self.axes[name], value, word["way"] or ""))
+            return
+        codes, moves, others = [], {}, {}
+        for name, way, by, value, letter, plain in _WORD.findall(text):
+            if letter == "G" or letter == "M":
+                codes.append(f"{letter}{float(plain):g}")
+                continue
+            wanted, index = float(plain or value or by), self.axes.get(letter or name)
+            if index is None:
+                others[letter or name] = wanted
+            elif index in moves:
+                self.fault(number, "an axis is named twice")
             else:
-                others[name] = float(value)
-        if len({index for index, *_ in moves}) < len(moves):
-            self.fault(number, "an axis is named twice")
+                moves[index] = wanted, way
         self._modes(number, codes)
         if "G4" in codes:
             self._wait(number, others.pop(self.controller.wait, math.nan))
         elif "G92" in codes:
-            for index, value, _ in moves:
-                self.offset[index] = self.at[index] - float(value)
+            for index, (count, _) in moves.items():
+                self.offset[index] = self.at[index] - count
         else:
             if "G64" in codes:
                 others.pop("P", None)
@@ -89,10 +88,11 @@ class Words(Interpreter):
             return
         self.done(number, list(self.at), time * self.controller.wait_unit)
 
-    def _move(self, number: int, moves: list[tuple[int, str, str]], given: float | None) -> None:
+    def _move(self, number: int, moves: dict[int, tuple[float, str]], given: float | None) -> None:
         """Move axes."""
-        before = list(self.at)
-        for index, value, way in moves:
+        before = self.at
+        self.at = before.copy()
+        for index, (value, way) in moves.items():
             self.at[index] = self._target(index, value, way)
         if self.mode == "rapid":
             if self.running:
@@ -109,7 +109,7 @@ class Words(Interpreter):
             seconds = feed if self.machine.feed == "G93-seconds" else 60.0 / feed
         else:
             seconds = 60.0 * self._length(before) / feed
-        self.done(number, list(self.at), seconds)
+        self.done(number, self.at, seconds)
 
     def _length(self, before: list[float]) -> float:
         """Length in units that F is the speed of."""
@@ -121,9 +121,9 @@ class Words(Interpreter):
                 return length
         return 0.0
 
-    def _target(self, index: int, value: str, way: str) -> float:
+    def _target(self, index: int, wanted: float, way: str) -> float:
         """Where an axis goes, in the machine's own unwrapped count."""
-        axis, now, wanted = self.machine.axes[index], self.at[index], float(value)
+        axis, now = self.machine.axes[index], self.at[index]
         if way == "IC" or (self.relative and not way):
             return now + wanted
         if math.isnan(now) and (way or axis.modulo):  # how often it has turned before is not known
