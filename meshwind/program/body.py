@@ -51,14 +51,15 @@ class Body:
         end = np.where(along > 0.0, self.x[-1], self.x[0])
         to_end = np.divide(end - x, along, out=np.full_like(x, np.inf), where=along != 0.0)
         length = np.minimum(np.maximum(to_end, 0.0), to_radius(points, rays, self.radius))
-        slopes = np.diff(self.r) / np.diff(self.x)
+        widths = np.diff(self.x)
+        slopes = np.diff(self.r) / widths
         active = np.arange(len(x))
         for _ in range(_STEPS):
             p, q, l = points[active], rays[active], length[active]
             at = p + l[:, None] * q
             rho = np.hypot(at[:, 1], at[:, 2])
-            off = rho - np.interp(at[:, 0], self.x, self.r)
             part = np.clip(np.searchsorted(self.x, at[:, 0]) - 1, 0, len(slopes) - 1)
+            off = rho - (self.r[part] + slopes[part] * np.clip(at[:, 0] - self.x[part], 0.0, widths[part]))
             rate = (at[:, 1] * q[:, 1] + at[:, 2] * q[:, 2]) / np.maximum(rho, TINY) - slopes[part] * q[:, 0]
             move = np.where((off > _SETTLED * self.size) & (rate > 0.0), off / np.maximum(rate, TINY), 0.0)
             length[active] = np.maximum(l - move, 0.0)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshwind.core.cast import Floats
-from meshwind.core.vectors import TINY, unit
+from meshwind.core.cast import Floats, Ints
+from meshwind.core.vectors import TINY, sizes, unit
 from meshwind.program.body import Body, to_radius
 from meshwind.program.mandrel import Mandrel
 from meshwind.program.track import AIR, Track
@@ -77,15 +77,72 @@ def at_radius(radius: float, longest: float) -> Spans:
 
 def poses(track: Track, mandrel: Mandrel, spans: Spans, at: Floats) -> Poses:
     """The eye at places (n,) of a track, growing; the fibre is never slack between them."""
-    contact, ahead = track.contact(at)
-    point, tangent, laid = mandrel.inside(contact), mandrel.turned(ahead), track.laid(at)
-    wanted, most = spans.find(point, tangent)
-    if not np.isfinite(most).any():
-        span = taut(wanted, laid)
-    else:
-        span = limited(wanted, most, track, at)
-        tangent, span = _lifted(tangent, span, track, at, mandrel, spans.lift)
-    return Poses(at, laid, point, tangent, span, *axes(point, tangent, span))
+    return Solver(track, mandrel, spans)(at)
+
+
+@dataclass(frozen=True)
+class _Found:
+    """What is found at a place (n,) of a track whatever the others are.
+
+    index, share: the piece, and how much of it is done; laid, point, tangent: see `Poses`; wanted, most: see `Spans`.
+    """
+
+    at: Floats
+    index: Ints
+    share: Floats
+    laid: Floats
+    point: Floats
+    tangent: Floats
+    wanted: Floats
+    most: Floats
+
+    def chosen(self, which: Ints) -> "_Found":
+        """Some of the places."""
+        return _Found(*(values[which] for values in vars(self).values()))
+
+    def among(self, other: "_Found") -> "_Found":
+        """These places and others, in order."""
+        both = zip(vars(self).values(), vars(other).values(), strict=True)
+        joined = _Found(*(np.concatenate(values) for values in both))
+        return joined.chosen(np.argsort(joined.at, kind="stable"))
+
+
+class Solver:
+    """Solves for the eye on a track; what it found at a place it keeps, to be asked again among other places."""
+
+    def __init__(self, track: Track, mandrel: Mandrel, spans: Spans) -> None:
+        self._track, self._mandrel, self._spans = track, mandrel, spans
+        self._known: _Found | None = None
+
+    def __call__(self, at: Floats) -> Poses:
+        """The eye at places (n,), growing; the fibre is never slack between them."""
+        found, mandrel = self._at(at), self._mandrel
+        tangent = found.tangent
+        if not np.isfinite(found.most).any():
+            span = taut(found.wanted, found.laid)
+        else:
+            span = _limited(found, self._track)
+            tangent, span = _lifted(found, span, self._track, mandrel, self._spans.lift)
+        return Poses(at, found.laid, found.point, tangent, span, *axes(found.point, tangent, span))
+
+    def _at(self, at: Floats) -> _Found:
+        """What is found at places (n,)."""
+        if self._known is None:
+            self._known = self._look(at)
+            return self._known
+        old = self._known.at
+        new = old[np.minimum(np.searchsorted(old, at), len(old) - 1)] != at
+        if new.any():
+            self._known = self._known.among(self._look(at[new]))
+        known = self._known
+        return known if len(known.at) == len(at) else known.chosen(np.searchsorted(known.at, at))
+
+    def _look(self, at: Floats) -> _Found:
+        """The same, looked for."""
+        contact, ahead = self._track.contact(at)
+        point, tangent = self._mandrel.inside(contact), self._mandrel.turned(ahead)
+        piece, length = self._track.piece(at), self._spans.find(point, tangent)
+        return _Found(at, *piece, self._track.laid(at), point, tangent, *length)
 
 
 def taut(span: Floats, laid: Floats) -> Floats:
@@ -96,45 +153,40 @@ def taut(span: Floats, laid: Floats) -> Floats:
     return np.asarray(np.maximum.accumulate(span + laid) - laid)
 
 
-def limited(wanted: Floats, most: Floats, track: Track, at: Floats) -> Floats:
-    """Spans (n,) at places (n,) of a track, none slack, and none longer than it may be where the fibre lies.
+def _limited(found: _Found, track: Track) -> Floats:
+    """Spans (n,) at places of a track, none slack, and none longer than it may be where the fibre lies.
 
     The sum of span and laid length is nowhere above the least that is ahead, so that the eye draws near while fibre is
     laid.  Behind, the span grows as fibre is laid.  A bridge lands at once: where the eye is not yet beyond where it
     lands, it runs out along it, evenly over the places in the air.
     """
-    index, share = track.piece(at)
-    air = track.motion[index] == AIR
-    lies = np.flatnonzero(~air | (share == 0.0))
-    laid = track.laid(at)
-    on = laid[lies]
-    total = np.maximum.accumulate(wanted[lies] + on)
-    ahead = np.minimum.accumulate((most[lies] + on)[::-1])[::-1]
+    air = track.motion[found.index] == AIR
+    lies = np.flatnonzero(~air | (found.share == 0.0))
+    on, wanted = found.laid[lies], found.wanted[lies]
+    total = np.maximum.accumulate(wanted + on)
+    ahead = np.minimum.accumulate((found.most[lies] + on)[::-1])[::-1]
     leap = float(total[-1] - total[0]) + float(wanted.max())  # over a bridge the sum may grow to what it will be
     clock = np.concatenate([[0.0], np.cumsum(np.where(air[lies][:-1], leap, (1.0 + _GROWS) * np.diff(on)))])
     total = np.minimum(total, np.minimum.accumulate(ahead - clock) + clock)
-    return np.asarray(np.interp(at, at[lies], total) - laid)
+    return np.asarray(np.interp(found.at, found.at[lies], total) - found.laid)
 
 
-def _lifted(
-    tangent: Floats, span: Floats, track: Track, at: Floats, mandrel: Mandrel, lift: float
-) -> tuple[Floats, Floats]:
+def _lifted(found: _Found, span: Floats, track: Track, mandrel: Mandrel, lift: float) -> tuple[Floats, Floats]:
     """Tangents (n, 3) and spans (n,) of which those that run out along a bridge keep off the part where it lands.
 
     The lift is along the normal there; it grows evenly from where the eye begins to run out, and falls as evenly.
     """
-    index, share = track.piece(at)
-    air = np.flatnonzero((track.motion[index] == AIR) & (share > 0.0))
-    bridge = index[air]
-    begin, end = np.searchsorted(at, bridge), np.searchsorted(at, bridge + 1.0)
-    length = np.linalg.norm(track.points[bridge, 1] - track.points[bridge, 0], axis=1)
+    air = np.flatnonzero((track.motion[found.index] == AIR) & (found.share > 0.0))
+    bridge = found.index[air]
+    begin, end = np.searchsorted(found.at, bridge), np.searchsorted(found.at, bridge + 1.0)
+    length = sizes(track.points[bridge, 1] - track.points[bridge, 0])
     first, past = length - span[begin], span[end]  # how far it is to where the bridge lands, and on from there
     on = length - span[air]
     part = np.where(on > 0.0, 1.0 - on / np.maximum(first, TINY), 1.0 + on / np.maximum(past, TINY))
     height = np.minimum(lift, _SWING * length) * np.where(first > 0.0, np.clip(part, 0.0, 1.0), 0.0)
-    moved = span[air, None] * tangent[air] + height[:, None] * mandrel.turned(track.normals[bridge, 1])
-    tangent, span = tangent.copy(), span.copy()
-    tangent[air], span[air] = unit(moved), np.linalg.norm(moved, axis=1)
+    moved = span[air, None] * found.tangent[air] + height[:, None] * mandrel.turned(track.normals[bridge, 1])
+    tangent, span = found.tangent.copy(), span.copy()
+    tangent[air], span[air] = unit(moved), sizes(moved)
     return tangent, span
 
 

@@ -13,13 +13,13 @@ from meshwind.program.axes import limits_of, timing_of
 from meshwind.program.blocks import TRAVEL, Blocks
 from meshwind.program.body import Body, body_round
 from meshwind.program.clear import Shaft, obstacle
-from meshwind.program.eye import LONGEST, Poses, Spans, at_radius, on_body, poses
+from meshwind.program.eye import LONGEST, Poses, Solver, Spans, at_radius, on_body
 from meshwind.program.faults import EYE, SPAN, Fault, collisions, unreachable
 from meshwind.program.head import frames, head_of, within
 from meshwind.program.hollows import in_hollows
 from meshwind.program.machine import Machine
 from meshwind.program.mandrel import Mandrel, mandrel_of
-from meshwind.program.stepping import Steps, divided, whole
+from meshwind.program.stepping import Steps, stepped
 from meshwind.program.track import Track, track
 from meshwind.program.travel import in_a_row
 from meshwind.results.reading import Results
@@ -242,7 +242,7 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
     parts, laid, turned = [], 0.0, -np.inf
     tracks = tuple(track(filament, way.backwards) for filament in work.filaments)
     for on in tracks:
-        found = _divided(on, mandrel, spans, steps)
+        found = stepped(on, Solver(on, mandrel, spans), steps)
         part = _blocks(on, found, mandrel, laid, turned)
         laid, turned = float(part.arc_length[-1]), float(part.mandrel[-1])
         parts.append(part)
@@ -283,10 +283,6 @@ def _spans(machine: Machine, body: Body, work: Work) -> tuple[Spans, float | Non
             "smaller clearance"
         )
     return at_radius(radius, LONGEST * body.size), radius
-
-
-def _divided(on: Track, mandrel: Mandrel, spans: Spans, steps: Steps) -> Poses:
-    return divided(on, lambda at: poses(on, mandrel, spans, at), steps, whole(on, steps))
 
 
 def _blocks(on: Track, found: Poses, mandrel: Mandrel, laid: float, turned: float) -> Blocks:

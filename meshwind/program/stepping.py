@@ -56,10 +56,20 @@ class Steps:
 
 def stepped(track: Track, solve: Callable[[Floats], Poses], steps: Steps) -> Poses:
     """The poses of the blocks of a track, the axes being solved anew at every place that is looked at."""
-    return divided(track, solve, steps, whole(track, steps))
+    at, effort = _resolved(track, solve, steps, _whole(track, steps))
+    wanted = _spread(at, effort, kept(track, at))
+    for _ in range(_ROUNDS):
+        # solved among all places that were looked at, so that no fibre is slack between two blocks
+        every = np.union1d(at, wanted)
+        found = _chosen(solve(every), np.searchsorted(every, wanted))
+        halves = _halves(wanted, steps.of(track, found))
+        if not len(halves):
+            break
+        wanted = np.union1d(wanted, halves)
+    return _chosen(found, np.flatnonzero(_told(steps.motion(found))))
 
 
-def whole(track: Track, steps: Steps) -> Floats:
+def _whole(track: Track, steps: Steps) -> Floats:
     """Places at which a track is looked at first: where pieces begin to differ, and as dense between as it bends."""
     lays = track.motion == LAY
     ends = np.concatenate([[0], np.flatnonzero(~lays), np.flatnonzero(~lays) + 1, [len(track)]])
@@ -75,21 +85,6 @@ def whole(track: Track, steps: Steps) -> Floats:
     parts = np.maximum(np.ceil(track.corner[turns] / _FINE), 1.0).astype(np.int64)
     within = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
     return np.union1d(every[chosen], np.repeat(turns, parts) + within / np.repeat(parts, parts))
-
-
-def divided(track: Track, solve: Callable[[Floats], Poses], steps: Steps, at: Floats) -> Poses:
-    """See `stepped`; at: places (n,) at which it is looked first."""
-    at, effort = _resolved(track, solve, steps, at)
-    wanted = _spread(at, effort, kept(track, at))
-    for _ in range(_ROUNDS):
-        # solved among all places that were looked at, so that no fibre is slack between two blocks
-        every = np.union1d(at, wanted)
-        found = _chosen(solve(every), np.searchsorted(every, wanted))
-        halves = _halves(wanted, steps.of(track, found))
-        if not len(halves):
-            break
-        wanted = np.union1d(wanted, halves)
-    return _chosen(found, np.flatnonzero(_told(steps.motion(found))))
 
 
 def _told(effort: Floats) -> Bools:
