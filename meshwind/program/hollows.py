@@ -4,9 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshwind.core.cast import Floats
+from meshwind.core.cast import Floats, frozen
+from meshwind.core.vectors import unit
 from meshwind.program.clear import Obstacle
 from meshwind.program.eye import Spans
+from meshwind.program.head import within
 from meshwind.program.mandrel import Mandrel
 
 _PLACES = 16
@@ -20,7 +22,8 @@ _SEEN = 2.0
 
 def in_hollows(spans: Spans, blocked: Obstacle, mandrel: Mandrel, clearance: float, lift: float) -> Spans:
     """Spans that end before they meet a part that turns on a mandrel; see `Spans` for the lift."""
-    return Spans(_Hollows(spans, blocked, mandrel, clearance), lift)
+    found = _Hollows(spans, blocked, mandrel, clearance)
+    return Spans(found, lift, found.lacks)
 
 
 @dataclass(frozen=True)
@@ -40,6 +43,14 @@ class _Hollows:
         short = np.flatnonzero(free < np.minimum(wanted, most))
         most[short] = self._roomy(start[short], ahead[short], free[short])
         return wanted, most
+
+    def lacks(self, eyes: Floats) -> Floats:
+        """How far (n,) eyes (n, 3) in the mandrel's frame are still to move off the part."""
+        off = eyes * [0.0, 1.0, 1.0]
+        outside = self.mandrel.outside(eyes)
+        away = self.blocked.surface.distances(frozen(outside))
+        inside = within(self.blocked.surface, outside, unit(off) @ self.mandrel.frame)
+        return np.asarray(np.maximum(_SEEN * self.blocked.skin - np.where(inside, -away, away), 0.0))
 
     def _roomy(self, start: Floats, ahead: Floats, free: Floats) -> Floats:
         """The longest spans (n,) with room enough for the eye, or those with most, on rays free up to a length (n,).
