@@ -14,6 +14,8 @@ from meshwind.surface.grid import Grid
 
 _SKIN = 1e-3
 """Depth, over the part's diagonal, to which a span may dip below the surface: it starts along it."""
+_SURE = 2.0
+"""Distance from the surface, over the skin's depth or the fit's largest error, that is surely outside of the part."""
 _SIDES = 36
 """Sides of the shaft, whose radius it then has to 0.4 %."""
 
@@ -22,12 +24,12 @@ _SIDES = 36
 class Obstacle:
     """The part as spans may not meet it: just below its surface, closed over its rims; and the surface itself.
 
-    below, surface: trees of their triangles; skin: how deep it is below.
+    below, surface: trees of their triangles; sure: distance from the surface from which the part is surely not met.
     """
 
     below: FacetTree
     surface: FacetTree
-    skin: float
+    sure: float
 
     def free(self, points: Floats, rays: Floats) -> Floats:
         """Lengths (n,) from points along unit vectors (n, 3) to the part; infinity where they miss it."""
@@ -46,17 +48,18 @@ class Shaft:
     ends: tuple[float, float]
 
 
-def obstacle(on: Grid, diagonal: float, mandrel: Mandrel, shaft: Shaft) -> Obstacle:
-    """The obstacle that a part of a diagonal, sampled on a grid, and the shaft in it are."""
+def obstacle(on: Grid, diagonal: float, held: tuple[Mandrel, Shaft] | None = None) -> Obstacle:
+    """The obstacle that a part of a diagonal, sampled on a grid, is, with the shaft that holds it on its axis."""
     trees = []
     for depth in (_SKIN * diagonal, 0.0):
         points, faces = skin_below(on, depth)
-        if shaft.radius > depth:
-            round_, sides = rod(shaft.radius - depth, shaft.ends)
+        if held is not None and held[1].radius > depth:
+            round_, sides = rod(held[1].radius - depth, held[1].ends)
             faces = np.concatenate([faces, sides + len(points)])
-            points = np.concatenate([points, mandrel.outside(round_)])
+            points = np.concatenate([points, held[0].outside(round_)])
         trees.append(FacetTree.of(frozen(points), frozen(faces)))
-    return Obstacle(trees[0], trees[1], _SKIN * diagonal)
+    fit = on.surface.error
+    return Obstacle(trees[0], trees[1], _SURE * max(_SKIN * diagonal, 0.0 if fit is None else fit.max))
 
 
 def skin_below(on: Grid, depth: float) -> tuple[Floats, Ints]:

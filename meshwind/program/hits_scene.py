@@ -12,7 +12,7 @@ from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.mesh.geometry.rays import cast
 from meshwind.pictures.scenes import HitsScene
 from meshwind.pictures.subject import Subject
-from meshwind.program.clear import Shaft, obstacle, rod, skin_below
+from meshwind.program.clear import Shaft, rod, skin_below
 from meshwind.program.faults import EYE, LIES, SPAN
 from meshwind.program.program import Program
 from meshwind.program.words import DOES, fault_words
@@ -64,7 +64,7 @@ def _met(made: Program, index: Ints) -> tuple[Floats, Bools]:
     """Lengths (k,) of free spans at which they meet part or shaft, and which of them meet the shaft."""
     work, blocks = made.work, made.blocks
     shaft = Shaft(made.machine.shaft / work.scale, (float(made.body.x[0]), float(made.body.x[-1])))
-    blocked = obstacle(work.skin, work.diagonal, made.mandrel, shaft)
+    blocked = work.blocked(made.mandrel, shaft)
     face, far = cast(blocked.below, blocks.point[index], blocks.tangent[index], 0.0)
     own = len(skin_below(work.skin, 0.0)[1])  # the triangles of the part come first
     return np.minimum(far, blocks.free_length[index]), np.asarray(face >= own)

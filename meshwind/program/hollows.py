@@ -16,9 +16,6 @@ _PLACES = 16
 _ENOUGH = 0.5
 """Distance from the part, over the clearance, with which the eye goes no deeper into a hollow."""
 
-_SEEN = 2.0
-"""Distance from the part, over the depth of the skin below its surface, from which a place is surely outside of it."""
-
 
 def in_hollows(spans: Spans, blocked: Obstacle, mandrel: Mandrel, clearance: float, lift: float) -> Spans:
     """Spans that end before they meet a part that turns on a mandrel; see `Spans` for the lift."""
@@ -50,7 +47,7 @@ class _Hollows:
         outside = self.mandrel.outside(eyes)
         away = self.blocked.surface.distances(frozen(outside))
         inside = within(self.blocked.surface, outside, unit(off) @ self.mandrel.frame)
-        return np.asarray(np.maximum(_SEEN * self.blocked.skin - np.where(inside, -away, away), 0.0))
+        return np.asarray(np.maximum(self.blocked.sure - np.where(inside, -away, away), 0.0))
 
     def _roomy(self, start: Floats, ahead: Floats, free: Floats) -> Floats:
         """The longest spans (n,) with room enough for the eye, or those with most, on rays free up to a length (n,).
@@ -63,4 +60,4 @@ class _Hollows:
         best = np.minimum(room, _ENOUGH * self.clearance)
         number, last = np.arange(len(free)), best.shape[1] - 1 - np.argmax(best[:, ::-1], axis=1)
         # a ray may run between skin and surface before it meets the skin
-        return np.where(room[number, last] > _SEEN * self.blocked.skin, lengths[number, last], np.inf)
+        return np.where(room[number, last] > self.blocked.sure, lengths[number, last], np.inf)

@@ -12,7 +12,7 @@ from meshwind.filament.filament import Filament
 from meshwind.program.axes import limits_of, timing_of
 from meshwind.program.blocks import TRAVEL, Blocks
 from meshwind.program.body import Body, body_round
-from meshwind.program.clear import Shaft, obstacle
+from meshwind.program.clear import Obstacle, Shaft, obstacle
 from meshwind.program.eye import LONGEST, Poses, Solver, Spans, at_radius, on_body
 from meshwind.program.faults import EYE, SPAN, Fault, collisions, unreachable
 from meshwind.program.head import frames, head_of, within
@@ -73,6 +73,15 @@ class Work:
     def skin(self) -> Grid:
         """The bare part on a grid."""
         return grid(self.surface)
+
+    @cached_property
+    def bare(self) -> Obstacle:
+        """The part as spans may not meet it, without a shaft."""
+        return obstacle(self.skin, self.diagonal)
+
+    def blocked(self, mandrel: Mandrel, shaft: Shaft) -> Obstacle:
+        """The same with a shaft on the axis."""
+        return obstacle(self.skin, self.diagonal, (mandrel, shaft)) if shaft.radius > 0.0 else self.bare
 
     @property
     def scale(self) -> float:
@@ -229,7 +238,7 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
     scale = work.scale
     shaft = machine.shaft / scale
     body = _body(work, mandrel, points, (shaft, way.clearance))
-    blocked = obstacle(work.skin, work.diagonal, mandrel, Shaft(shaft, (float(body.x[0]), float(body.x[-1]))))
+    blocked = work.blocked(mandrel, Shaft(shaft, (float(body.x[0]), float(body.x[-1]))))
     spans, radius = _spans(machine, body, work)
     head = head_of(machine, scale)
     if way.shorter:
