@@ -16,7 +16,7 @@ LONGEST = 4.0
 _GROWS = 1.0
 """Length by which a span that had to be short grows for each length that is laid, until it is as long as wanted."""
 _ROUNDS = 4
-"""Rounds in which the eye moves off the part: the normal there is not quite that at the eye."""
+"""Rounds in which the eye moves off the part: what is nearest may change, and no span may be slack."""
 _SWING = 0.05
 """Most that the span swings, in radians, as the eye keeps off the part past the point where a bridge lands."""
 
@@ -28,13 +28,13 @@ class Spans:
     find: from points along tangents (n, 3), both in the mandrel's frame, to their lengths (n,) as wanted, and the most
     that may be.
     lift: how far from the part the eye keeps where it runs out along a bridge past the point where that lands.
-    lacks: from eyes (n, 3) to how far (n,) they are still to move off the part where spans are shorter than wanted;
-    None if nothing is in the way of any.
+    off: from eyes (n, 3) to how they are still to move (n, 3) off the part where spans are shorter than wanted; None if
+    nothing is in the way of any.
     """
 
     find: Callable[[Floats, Floats], tuple[Floats, Floats]]
     lift: float = 0.0
-    lacks: Callable[[Floats], Floats] | None = None
+    off: Callable[[Floats], Floats] | None = None
 
 
 @dataclass(frozen=True)
@@ -128,31 +128,9 @@ class Solver:
         else:
             span = _limited(found, self._track)
             tangent, span = _lifted(found, span, self._track, mandrel, self._spans.lift)
-            if self._spans.lacks is not None:
-                tangent, span = self._off(found, tangent, span, self._spans.lacks)
+            if self._spans.off is not None:
+                tangent, span = _off(found, tangent, span, self._spans.off)
         return Poses(at, found.laid, found.point, tangent, span, *axes(found.point, tangent, span))
-
-    def _off(
-        self, found: _Found, tangent: Floats, span: Floats, lacks: Callable[[Floats], Floats]
-    ) -> tuple[Floats, Floats]:
-        """Tangents (n, 3) and spans (n,) of which the short ones end far enough off the part, none slack.
-
-        Where fibre lands on a rim, its line beyond goes below the part: there the eye moves off along the normal.
-        """
-        short = np.flatnonzero(span < found.wanted)
-        normals = self._track.normals[found.index[short]]
-        share = found.share[short, None]
-        out = unit(self._mandrel.turned((1.0 - share) * normals[:, 0] + share * normals[:, 1]))
-        tangent = tangent.copy()
-        for _ in range(_ROUNDS):
-            reach = span[short, None] * tangent[short]
-            more = lacks(found.point[short] + reach)
-            if not more.any():
-                break
-            moved = reach + more[:, None] * out
-            tangent[short], span[short] = unit(moved), sizes(moved)
-            span = taut(span, found.laid)
-        return tangent, span
 
     def _at(self, at: Floats) -> _Found:
         """What is found at places (n,)."""
@@ -216,6 +194,24 @@ def _lifted(found: _Found, span: Floats, track: Track, mandrel: Mandrel, lift: f
     moved = span[air, None] * found.tangent[air] + height[:, None] * mandrel.turned(track.normals[bridge, 1])
     tangent, span = found.tangent.copy(), span.copy()
     tangent[air], span[air] = unit(moved), sizes(moved)
+    return tangent, span
+
+
+def _off(found: _Found, tangent: Floats, span: Floats, off: Callable[[Floats], Floats]) -> tuple[Floats, Floats]:
+    """Tangents (n, 3) and spans (n,) of which the short ones end far enough off the part, none slack.
+
+    Where fibre lands on a rim, its line beyond goes below the part: there the eye moves off.
+    """
+    short = np.flatnonzero(span < found.wanted)
+    tangent = tangent.copy()
+    for _ in range(_ROUNDS):
+        reach = span[short, None] * tangent[short]
+        move = off(found.point[short] + reach)
+        if not move.any():
+            break
+        moved = reach + move
+        tangent[short], span[short] = unit(moved), sizes(moved)
+        span = taut(span, found.laid)
     return tangent, span
 
 

@@ -15,12 +15,14 @@ _PLACES = 16
 """Places on the way to the part at which it is seen how much room the eye has."""
 _ENOUGH = 0.5
 """Distance from the part, over the clearance, with which the eye goes no deeper into a hollow."""
+_APART = 1e-3
+"""Distance of two places, over that from which the part is surely not met, that tells which way leads away from it."""
 
 
 def in_hollows(spans: Spans, blocked: Obstacle, mandrel: Mandrel, clearance: float, lift: float) -> Spans:
     """Spans that end before they meet a part that turns on a mandrel; see `Spans` for the lift."""
     found = _Hollows(spans, blocked, mandrel, clearance)
-    return Spans(found, lift, found.lacks)
+    return Spans(found, lift, found.off)
 
 
 @dataclass(frozen=True)
@@ -41,13 +43,20 @@ class _Hollows:
         most[short] = self._roomy(start[short], ahead[short], free[short])
         return wanted, most
 
-    def lacks(self, eyes: Floats) -> Floats:
-        """How far (n,) eyes (n, 3) in the mandrel's frame are still to move off the part."""
-        off = eyes * [0.0, 1.0, 1.0]
-        outside = self.mandrel.outside(eyes)
-        away = self.blocked.surface.distances(frozen(outside))
-        inside = within(self.blocked.surface, outside, unit(off) @ self.mandrel.frame)
-        return np.asarray(np.maximum(self.blocked.sure - np.where(inside, -away, away), 0.0))
+    def off(self, eyes: Floats) -> Floats:
+        """How eyes (n, 3) are still to move (n, 3) off the part, straight away from it, in the mandrel's frame."""
+        outside, surface = self.mandrel.outside(eyes), self.blocked.surface
+        away = surface.distances(frozen(outside))
+        inside = within(surface, outside, unit(eyes * [0.0, 1.0, 1.0]) @ self.mandrel.frame)
+        lacks = self.blocked.sure - np.where(inside, -away, away)
+        close = np.flatnonzero(lacks > 0.0)
+        step = _APART * self.blocked.sure * np.eye(3)
+        sides = outside[close, None, None] + np.stack([step, -step])
+        far = surface.distances(frozen(sides.reshape(-1, 3))).reshape(-1, 2, 3)
+        slope = unit(far[:, 0] - far[:, 1]) * np.where(inside[close], -1.0, 1.0)[:, None]
+        move = np.zeros_like(eyes)
+        move[close] = lacks[close, None] * self.mandrel.turned(slope)
+        return move
 
     def _roomy(self, start: Floats, ahead: Floats, free: Floats) -> Floats:
         """The longest spans (n,) with room enough for the eye, or those with most, on rays free up to a length (n,).

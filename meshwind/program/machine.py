@@ -22,6 +22,8 @@ _SPEEDS = 1e-3, 1e9
 """Least and largest speed and acceleration that numbers of a program can tell, in mm or degrees a second (squared)."""
 _FARTHEST = 1e6
 """Largest zero and travel in mm or degrees: at more of them numbers of a program hold no hundredth of a degree."""
+_DECIMALS = 3, 6
+"""Fewest and most decimals: fewer hold no hundredth of a degree after many moves, more are none of a machine's."""
 _FOLDER = "machines"
 _NEEDED = "mandrel", "carriage"
 """Axes without which nothing can be wound."""
@@ -117,6 +119,8 @@ class Machine:
         The eye's body, which must stay clear of part and shaft.
     shaft : float, default 0
         Radius of the shaft that holds the part at both ends, in mm; 0 if there is none.
+    decimals : int or None, default None
+        Decimals of mm and degrees that its control takes, 3 to 6; None for those that its dialect usually has.
     """
 
     name: str
@@ -130,6 +134,7 @@ class Machine:
     eye_radius: float | None = None
     eye: Eye = Eye()
     shaft: float = 0.0
+    decimals: int | None = None
 
     def axis(self, moves: str) -> Axis | None:
         """The axis that moves something, None if the machine has none."""
@@ -199,7 +204,7 @@ def _record(kind: type, table: dict[str, Any], source: str, defaults: dict[str, 
         number = isinstance(value, int | float) and not isinstance(value, bool)
         if "float" in known[key]:
             right, wanted = number, "a number"
-        elif known[key] == "int":
+        elif known[key].startswith("int"):
             right, wanted = number and isinstance(value, int), "a whole number"
         elif known[key] == "list":
             right, wanted = isinstance(value, list), "a list of numbers"
@@ -232,6 +237,8 @@ def _check(machine: Machine, source: str) -> None:
     if not 0.0 <= machine.shaft < float("inf"):
         raise BadInputError(f"machine {source}: shaft is {machine.shaft}; give a number of at least 0")
     _check_tension(machine.tension, source)
+    if machine.decimals is not None and not _DECIMALS[0] <= machine.decimals <= _DECIMALS[1]:
+        raise BadInputError(f"machine {source}: decimals is {machine.decimals}; {_within(_DECIMALS)}")
     for axis in machine.axes:
         _check_axis(axis, source)
     moves, letters = [each.moves for each in machine.axes], [each.letter for each in machine.axes]

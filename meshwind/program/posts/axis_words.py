@@ -7,7 +7,7 @@ import numpy as np
 
 from meshwind.core.cast import Ints
 from meshwind.program.machine import Axis, Machine
-from meshwind.program.posts.dialect import ALL_INCREMENTS, INCREMENTS, Dialect
+from meshwind.program.posts.dialect import ALL_INCREMENTS, INCREMENTS, Dialect, decimals_of
 from meshwind.program.posts.numbers import numbers
 
 
@@ -28,7 +28,8 @@ class AxisWords:
         self.at: list[list[int]] = at.tolist()
         self.count = 0
         self._machine, self._dialect, self._at = machine, dialect, at
-        self._unit = 10**dialect.decimals
+        self._decimals = decimals_of(machine, dialect)
+        self._unit = 10**self._decimals
         self._ends = [*circuits, len(at)]
         self._stretch = 0, 0
         self._texts: list[list[str]] = []
@@ -90,4 +91,4 @@ class AxisWords:
     def _filled(self, text: str, k: int, values: Ints) -> list[str]:
         """A text with the letter of axis k and each of values (n,) in it."""
         before, _, after = text.format(letter=self._machine.axes[k].letter, value="\0").partition("\0")
-        return [f"{before}{value}{after}" for value in numbers(values, self._dialect.decimals)]
+        return [f"{before}{value}{after}" for value in numbers(values, self._decimals)]

@@ -68,7 +68,7 @@ class Dialect:
     increment : str
         An axis that moves by an increment.
     decimals : int
-        Decimals of mm and degrees.
+        Decimals of mm and degrees where the machine says no other.
     dwell_unit : float
         Seconds in the unit of a wait.
     dwell_decimals : int
@@ -86,7 +86,7 @@ class Dialect:
     upper, plain : bool, str
         Whether comments are in capitals, and an expression for characters that they must not hold.
     notes : tuple of str
-        What the operator must know of it.
+        What the operator must know of it, with {decimals} in place of their number.
     """
 
     name: str
@@ -129,7 +129,8 @@ def fitted(machine: Machine, dialect: Dialect) -> Machine:
     """The machine as a dialect speaks of it: with axes that it can name, and a feed that it knows.
 
     A machine that is made for the dialect must fit as it is.  Any other one has the dialect's usual letters where its
-    own are not among those of the dialect, and the usual feed.  Raises BadInputError if it cannot be said.
+    own are not among those of the dialect, the usual feed and decimals, and no command of the tension, as its own is in
+    other words.  Raises BadInputError if it cannot be said.
     """
     own = machine.dialect == dialect.name
     axes, feed = machine.axes, machine.feed
@@ -157,7 +158,14 @@ def fitted(machine: Machine, dialect: Dialect) -> Machine:
                 "leave modulo out"
             )
         axes = tuple(replace(each, modulo=None) for each in axes)
-    return replace(machine, axes=axes, feed=feed, dialect=dialect.name)
+    decimals = dialect.decimals if machine.decimals is None or not own else machine.decimals
+    tension = machine.tension if own else ""
+    return replace(machine, axes=axes, feed=feed, dialect=dialect.name, decimals=decimals, tension=tension)
+
+
+def decimals_of(machine: Machine, dialect: Dialect) -> int:
+    """Decimals of mm and degrees in the text for a machine."""
+    return dialect.decimals if machine.decimals is None else machine.decimals
 
 
 def _named(axis: Axis, dialect: Dialect) -> bool:

@@ -86,12 +86,15 @@ _FANUC = Dialect(
     dwell_unit=1e-3,
     dwell_decimals=0,
     turning=ALL_INCREMENTS,
-    decimals=3,
+    decimals=4,
     numbers=1,
     highest=99_999,
     upper=True,
     plain=r"[^A-Z0-9 .,+\-=/*]",
-    notes=("increment system IS-B, 0.001 mm and degrees",),
+    notes=(
+        "increment system of the control: IS-C for 4 decimals, IS-B for 3, of which this text has {decimals}",
+        "a coarser control rounds each increment and drifts, give its decimals in the file of the machine",
+    ),
 )
 _SIEMENS = Dialect(
     name="siemens",

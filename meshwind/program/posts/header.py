@@ -50,7 +50,7 @@ def header(blocks: Blocks, machine: Machine, dialect: Dialect, job: Job) -> list
         f"fibre: {(blocks.arc_length[-1] - blocks.arc_length[0]) * job.millimetres / 1e3:.3f} m",
         f"units: mm and degrees, {_feed(machine, dialect)}",
         *(f"{axis.letter} {_axis(axis, dialect)}" for axis in machine.axes),
-        *dialect.notes,
+        *(note.format(decimals=machine.decimals) for note in dialect.notes),
         f"before the start: eye clear of the part, mandrel on its mark, {_zero(machine)}",
         f"the program approaches and stops at {dialect.pause} for the fibre to be tied on",
     ]
@@ -59,9 +59,9 @@ def header(blocks: Blocks, machine: Machine, dialect: Dialect, job: Job) -> list
             f"filaments: {len(blocks.travels) + 1}, {dialect.pause} stops to cut the fibre behind one, and again to "
             "tie it on for the next, the time has only the moves between"
         )
-    if machine.tension and blocks.tension.any():
+    if blocks.tension.any():
         pull = blocks.tension[blocks.kind != TRAVEL]
-        words.insert(6, f"tension: {pull.min():g} to {pull.max():g} N")
+        words.insert(6, f"tension: {pull.min():g} to {pull.max():g} N{'' if machine.tension else ', set it by hand'}")
     return [line for each in words for line in comments(each, dialect)]
 
 

@@ -12,7 +12,7 @@ from meshwind.program.axes import moved
 from meshwind.program.blocks import Blocks
 from meshwind.program.machine import Machine
 from meshwind.program.posts.axis_words import AxisWords
-from meshwind.program.posts.dialect import RESET, Dialect, fitted
+from meshwind.program.posts.dialect import RESET, Dialect, decimals_of, fitted
 from meshwind.program.posts.header import Job, comments, header
 from meshwind.program.posts.numbers import figures, numbers, steps
 
@@ -48,9 +48,10 @@ class _Writer:
         if len(blocks) < 2 or not (np.isfinite(values).all() and np.isfinite(blocks.time).all()):
             raise BadInputError("the program holds fewer than two blocks or numbers that are not finite; wind it again")
         self.blocks, self.machine, self.dialect, self.job = blocks, machine, dialect, job
-        self.unit = 10**dialect.decimals
+        decimals = decimals_of(machine, dialect)
+        self.unit = 10**decimals
         self.mandrel = next(k for k, axis in enumerate(machine.axes) if axis.moves == "mandrel")
-        at = steps(values, dialect.decimals)
+        at = steps(values, decimals)
         turn = round(_TURN) * self.unit
         zero = round(machine.axes[self.mandrel].zero * self.unit)
         # the part does not know how often it was turned before: whole turns at the start are left out

@@ -97,7 +97,7 @@ def read_back(text: str, blocks: Blocks, machine: Machine, part: Part) -> ReadBa
     axes with a modulo, do not count.
     """
     reading = read_text(text, machine)
-    digit = CONTROLLERS[machine.dialect].digit
+    digit = 10.0 ** -CONTROLLERS[machine.dialect].decimals(machine)
     said, start = _program_values(reading, machine)
     meant = np.stack([moved(blocks, each.moves, part.millimetres) for each in machine.axes], axis=1)
     mandrel = [each.moves for each in machine.axes].index("mandrel")

@@ -64,6 +64,9 @@ class Interpreter(ABC):
         before, _, after = machine.tension.partition("{")
         tension = re.escape(before) + f"({NUMBER})" + re.escape(after.partition("}")[2])
         self._comment = re.compile(controller.comment)
+        letters = "|".join(re.escape(axis.letter) for axis in machine.axes)
+        longer = rf"(?:{letters})[ =(IC]*[-+]?\d*\.\d{{{controller.decimals(machine) + 1},}}"
+        self._longer = re.compile(longer) if controller.rounds else None
         self._tension = re.compile(tension) if machine.tension else None
 
     @abstractmethod
@@ -79,6 +82,9 @@ class Interpreter(ABC):
         text = self._comment.sub("", line.strip()).strip()
         if not text:
             return
+        if self._longer and self._longer.search(text):
+            held = self.controller.decimals(self.machine)
+            self.fault(number, f"more than the {held} decimals that the control takes")
         if self.over:
             self.fault(number, f"{text!r} comes after the end")
         if self._tension and (found := self._tension.fullmatch(text)):
