@@ -57,8 +57,8 @@ def test_an_eye_with_cross_feed_clears_a_bend_that_another_cannot() -> None:
     assert not near.faults
     assert near.remedies[-1].startswith("shorter spans in hollows: 0 of ")
     assert depth(near.blocks) < 1.3e-3 * 200.0
-    assert heights(near.blocks.eye).min() > -1e-3 * 200.0
-    assert 0.0 < near.nearest < near.clearance == pytest.approx(10.0)
+    assert heights(near.blocks.eye).min() > 0.9 * 2e-3 * 200.0
+    assert 0.9 * 2e-3 * 200.0 < near.nearest < near.clearance == pytest.approx(10.0)
 
 
 def test_the_fibre_comes_to_lie_where_it_was_planned_only_if_the_eye_goes_into_the_hollow() -> None:

@@ -68,7 +68,6 @@ GOLDEN = {
         G0Y50.0
         M0
         G93
-        M68 E0 Q20
         G1A365.5X12.0B-3.25F120.0
         G92A5.5
         G4P0.25
@@ -82,7 +81,6 @@ GOLDEN = {
         G0 A350.0 X10.0 B0.0 F2160.0
         G0 Y50.0 F2160.0
         M0
-        M68 E0 Q20
         G1 A365.5 X12.0 B-3.25 F240.0
         G92 A5.5
         G4 P250
@@ -98,12 +96,11 @@ GOLDEN = {
         N5 G91 G0 A350.0
         N6 M00
         N7 G91 G93
-        N8 M68 E0 Q20
-        N9 G1 A15.5 X2.0 B-3.25 F120.0
-        N10 G04 P250
-        N11 G1 A4.5 F120.0
-        N12 G1 A1.0 Y5.0 F240.0
-        N13 M30
+        N8 G1 A15.5 X2.0 B-3.25 F120.0
+        N9 G04 P250
+        N10 G1 A4.5 F120.0
+        N11 G1 A1.0 Y5.0 F240.0
+        N12 M30
         %""",
     "siemens": """%_N_PROGRAM_MPF
         N10 G17 G40 G64 G90 G94 G710
@@ -114,12 +111,11 @@ GOLDEN = {
         N60 G0 A=IC(350.0)
         N70 M0
         N80 G93
-        N90 M68 E0 Q20
-        N100 G1 A=IC(15.5) X=12.0 B=-3.25 F120.0
-        N110 G4 F0.25
-        N120 G1 A=IC(4.5) F120.0
-        N130 G1 A=IC(1.0) X=12.00004 Y=55.0 F240.0
-        N140 M30""",
+        N90 G1 A=IC(15.5) X=12.0 B=-3.25 F120.0
+        N100 G4 F0.25
+        N110 G1 A=IC(4.5) F120.0
+        N120 G1 A=IC(1.0) X=12.00004 Y=55.0 F240.0
+        N130 M30""",
     "krl": """&ACCESS RVP
         &REL 1
         DEF program( )
@@ -132,7 +128,6 @@ GOLDEN = {
         LIN {X 10.0, Y 55.0, Z 0.0, A 0.0, B 0.0, C 0.0, E1 350.0}
         LIN {X 10.0, Y 50.0, Z 0.0, A 0.0, B 0.0, C 0.0, E1 350.0}
         HALT
-        M68 E0 Q20
         $VEL.CP=0.004
         LIN {E6POS: X 12.0, Y 50.0, Z 0.0, A 0.0, B -3.25, C 0.0, E1 365.5} C_DIS
         WAIT SEC 0.25
@@ -215,8 +210,7 @@ def test_all_machines_speak_all_dialects(name: str, machine: str) -> None:
     found = back(name, text_of(name, blocks, used), blocks, used)
     assert found.same
     assert found.rows == len(blocks) - 1
-    # half a thousandth of a degree and of a mm are 2e-6 of this part
-    assert found.touch < (1e-6 if DIALECTS[name].decimals > 3 else 3e-6)
+    assert found.touch < 1e-6
     assert found.seconds < 1e-6
 
 
@@ -349,6 +343,30 @@ def test_the_header_says_what_an_operator_needs() -> None:
         assert not re.search(r"vas\S* \(2", head)
 
 
+def test_decimals_are_those_of_the_control() -> None:
+    """Fanuc's IS-B holds three decimals and IS-C four: a control rounds longer ones, so that they must not be given."""
+    blocks = wound()
+    coarse = replace(LATHE, dialect="fanuc", decimals=3)
+    texts = {each.decimals: text_of("fanuc", blocks, each) for each in (replace(coarse, decimals=None), coarse)}
+    assert "OF WHICH THIS TEXT HAS 4" in texts[None].replace("\n", " ").replace(")(", "")
+    for decimals, text in texts.items():
+        assert max(len(each) for each in re.findall(r"G1 A\d+\.(\d+)", text)) == (decimals or 4)
+    assert back("fanuc", texts[3], blocks, coarse).same
+    assert 1e-6 < back("fanuc", texts[3], blocks, coarse).touch < 3e-6
+    refused = back("fanuc", texts[None], blocks, coarse).faults
+    assert any(words == "more than the 3 decimals that the control takes" for _, words in refused)
+    assert not back("linuxcnc", text_of("linuxcnc", blocks, coarse), blocks, coarse).faults
+
+
+def test_the_command_of_a_tension_is_said_in_its_own_dialect_alone() -> None:
+    blocks = replace(wound(), tension=np.full(60, 20.0))
+    for name in ALL:
+        text = text_of(name, blocks)
+        assert ("M68 E0 Q20" in text) == (name == "linuxcnc")
+        assert ("set it by hand" in text.lower()) == (name != "linuxcnc")
+        assert back(name, text, blocks).same
+
+
 def test_files_have_names_of_their_own() -> None:
     names = file_names(ALL)
     assert len(set(names.values())) == len(ALL)
@@ -387,7 +405,8 @@ def test_wrong_input_is_one_line() -> None:
     blocks = wound()
     with pytest.raises(BadInputError, match="no dialect 'gbrl'; did you mean 'grbl'"):
         dialect("gbrl")
+    long = replace(LATHE, dialect="grbl", tension=f"M3{' ' * 70}S{{tension:g}}")
     with pytest.raises(BadInputError, match="over 69 characters"):
-        text_of("grbl", replace(blocks, tension=blocks.time), replace(LATHE, tension="M3" + 70 * " " + "S{tension:g}"))
+        text_of("grbl", replace(blocks, tension=blocks.time), long)
     with pytest.raises(BadInputError, match="not finite"):
         text_of("linuxcnc", replace(blocks, roll=np.full(len(blocks), np.nan)))
