@@ -25,7 +25,7 @@ from meshwind.pictures.axes_picture import draw_axes, lines_of
 from meshwind.pictures.machine_picture import places, turned
 from meshwind.pictures.subject import subject_of
 from meshwind.program.axes_chart import axes_chart
-from meshwind.program.faults import EYE, LIES, SPAN, TRAVEL, Fault
+from meshwind.program.faults import EYE, LIES, LIMIT, SPAN, Fault
 from meshwind.program.hits_scene import hits_scene
 from meshwind.program.machine import read_machine
 from meshwind.program.machine_scene import frame_times, machine_scene, shots_of
@@ -46,7 +46,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def made(run: Path) -> Program:
     found = program(Work.of(read_results(run)), read_machine("lathe-5"))
-    return replace(found, faults=(Fault(7, SPAN, "the free span meets the part"),))
+    return replace(found, faults=(Fault(7, SPAN, "the free span meets the part or the shaft"),))
 
 
 def array(packed: Any) -> Floats:
@@ -69,7 +69,7 @@ def test_the_chart_shows_the_blocks(made: Program, tmp_path: Path) -> None:
     spent = [float(np.diff(chart.time)[chart.limiting == k].sum()) for k in range(len(chart.names))]
     assert spent == pytest.approx(list(made.limits.values()))
     assert [(words, times.tolist()) for words, times in chart.faults] == [
-        ("the free span meets the part", [blocks.time[7]])
+        ("the free span meets the part or the shaft", [blocks.time[7]])
     ]
     draw_axes(tmp_path / "axes.png", chart)
     with Image.open(tmp_path / "axes.png") as drawn:
@@ -84,7 +84,7 @@ def test_a_chart_with_much_to_say_keeps_its_rows(made: Program, tmp_path: Path) 
     few, late = (tmp_path / name for name in ("few.png", "late.png"))
     draw_axes(few, axes_chart(made))
     # after the first circuit: its column has no mark, and the line below the title breaks
-    kinds = [Fault(len(made.blocks) - 2, kind, "") for kind in (SPAN, EYE, TRAVEL, LIES)]
+    kinds = [Fault(len(made.blocks) - 2, kind, "") for kind in (SPAN, EYE, LIMIT, LIES)]
     chart = axes_chart(replace(made, faults=tuple(kinds)))
     assert chart.subtitle.endswith(
         "an axis leaves its travel at 1 block; the fibre does not lie where it was planned at 1 block (marked)"
@@ -166,7 +166,7 @@ def test_hits_are_where_spans_meet_the_part(run: Path, made: Program) -> None:
     assert scene.astray == pytest.approx(blocks.point[[30, 31]])
     assert sum(int(line.split()[0]) for line in scene.notes[: scene.notes.index("")]) == 4
     assert abs(scene.frame.view.eye @ made.mandrel.direction) < 0.5
-    assert hits_scene(of, replace(made, faults=(Fault(3, TRAVEL, "no place on the part"),))) is None
+    assert hits_scene(of, replace(made, faults=(Fault(3, LIMIT, "no place on the part"),))) is None
 
 
 def test_spans_that_meet_the_shaft_are_told_from_those_that_meet_the_part(run: Path) -> None:

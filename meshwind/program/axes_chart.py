@@ -26,7 +26,6 @@ def axes_chart(made: Program) -> AxesChart:
     )
     faults = _faults(made)
     wrong = "; ".join(f"{words} at {len(times)} block{'s' * (len(times) > 1)}" for words, times in faults)
-    starts = [int(np.flatnonzero(blocks.layer == layer)[0]) for layer in np.unique(blocks.layer)]
     return AxesChart(
         title=f"{made.work.name}: axes of the program".removeprefix(": "),
         subtitle=f"{subtitle}{laid} of fibre laid  ·  {wrong + ' (marked)' if wrong else 'no faults'}",
@@ -39,26 +38,20 @@ def axes_chart(made: Program) -> AxesChart:
         fastest=machine.fibre_speed,
         names=tuple(AXES.get(name, name) for name in made.limits),
         limiting=made.limiting,
-        layers=tuple(
-            sorted(
-                (
-                    *(
-                        (f"layer {blocks.layer[k] + 1}", blocks.time[max(k - 1, 0)])
-                        for k in starts
-                        if made.work.layers > 1
-                    ),
-                    *(
-                        (f"cut {number}", blocks.time[k])
-                        for number, (k, _) in enumerate(blocks.travels, 1)
-                        if number <= _CUTS
-                    ),
-                ),
-                key=lambda mark: mark[1],
-            )
-        ),
+        layers=tuple(sorted(_marks(made), key=lambda mark: mark[1])),
         faults=faults,
         circuit=_first_circuit(blocks),
     )
+
+
+def _marks(made: Program) -> list[tuple[str, float]]:
+    """Names of layers, where there are several, and of cuts, and the seconds at which each begins."""
+    blocks = made.blocks
+    layers, starts = np.unique(blocks.layer, return_index=True)
+    cuts = [(f"cut {number}", float(blocks.time[k])) for number, (k, _) in enumerate(blocks.travels[:_CUTS], 1)]
+    if made.work.layers == 1:
+        return cuts
+    return [(f"layer {layers[i] + 1}", float(blocks.time[max(k - 1, 0)])) for i, k in enumerate(starts)] + cuts
 
 
 def _speed(blocks: Blocks, scale: float) -> Floats:

@@ -24,20 +24,29 @@ _SIDES = 36
 class Obstacle:
     """The part as spans may not meet it: just below its surface, closed over its rims; and the surface itself.
 
-    below, surface: trees of their triangles; sure: distance from the surface from which the part is surely not met.
+    below, surface: trees of their triangles, those of the part first; own: how many these are.
+    sure: distance from the surface from which the part is surely not met.
     """
 
     below: FacetTree
     surface: FacetTree
+    own: int
     sure: float
+
+    @property
+    def held(self) -> bool:
+        """Whether there is a shaft."""
+        return len(self.surface.numbers) > self.own
 
     def free(self, points: Floats, rays: Floats) -> Floats:
         """Lengths (n,) from points along unit vectors (n, 3) to the part; infinity where they miss it."""
         return cast(self.below, frozen(points), frozen(rays), 0.0)[1]
 
-    def hits(self, points: Floats, rays: Floats, spans: Floats) -> Bools:
-        """Whether spans from points along unit vectors (n, 3), of lengths (n,), meet the part."""
-        return np.asarray(self.free(points, rays) < spans)
+    def hits(self, points: Floats, rays: Floats, spans: Floats) -> tuple[Bools, Bools]:
+        """Whether spans from points along unit vectors (n, 3), of lengths (n,), meet anything, and the shaft first."""
+        face, free = cast(self.below, frozen(points), frozen(rays), 0.0)
+        met = np.asarray(free < spans)
+        return met, met & (face >= self.own)
 
 
 @dataclass(frozen=True)
@@ -53,13 +62,14 @@ def obstacle(on: Grid, diagonal: float, held: tuple[Mandrel, Shaft] | None = Non
     trees = []
     for depth in (_SKIN * diagonal, 0.0):
         points, faces = skin_below(on, depth)
+        own = len(faces)
         if held is not None and held[1].radius > depth:
             round_, sides = rod(held[1].radius - depth, held[1].ends)
             faces = np.concatenate([faces, sides + len(points)])
             points = np.concatenate([points, held[0].outside(round_)])
         trees.append(FacetTree.of(frozen(points), frozen(faces)))
     fit = on.surface.error
-    return Obstacle(trees[0], trees[1], _SURE * max(_SKIN * diagonal, 0.0 if fit is None else fit.max))
+    return Obstacle(trees[0], trees[1], own, _SURE * max(_SKIN * diagonal, 0.0 if fit is None else fit.max))
 
 
 def skin_below(on: Grid, depth: float) -> tuple[Floats, Ints]:

@@ -7,18 +7,18 @@ import numpy as np
 from meshwind.core.cast import Floats
 from meshwind.filament.course import Kind
 from meshwind.program.axes import moved
-from meshwind.program.blocks import TRAVEL as CUT
-from meshwind.program.blocks import Blocks
+from meshwind.program.blocks import TRAVEL, Blocks
 from meshwind.program.clear import Obstacle
 from meshwind.program.head import Head, meets
 from meshwind.program.machine import Machine
 
-SPAN, EYE, TRAVEL, LIES = "span", "eye", "travel", "lies"
-"""Kinds of faults; the last where the fibre, wound again, does not come to lie where it was planned."""
+SPAN, EYE, LIMIT, LIES = "span", "eye", "travel", "lies"
+"""Kinds of faults; the third where an axis would leave its travel; the last where the fibre, wound again,
+does not come to lie where it was planned."""
 _WHERE: dict[int, str] = {
     Kind.TURN: ", in its turnaround",
     Kind.DWELL: ", in its turnaround",
-    CUT: ", on the way to it from the filament before",
+    TRAVEL: ", on the way to it from the filament before",
 }
 """What is added on where a fault is."""
 _ROUND_OFF = 1e-9
@@ -35,20 +35,21 @@ class Fault:
 
 
 def place(blocks: Blocks, k: int) -> str:
-    """Words on where a block is."""
-    end = _WHERE.get(int(blocks.kind[k]), "")
-    return f"in layer {blocks.layer[k]}, circuit {blocks.circuit[k]}, pass {blocks.passed[k]}{end}"
+    """Words on where a block is; they count from 1, as all words do, and numbers in files from 0."""
+    end, way = _WHERE.get(int(blocks.kind[k]), ""), "back" if blocks.passed[k] % 2 else "out"
+    return f"in layer {blocks.layer[k] + 1}, circuit {blocks.circuit[k] + 1}, pass {way}{end}"
 
 
 def collisions(blocks: Blocks, blocked: Obstacle, head: Head | None, turned: Floats) -> list[Fault]:
     """Blocks at which the free span meets the part, or the eye's body does, turned by frames (n, 3, 3)."""
-    span = blocked.hits(blocks.point, blocks.tangent, blocks.free_length)
+    span, shaft = blocked.hits(blocks.point, blocks.tangent, blocks.free_length)
     eye = np.zeros(len(blocks), dtype=bool)
     if head is not None:
         eye = meets(head, blocked.surface, blocks.eye, turned) & ~span
     words = (
-        (span, SPAN, "the free span meets the part"),
-        (eye, EYE, "the eye meets the part"),
+        (span & ~shaft, SPAN, "the free span meets the part"),
+        (shaft, SPAN, "the free span meets the shaft"),
+        (eye, EYE, f"the eye meets the part{' or the shaft' if blocked.held else ''}"),
     )
     return [
         Fault(int(k), kind, f"{text} {place(blocks, int(k))}")
@@ -74,7 +75,7 @@ def unreachable(blocks: Blocks, machine: Machine, scale: float) -> list[Fault]:
             k = int(past.argmax())
             if past[k] > _ROUND_OFF * max(float(np.ptp(values)), 1.0):
                 fits = needed <= held
-                found.append(Fault(k, TRAVEL, (
+                found.append(Fault(k, LIMIT, (
                     f"{axis.moves} {axis.letter} goes to {values[k]:.6g} {axis.unit}, past {name} = {end:g}; "
                     + (f"move its zero by {-sign * past[k]:.6g}, or {more}" if fits else
                        f"it needs {needed:.6g} {axis.unit} of travel, and has {held:g}: {more}")

@@ -12,7 +12,7 @@ from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.mesh.geometry.rays import cast
 from meshwind.pictures.scenes import HitsScene
 from meshwind.pictures.subject import Subject
-from meshwind.program.clear import Shaft, rod, skin_below
+from meshwind.program.clear import Shaft, rod
 from meshwind.program.faults import EYE, LIES, SPAN
 from meshwind.program.program import Program
 from meshwind.program.words import DOES, fault_words
@@ -66,8 +66,7 @@ def _met(made: Program, index: Ints) -> tuple[Floats, Bools]:
     shaft = Shaft(made.machine.shaft / work.scale, (float(made.body.x[0]), float(made.body.x[-1])))
     blocked = work.blocked(made.mandrel, shaft)
     face, far = cast(blocked.below, blocks.point[index], blocks.tangent[index], 0.0)
-    own = len(skin_below(work.skin, 0.0)[1])  # the triangles of the part come first
-    return np.minimum(far, blocks.free_length[index]), np.asarray(face >= own)
+    return np.minimum(far, blocks.free_length[index]), np.asarray(face >= blocked.own)
 
 
 def _with_shaft(made: Program, stands: Gear) -> Gear:

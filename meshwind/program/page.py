@@ -9,7 +9,7 @@ from meshwind.export.packing import packed
 from meshwind.export.viewer import write_viewer
 from meshwind.export.viewer_program import ProgramData, Wound
 from meshwind.filament.filament import backwards
-from meshwind.program.faults import TRAVEL
+from meshwind.program.faults import LIMIT
 from meshwind.program.program import Program
 from meshwind.program.words import AXES, DOES, fault_words
 from meshwind.results.reading import Results
@@ -75,7 +75,7 @@ def program_data(made: Program, most: int = _MOST) -> ProgramData:
 def _said(kind: str, words: str) -> str:
     """What the page says of a fault: where it is stands beside it, but an axis past its travel has a name."""
     short = fault_words(kind)
-    return words if kind == TRAVEL else short
+    return words if kind == LIMIT else short
 
 
 def _kept(count: int, marked: list[int], most: int) -> Ints:

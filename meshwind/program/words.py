@@ -2,14 +2,14 @@
 
 from meshwind.appearance.strips import WORDS
 from meshwind.filament.course import Kind
-from meshwind.program.faults import EYE, LIES, SPAN, TRAVEL
+from meshwind.program.faults import EYE, LIES, LIMIT, SPAN
 
 AXES = {"mandrel": "mandrel", "carriage": "carriage", "cross": "cross-feed", "roll": "roll", "yaw": "yaw"}
 """Names of the axes, by what they move."""
 _FAULTS = {
-    SPAN: "the free span meets the part",
+    SPAN: "the free span meets the part or the shaft",
     EYE: "the eye is too near to the part",
-    TRAVEL: "an axis leaves its travel",
+    LIMIT: "an axis leaves its travel",
     LIES: "the fibre does not lie where it was planned",
 }
 
