@@ -61,6 +61,17 @@ def test_an_eye_with_cross_feed_clears_a_bend_that_another_cannot() -> None:
     assert 0.9 * 2e-3 * 200.0 < near.nearest < near.clearance == pytest.approx(10.0)
 
 
+def test_an_eye_without_cross_feed_is_checked_where_it_really_is() -> None:
+    """Where no slack would want the eye farther out, the machine holds it at its radius all the same."""
+    made = wound("lathe-2")
+    inside = made.mandrel.inside(made.eyes)
+    assert made.radius is not None
+    assert np.hypot(inside[:, 1], inside[:, 2]) == pytest.approx(made.radius, rel=1e-12)
+    assert inside[:, 0] == pytest.approx(made.blocks.eye_x, abs=1e-9)
+    assert made.losses["cross"] == pytest.approx(np.abs(made.blocks.eye_r - made.radius).max())
+    assert wound("lathe-4").eyes == pytest.approx(wound("lathe-4").blocks.eye)
+
+
 def test_the_fibre_comes_to_lie_where_it_was_planned_only_if_the_eye_goes_into_the_hollow() -> None:
     ground = Ground((bend().surface,), (10.0,), (FRICTION,))
     assert not rewind(wound("lathe-2"), ground).good.all()

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.core.cast import Floats
+from meshwind.core.vectors import sizes, unit
 from meshwind.filament.course import Kind
 from meshwind.program.axes import moved
 from meshwind.program.blocks import TRAVEL, Blocks
@@ -40,12 +41,12 @@ def place(blocks: Blocks, k: int) -> str:
     return f"in layer {blocks.layer[k] + 1}, circuit {blocks.circuit[k] + 1}, pass {way}{end}"
 
 
-def collisions(blocks: Blocks, blocked: Obstacle, head: Head | None, turned: Floats) -> list[Fault]:
-    """Blocks at which the free span meets the part, or the eye's body does, turned by frames (n, 3, 3)."""
-    span, shaft = blocked.hits(blocks.point, blocks.tangent, blocks.free_length)
+def collisions(blocks: Blocks, eyes: Floats, blocked: Obstacle, head: Head | None, turned: Floats) -> list[Fault]:
+    """Blocks at which the span to eyes (n, 3) meets the part, or the eye's body does, turned by frames (n, 3, 3)."""
+    span, shaft = blocked.hits(blocks.point, unit(eyes - blocks.point), sizes(eyes - blocks.point))
     eye = np.zeros(len(blocks), dtype=bool)
     if head is not None:
-        eye = meets(head, blocked.surface, blocks.eye, turned) & ~span
+        eye = meets(head, blocked.surface, eyes, turned) & ~span
     words = (
         (span & ~shaft, SPAN, "the free span meets the part"),
         (shaft, SPAN, "the free span meets the shaft"),

@@ -9,6 +9,7 @@ from meshwind.appearance.gear import gear
 from meshwind.appearance.strips import Gear
 from meshwind.appearance.view import View, around, framed, merit_view
 from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.core.vectors import sizes, unit
 from meshwind.mesh.geometry.rays import cast
 from meshwind.pictures.scenes import HitsScene
 from meshwind.pictures.subject import Subject
@@ -38,10 +39,10 @@ def hits_scene(of: Subject, made: Program) -> HitsScene | None:
     spans, eyes, astray = (blocks_at_fault(made, kind) for kind in (SPAN, EYE, LIES))
     if not len(spans) + len(eyes) + len(astray):
         return None
-    shown, eye = _some(spans), blocks.eye
+    shown, eye = _some(spans), made.eyes
     lines = np.stack([blocks.point[shown], eye[shown]], axis=1)
     far, shaft = _met(made, shown)
-    entries = blocks.point[shown] + far[:, None] * blocks.tangent[shown]
+    entries = blocks.point[shown] + far[:, None] * unit(lines[:, 1] - lines[:, 0])
     marks, others = eye[_some(eyes)], blocks.point[_some(astray)]
     stands = _with_shaft(made, gear(of.paths.surface, of.filaments, of.turned))
     everything = np.concatenate([of.points, stands.points, lines.reshape(-1, 3), marks])
@@ -65,8 +66,9 @@ def _met(made: Program, index: Ints) -> tuple[Floats, Bools]:
     work, blocks = made.work, made.blocks
     shaft = Shaft(made.machine.shaft / work.scale, (float(made.body.x[0]), float(made.body.x[-1])))
     blocked = work.blocked(made.mandrel, shaft)
-    face, far = cast(blocked.below, blocks.point[index], blocks.tangent[index], 0.0)
-    return np.minimum(far, blocks.free_length[index]), np.asarray(face >= blocked.own)
+    spans = (made.eyes - blocks.point)[index]
+    face, far = cast(blocked.below, blocks.point[index], unit(spans), 0.0)
+    return np.minimum(far, sizes(spans)), np.asarray(face >= blocked.own)
 
 
 def _with_shaft(made: Program, stands: Gear) -> Gear:

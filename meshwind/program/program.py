@@ -155,6 +155,11 @@ class Program:
     backwards: bool = False
 
     @property
+    def eyes(self) -> Floats:
+        """The eye (n, 3) in the blocks, as the machine holds it, in the mesh's coordinates."""
+        return stands(self.blocks, self.mandrel, self.radius)
+
+    @property
     def seconds(self) -> float:
         """Its duration."""
         return float(self.blocks.time[-1])
@@ -259,11 +264,12 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
     timing = timing_of(blocks, machine, scale)
     blocks = replace(blocks, time=frozen(np.concatenate([[0.0], np.cumsum(timing.seconds)])))
     names = limits_of(machine).names
-    nearest = float(blocked.surface.distances(frozen(blocks.eye)).min())
-    if within(blocked.below, blocks.eye, mandrel.towards(blocks.mandrel)).any():
+    eyes = stands(blocks, mandrel, radius)
+    nearest = float(blocked.surface.distances(frozen(eyes)).min())
+    if within(blocked.surface, eyes, mandrel.towards(blocks.mandrel)).any():
         nearest = -nearest
     faults = (
-        *collisions(blocks, blocked, head, frames(blocks, mandrel, machine)),
+        *collisions(blocks, eyes, blocked, head, frames(blocks, mandrel, machine)),
         *unreachable(blocks, machine, scale),
     )
     return Program(
@@ -315,6 +321,13 @@ def _blocks(on: Track, found: Poses, mandrel: Mandrel, laid: float, turned: floa
         eye_x=frozen(found.x), eye_r=frozen(found.r), mandrel=frozen(angle), roll=frozen(np.degrees(found.roll)),
         yaw=frozen(np.degrees(found.yaw)), time=frozen(np.zeros(n)), tension=frozen(np.zeros(n)), slip=frozen(slip),
     )  # fmt: skip
+
+
+def stands(blocks: Blocks, mandrel: Mandrel, radius: float | None) -> Floats:
+    """The eye (n, 3) as a machine holds it: on the fibre's line, or at its own radius if it has no cross-feed."""
+    if radius is None:
+        return blocks.eye
+    return mandrel.eye(blocks.eye_x, np.where(blocks.kind == TRAVEL, blocks.eye_r, radius), blocks.mandrel)
 
 
 def _losses(blocks: Blocks, machine: Machine, radius: float | None, scale: float) -> dict[str, float]:
