@@ -15,7 +15,7 @@ from meshwind.surface.grid import Grid
 _SKIN = 1e-3
 """Depth, over the part's diagonal, to which a span may dip below the surface: it starts along it."""
 _SURE = 2.0
-"""Distance from the surface, over the skin's depth or the fit's largest error, that is surely outside of the part."""
+"""Distance from the surface, over the skin's depth or the fit's usual error, that is surely outside of the part."""
 _SIDES = 36
 """Sides of the shaft, whose radius it then has to 0.4 %."""
 
@@ -69,7 +69,7 @@ def obstacle(on: Grid, diagonal: float, held: tuple[Mandrel, Shaft] | None = Non
             points = np.concatenate([points, held[0].outside(round_)])
         trees.append(FacetTree.of(frozen(points), frozen(faces)))
     fit = on.surface.error
-    return Obstacle(trees[0], trees[1], own, _SURE * max(_SKIN * diagonal, 0.0 if fit is None else fit.max))
+    return Obstacle(trees[0], trees[1], own, _SURE * max(_SKIN * diagonal, 0.0 if fit is None else fit.rms))
 
 
 def skin_below(on: Grid, depth: float) -> tuple[Floats, Ints]:
