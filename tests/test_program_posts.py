@@ -367,6 +367,13 @@ def test_the_command_of_a_tension_is_said_in_its_own_dialect_alone() -> None:
         assert back(name, text, blocks).same
 
 
+def test_a_line_of_many_numbers_that_is_no_program_is_refused_at_once() -> None:
+    """Were its words tried in all ways in which their digits can be split, 30 of them would take ages."""
+    text = f"{30 * 'A123456 '}?\n"
+    faults = read_text(text, fitted(LATHE, DIALECTS["linuxcnc"])).faults
+    assert any("is not understood" in words for _, words in faults)
+
+
 def test_files_have_names_of_their_own() -> None:
     names = file_names(ALL)
     assert len(set(names.values())) == len(ALL)

@@ -24,4 +24,4 @@ def sizes(vectors: Floats) -> Floats:
 def unit(vectors: Floats) -> Floats:
     """Vectors (..., d) over their lengths; those without a length stay zero."""
     size = sizes(vectors)[..., None]
-    return np.asarray(vectors / np.where(size > 0.0, size, 1.0))
+    return np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0.0)
