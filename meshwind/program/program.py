@@ -19,7 +19,7 @@ from meshwind.program.head import frames, head_of, within
 from meshwind.program.hollows import in_hollows
 from meshwind.program.machine import Machine
 from meshwind.program.mandrel import Mandrel, mandrel_of
-from meshwind.program.stepping import Steps, stepped
+from meshwind.program.stepping import Steps, smooth, stepped
 from meshwind.program.track import Track, track
 from meshwind.program.travel import in_a_row
 from meshwind.results.reading import Results
@@ -230,6 +230,7 @@ def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
         lowest = 0.0 if "shorter" in change else min(best.nearest, 0.0)
         left = sum(fault.kind == wanted for fault in another.faults)
         better = len(another.faults) < len(best.faults) and another.nearest >= lowest
+        better &= "shorter" not in change or smooth(another.blocks, _steps(work), _SMALL * work.diagonal)
         tried.append(f"{words}: {left} of {hits} blocks still meet the part; {'taken' if better else 'not taken'}")
         best, way = (another, other) if better else (best, way)
     blocks = replace(best.blocks, tension=frozen(np.where(best.blocks.kind == TRAVEL, 0.0, tension)))
@@ -249,10 +250,7 @@ def _wound(work: Work, machine: Machine, way: Way) -> Program:
     if way.shorter:
         lift = max(_LIFT * way.clearance, 0.0 if head is None else _PAST * head.radius)
         spans = in_hollows(spans, blocked, mandrel, way.clearance, lift)
-    steps = Steps(
-        np.radians(TURN), np.radians(ROLL), np.radians(ROLL),
-        *(3 * (min(MOVE / scale, _SMALL * work.diagonal),)),
-    )  # fmt: skip
+    steps = _steps(work)
     parts, laid, turned = [], 0.0, -np.inf
     tracks = tuple(track(filament, way.backwards) for filament in work.filaments)
     for on in tracks:
@@ -328,6 +326,12 @@ def stands(blocks: Blocks, mandrel: Mandrel, radius: float | None) -> Floats:
     if radius is None:
         return blocks.eye
     return mandrel.eye(blocks.eye_x, np.where(blocks.kind == TRAVEL, blocks.eye_r, radius), blocks.mandrel)
+
+
+def _steps(work: Work) -> Steps:
+    """The longest steps between blocks."""
+    length = min(MOVE / work.scale, _SMALL * work.diagonal)
+    return Steps(np.radians(TURN), np.radians(ROLL), np.radians(ROLL), length, length, length)
 
 
 def _losses(blocks: Blocks, machine: Machine, radius: float | None, scale: float) -> dict[str, float]:

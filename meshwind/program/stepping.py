@@ -7,6 +7,7 @@ from functools import reduce
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.program.blocks import Blocks
 from meshwind.program.eye import Poses
 from meshwind.program.track import AIR, LAY, PIVOT, Track
 
@@ -24,6 +25,8 @@ _SHARE = 0.25
 """Length between two looks over the longest step of the eye."""
 _EVEN = 1e-6
 """Share of a look by which it may come early: round-off must not move it."""
+_STEEP, _ROUND_OFF = 85.0, 1.0 + 1e-9
+"""Yaw in degrees above which the roll has no limit, and a step over the longest that is not longer but for round-off."""
 _TOLD = np.radians(3.0)
 """Turn about a point from which its start and end have blocks of their own."""
 
@@ -67,6 +70,17 @@ def stepped(track: Track, solve: Callable[[Floats], Poses], steps: Steps) -> Pos
             break
         wanted = np.union1d(wanted, halves)
     return _chosen(found, np.flatnonzero(_told(steps.motion(found))))
+
+
+def smooth(blocks: Blocks, steps: Steps, near: float) -> bool:
+    """Whether no step is longer than it may be: an eye that is moved off what is nearest jumps as that changes.
+
+    near: distance from the axis below which the mandrel's angle has no limit.
+    """
+    away = (blocks.eye_r > near) & (np.abs(blocks.yaw) < _STEEP)
+    longest = {"mandrel": np.degrees(steps.mandrel), "roll": np.degrees(steps.roll), "eye_x": steps.x, "eye_r": steps.r}
+    moves = ((np.abs(np.diff(getattr(blocks, name))), most) for name, most in longest.items())
+    return all(move[away[1:] & away[:-1]].max(initial=0.0) <= most * _ROUND_OFF for move, most in moves)
 
 
 def _whole(track: Track, steps: Steps) -> Floats:
