@@ -26,7 +26,7 @@ _SHARE = 0.25
 _EVEN = 1e-6
 """Share of a look by which it may come early: round-off must not move it."""
 _STEEP, _ROUND_OFF = 85.0, 1.0 + 1e-9
-"""Yaw in degrees above which the roll has no limit, and a step over the longest that is not longer but for round-off."""
+"""Yaw in degrees above which the roll has no limit, and a step over the longest that is longer by round-off alone."""
 _TOLD = np.radians(3.0)
 """Turn about a point from which its start and end have blocks of their own."""
 
