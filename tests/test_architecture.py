@@ -152,7 +152,7 @@ def test_heavy_libraries_load_late(code: str) -> None:
         "meshio",
         "matplotlib",
         "PIL",
-        "piqp",
+        "clarabel",
     ]
     code += f"\nimport sys\nprint([m for m in {heavy} if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -2,11 +2,12 @@
 
 from pathlib import Path
 
-import clarabel
 import numpy as np
+import piqp
 import pytest
 import trimesh
-from scipy import sparse
+from scipy import optimize, sparse
+from scipy.interpolate import BSpline
 
 import meshwind as mw
 from meshwind.editing.demands import Demands, press, reach
@@ -14,10 +15,10 @@ from meshwind.editing.edit import edit
 from meshwind.editing.edited_mesh import displacement, within
 from meshwind.editing.freedom import free_moves, frozen_mask
 from meshwind.editing.options import EditOptions
-from meshwind.editing.program import ACCURACY, Solution, certified, minimise
+from meshwind.editing.program import ACCURACY, Balls, Program, certified, minimise
 from meshwind.editing.redesign import redesign
 from meshwind.editing.result import Outcome
-from meshwind.editing.step import ELASTICITY, Program, assembled, energy
+from meshwind.editing.step import SOFTNESS, Demanded, Limits, energy, rows_of, soft
 from meshwind.mesh import mesh_from
 from meshwind.mesh.geometry.areas_and_volumes import volume
 from meshwind.surface import Surface, shapes
@@ -42,44 +43,50 @@ def real_program(surface: Surface) -> Program:
     whole = reach(laid), press(laid, 0.2 / surface.size)
     moves = free_moves(surface, frozen_mask(surface, None))
     moved = np.zeros((surface.control_points.size // 3, 3))
-    return assembled(*whole, whole[0].chosen, energy(surface, 0.2), moves, moved, None, 1e-3)
+    demanded = Demanded(*whole, energy(surface, 0.2), Limits(moves, moved, np.full(len(moved), np.inf)), 1e-3)
+    return soft(rows_of(demanded, whole[0].chosen))
 
 
-def by_piqp(program: Program) -> Solution:
-    return minimise(program.P, program.A, program.low, program.high)
+def by_piqp(program: Program) -> float:
+    solver = piqp.SparseSolver()
+    P, A = sparse.csc_matrix(program.P), sparse.csc_matrix(program.A)
+    solver.setup(P, program.q, G=A, h_l=program.low)
+    solver.solve()
+    return float(solver.result.info.primal_obj)
 
 
-def by_clarabel(program: Program) -> float:
-    settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    cones = [clarabel.NonnegativeConeT(len(program.low))]
-    P, A = sparse.csc_matrix(program.P), sparse.csc_matrix(-program.A)
-    solver = clarabel.DefaultSolver(P, np.zeros(P.shape[0]), A, -program.low, cones, settings)
-    return float(solver.solve().obj_val)
-
-
-def test_piqp_and_clarabel_agree_and_the_certificate_holds() -> None:
+def test_clarabel_and_piqp_agree_and_the_certificate_holds() -> None:
     program = real_program(hyperboloid())
-    found = by_piqp(program)
+    found = minimise(program)
     assert program.A.shape[0] > 100
     assert found.primal <= ACCURACY and found.dual <= ACCURACY
-    assert found.objective == pytest.approx(by_clarabel(program), rel=1e-4)
+    assert found.objective == pytest.approx(by_piqp(program), rel=1e-5)
 
 
 def test_the_certificate_sees_a_wrong_answer() -> None:
-    P, A = sparse.csc_array(np.eye(2)), sparse.csc_array(np.array([[1.0, 0.0]]))
-    low, high = np.array([1.0]), np.array([np.inf])
-    right = minimise(P, A, low, high)
-    assert right.solved and right.x == pytest.approx([1.0, 0.0], abs=1e-9)
-    assert right.multipliers == pytest.approx([-1.0], abs=1e-9)
-    assert certified(P, A, low, high, np.array([0.5, 0.0]), np.array([-0.5]), 0).primal == pytest.approx(0.5)
-    assert certified(P, A, low, high, np.array([1.0, 0.3]), np.array([-1.0]), 0).dual == pytest.approx(0.3)
-    assert certified(P, A, low, high, np.array([2.0, 0.0]), np.array([-2.0]), 0).dual == pytest.approx(2.0)
+    # min x^2 / 2 + y^2 / 2 - 3 y with x >= 1 and |(x, y, 0)| <= 2: (1, sqrt 3)
+    eye = sparse.csc_array(np.eye(2))
+    ball = Balls(sparse.csr_array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]), np.zeros(3), np.array([2.0]))
+    A = sparse.csc_array(np.array([[1.0, 0.0]]))
+    program = Program(eye, np.array([0.0, -3.0]), A, np.array([1.0]), ball)
+    root = np.sqrt(3.0)
+    x, pull = np.array([1.0, root]), 2.0 * (3.0 - root) / root  # the gradient (1, root - 3) is -pull (1, root) / 2 + y
+    y = np.array([1.0 + pull / 2.0])
+    right = minimise(program)
+    assert right.solved and right.x == pytest.approx(x, abs=1e-7)
+    assert right.multipliers == pytest.approx(y, abs=1e-6) and right.pulls == pytest.approx([pull], abs=1e-6)
+    size = float(y[0])  # residuals count over the largest multiplier
+    assert certified(program, x, y, np.array([pull]), 0).solved
+    assert certified(program, x - [0.5, 0.0], y, np.array([pull]), 0).primal == pytest.approx(0.5)
+    assert certified(program, 2.0 * x, y, np.array([pull]), 0).primal == pytest.approx(2.0)
+    assert certified(program, x, y + 0.3, np.array([pull]), 0).dual == pytest.approx(0.3 / (size + 0.3))
+    assert certified(program, x, y, np.array([0.0]), 0).dual > 0.1
+    assert certified(program, 0.5 * x, y, np.array([pull]), 0).dual == pytest.approx(max(0.5 * size, pull) / size)
 
 
 def test_without_an_active_row_nothing_moves_and_nothing_is_printed(capfd: pytest.CaptureFixture[str]) -> None:
-    P, A = sparse.csc_array(np.eye(2)), sparse.csc_array(np.array([[1.0, 0.0]]))
-    found = minimise(P, A, np.array([-1.0]), np.array([np.inf]))
+    A = sparse.csc_array(np.array([[1.0, 0.0]]))
+    found = minimise(Program(sparse.csc_array(np.eye(2)), np.zeros(2), A, np.array([-1.0])))
     assert found.solved and (found.x == 0.0).all() and (found.multipliers == 0.0).all()
     assert capfd.readouterr() == ("", "")
 
@@ -90,17 +97,21 @@ def test_one_row_has_the_answer_in_closed_form() -> None:
     laid = straight(surface, 1)
     whole = reach(laid)
     middle = int(np.argmax(whole.least))
-    one = Demands(whole.matrix[[middle]], whole.least[[middle]], np.array([True]))
-    none = Demands(whole.matrix[:0], whole.least[:0], np.zeros(0, dtype=bool))
+    one = Demands(whole.matrix[[middle]], whole.least[[middle]], np.array([True]), np.array([False]))
+    none = Demands(whole.matrix[:0], whole.least[:0], np.zeros(0, dtype=bool), np.zeros(0, dtype=bool))
     moves = free_moves(surface, frozen_mask(surface, None))
     moved = np.zeros((surface.control_points.size // 3, 3))
-    program = assembled(one, none, one.chosen, energy(surface, 0.0), moves, moved, None, 0.0)
-    change = by_piqp(program).x[: moved.size] * program.unit
+    limits = Limits(moves, moved, np.full(len(moved), np.inf))
+    rows = rows_of(Demanded(one, none, energy(surface, 0.0), limits, 0.0), one.chosen)
+    change = minimise(soft(rows)).x[: moved.size] * rows.unit
     weight = one.matrix.toarray()[0]
     size = float(np.linalg.norm(weight))
-    assert change == pytest.approx(weight / size**2 * one.least[0] / (1 + ELASTICITY), abs=1e-9)
-    # the waist of the hyperboloid lies this far below the chord between the rims
+    assert change == pytest.approx(weight / size**2 * one.least[0] / (1 + SOFTNESS), abs=1e-8)
+    # the waist of the hyperboloid lies this far below the chord between the rims, and both move
     assert one.least[0] == pytest.approx(np.sqrt(1 + 0.81) - 1, rel=1e-3)
+    net = surface.control_points
+    grown = np.array([1.0, 1.0, 0.0]) * net  # the whole part as thick again: the fibre comes along
+    assert weight @ grown.ravel() == pytest.approx(1.0 - np.sqrt(1.81), rel=1e-3)
 
 
 def test_a_row_of_press_is_the_derivative_of_the_normal_curvature() -> None:
@@ -135,20 +146,19 @@ def test_the_inner_bend_of_an_elbow_comes_up_to_its_chord() -> None:
     found = edit(surface, Options(8, 0.0, 121))
     assert found.outcome is Outcome.WINDABLE
     start, inner, end = np.hypot(*found.surface.points([[0.5, v] for v in (0.0, 0.5, 1.0)])[:, :2].T)
-    chord = 2.0 * np.cos(np.pi / 8)  # from the bend's axis to the chord of the intrados, whose radius is 2
-    assert chord - 0.03 < inner < chord
-    assert abs(start - 2.0) < 0.01 and abs(end - 2.0) < 0.01
+    assert start == pytest.approx(end, abs=1e-3) and 2.0 < start < 2.12  # the ends give way, as that is less to move
+    chord = start * np.cos(np.pi / 8)  # from the bend's axis to the chord of the intrados, whose radius was 2
+    assert chord - 0.03 < inner < chord + 1e-4  # a gap of so much counts as none
 
 
 def test_frozen_control_points_do_not_move_and_impossible_demands_say_so() -> None:
     surface = hyperboloid()
     mask = np.zeros(surface.control_points.shape[:2], dtype=bool)
-    mask[:, 8:11] = True
+    mask[:, [0, 1, 2, 8, 9, 10, -3, -2, -1]] = True
     found = edit(surface, Options(8, 0.0, 61), EditOptions(frozen=mask))
     assert (found.surface.control_points[mask] == surface.control_points[mask]).all()
-    assert found.outcome is Outcome.OUT_OF_REACH and "less of the part" in found.outcome.advice
+    assert found.outcome is Outcome.OUT_OF_REACH and "less" in found.outcome.advice
     assert found.bridged > 0 and found.rounds[-1].shortfall > 0.3
-    assert (found.surface.control_points == surface.control_points).all()  # what does not help is not done
     low = edit(surface, Options(8, 0.0, 61), EditOptions(rounds=1, frozen=lambda at: at[:, 2] < -1.6))
     below = surface.control_points[..., 2] < -1.6
     assert (low.surface.control_points[below] == surface.control_points[below]).all()
@@ -159,11 +169,96 @@ def test_the_bound_holds_and_is_used() -> None:
     surface = hyperboloid()
     winding = Options(8, 0.0, 61)
     free = edit(surface, winding)
-    held = edit(surface, winding, EditOptions(bound=0.375))
+    held = edit(surface, winding, EditOptions(bound=0.285))
     far, near = (np.linalg.norm(e.surface.control_points - surface.control_points, axis=2).max() for e in (free, held))
-    assert far > 0.38 and 0.37 < near <= 0.375
+    assert far > 0.29 and 0.28 < near <= 0.285 * (1 + 1e-12)
     assert held.outcome is Outcome.WINDABLE
-    assert edit(surface, winding, EditOptions(bound=0.1)).outcome is Outcome.OUT_OF_REACH
+
+
+def of_profile(surface: Surface) -> np.ndarray:
+    """Moves (3m, 2 nv) of the net outward and along z, the same all around."""
+    net = surface.control_points
+    out = net * [1.0, 1.0, 0.0]
+    out /= np.linalg.norm(out, axis=2, keepdims=True)
+    moves = np.zeros((*net.shape, 2, net.shape[1]))
+    row = np.arange(net.shape[1])
+    moves[:, row, :, 0, row] = np.moveaxis(out, 1, 0)
+    moves[:, row, 2, 1, row] = 1.0
+    return moves.reshape(net.size, -1)
+
+
+def least_gap(surface: Surface, moved: np.ndarray, held: int, bound: float) -> float:
+    """The least largest shortfall by linear programs of HiGHS, with ever more lines that touch the bound's circles."""
+    rows, turn = reach(straight(surface, 16)), of_profile(surface)
+    start = np.linalg.lstsq(turn, moved.ravel())[0]
+    n = len(start) // 2
+    free = np.arange(held, n - held)
+    A = np.hstack([-(rows.matrix @ turn), -np.ones((len(rows.least), 1))])
+    angle = 2 * np.pi * np.arange(720) / 720
+    lines = np.zeros((len(free), len(angle), 2 * n + 1))
+    lines[np.arange(len(free)), :, free] = np.cos(angle)
+    lines[np.arange(len(free)), :, n + free] = np.sin(angle)
+    tangents = lines.reshape(len(free) * len(angle), 2 * n + 1)
+    far = bound - tangents[:, :-1] @ start
+    fixed = [(0.0, 0.0) if k % n < held or k % n >= n - held else (None, None) for k in range(2 * n)]
+    found = optimize.linprog(
+        np.append(np.zeros(2 * n), 1.0), np.vstack([A, tangents]), np.append(-rows.least, far),
+        bounds=[*fixed, (None, None)],
+    )  # fmt: skip
+    return float(found.x[-1])
+
+
+@pytest.mark.parametrize("held", [0, 3])
+def test_within_a_bound_the_largest_gap_becomes_the_least(held: int) -> None:
+    surface, bound = hyperboloid(), 0.1
+    mask = np.zeros(surface.control_points.shape[:2], dtype=bool)
+    mask[:, :held] = mask[:, surface.control_points.shape[1] - held :] = True
+    found = edit(surface, Options(16, 0.0, 61), EditOptions(bound=bound, frozen=mask))
+    assert found.outcome is Outcome.OUT_OF_REACH
+    moved = found.surface.control_points - surface.control_points
+    assert np.linalg.norm(moved, axis=2).max() <= bound * (1 + 1e-12)
+    assert (moved[mask] == 0.0).all()
+    before, after = np.sqrt(1.81) - 1, float(found.paths.gap.max())
+    assert before - after > 0.9 * bound
+    assert after == pytest.approx(least_gap(found.surface, moved, held, bound), rel=0.01)
+
+
+def least_profile(surface: Surface, pressing: float) -> float:
+    """The least energy of a change of a round net whose meridians are curved enough, by SLSQP on the profile."""
+    net, turn = surface.control_points, of_profile(surface)
+    count, n = int(net.shape[0]), int(net.shape[1])
+    share = (2.0 + np.cos(2.0 * np.pi / count)) / 3.0  # of the net's radius, that of the surface at its knots
+    start = np.append(np.hypot(net[0, :, 0], net[0, :, 1]), net[0, :, 2])
+    knots = np.arange(-3, n + 1) / (n - 3)
+    splines = BSpline(knots, np.eye(n), 3)
+    _, once, twice = (splines.derivative(k)(np.linspace(0.0, 1.0, 121)) if k else None for k in range(3))
+    assert once is not None and twice is not None
+    rate, bend = (np.block([[share * b, 0 * b], [0 * b, b]]) for b in (once, twice))
+    most = pressing / surface.size
+
+    def beyond(x: np.ndarray) -> np.ndarray:
+        (r, z), (rr, zz) = ((b @ (start + x)).reshape(2, -1) for b in (rate, bend))
+        curved = (r * zz - z * rr) * np.sign(np.mean(once @ start[n:])) - most * np.hypot(r, z) ** 3
+        upward = z / (once @ start[n:]) - 0.3  # the profile must not fold
+        return np.append(curved, upward)
+
+    cost = turn.T @ (energy(surface, EditOptions.fairness) @ turn)
+    found = optimize.minimize(
+        lambda x: x @ cost @ x, np.zeros(2 * n), jac=lambda x: 2 * cost @ x, method="SLSQP",
+        constraints=dict(type="ineq", fun=beyond), options=dict(maxiter=300, ftol=1e-9),
+    )  # fmt: skip
+    assert beyond(found.x).min() > -1e-6
+    return float(found.fun)
+
+
+@pytest.mark.parametrize("shape", [(1.0, 0.6, 1.5), (1.0, 0.9, 1.5), (1.0, 0.6, 1.0)])
+def test_a_round_waist_is_moved_no_more_than_needed(shape: tuple[float, float, float]) -> None:
+    surface = shapes.hyperboloid(*shape, (16, 16))
+    found = edit(surface, Options(16, 0.0, 61))
+    assert found.outcome is Outcome.WINDABLE
+    change = (found.surface.control_points - surface.control_points).ravel()
+    spent = float(change @ (energy(surface, EditOptions.fairness) @ change))
+    assert spent == pytest.approx(least_profile(surface, EditOptions.pressing), rel=0.05)
 
 
 @pytest.mark.parametrize("order", [4, 16])

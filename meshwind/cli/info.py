@@ -26,7 +26,19 @@ EXAMPLES = """
     # versions, and whether this machine can draw
     meshwind info
 """
-_LIBRARIES = "numpy", "scipy", "numba", "libigl", "trimesh", "meshio", "pyvista", "vtk", "matplotlib", "pillow", "piqp"
+_LIBRARIES = (
+    "numpy",
+    "scipy",
+    "numba",
+    "libigl",
+    "trimesh",
+    "meshio",
+    "pyvista",
+    "vtk",
+    "matplotlib",
+    "pillow",
+    "clarabel",
+)
 _EXTRAS = {"cad": ("OCP", "STEP"), "viewer": ("plotly", "viewer.html")}
 """Module that shows whether an optional part is installed, and what the part is for."""
 

@@ -15,13 +15,15 @@ import numpy as np
 from scipy import sparse
 
 from meshwind.core.cast import Bools, Floats, Ints
-from meshwind.core.vectors import unit
+from meshwind.core.vectors import TINY, unit
 from meshwind.editing.stencil import along, pitches, weights
 from meshwind.path.paths import Paths, Status
 
 JUMP = 0.5
 """Largest distance of neighbouring shadows, in spans; points are added where they skip the floor of a hollow."""
 
+BEYOND = ((1.0, 0.0), (0.0, 1.0))
+"""Spans by which lines begin before, and end after, the points where a bridge touches."""
 CLOSE, MAX_BETWEEN = 0.5, 4
 """Neighbouring paths up to 1 + CLOSE spans apart have no curves between them; others have MAX_BETWEEN at most."""
 
@@ -30,16 +32,23 @@ CLOSE, MAX_BETWEEN = 0.5, 4
 class Demands:
     """Inequalities matrix @ change >= least over the net's coordinates (k, 3m), in the surface's units.
 
-    chosen (k,) marks about one per span along each path: the others nearly repeat them.
+    chosen (k,) marks about one per span along each path: the others nearly repeat them; short (k,) marks those of lines
+    that touch further out, which matter beside the chosen ones where not all can be met.
     """
 
     matrix: sparse.csr_array
     least: Floats
     chosen: Bools
+    short: Bools
 
 
 def reach(paths: Paths) -> Demands:
-    """The surface must come up to every lifted particle, (6.9) to (6.11)."""
+    """The surface must come up to every lifted particle, (6.9) to (6.11).
+
+    The fibre there is a straight line between two points where it touches, and moves as the surface does there: the
+    row is the change of the surface below it less that of the line.  Where the surface sinks at such a point, the fibre
+    touches further out; so the same is demanded of the lines from points some spans beyond, which now lie lower.
+    """
     surface = paths.surface
     lifted = ~paths.on_surface & _is_usable(paths)
     path, at = np.nonzero(lifted)
@@ -52,10 +61,61 @@ def reach(paths: Paths) -> Demands:
     uv = (1 - share) * paths.uv[path, at - 1] + share * paths.uv[path, at]
     points = (1 - share) * paths.points[path, at - 1] + share * paths.points[path, at]
     chosen = _new_span(run[path, at - 1], spans[path, at - 1], step, pieces[which])
-    direction = _across(surface.normals(uv), _chords(paths)[path, at])
-    found, (part,) = weights(surface, uv, ((0, 0),))
-    least = ((points - surface.points(uv)) * direction).sum(axis=1)
-    return Demands(along(found, part, direction, surface.control_points.size // 3), least, chosen)
+    first, last = (ends[path, at] for ends in _touching(paths))
+    chord = paths.points[path, last] - paths.points[path, first]
+    below = _Below(path, uv, points, _across(surface.normals(uv), unit(chord)))
+    some = below.some(chosen)
+    demands = [_above(paths, below, first, last, chosen)]
+    for before, after in BEYOND if chosen.any() else ():
+        begin = _beyond(paths, run, some.path, first[chosen], -before)
+        end = _beyond(paths, run, some.path, last[chosen], after)
+        demands.append(_above(paths, some, begin, end, None))
+    return Demands(
+        sparse.csr_array(sparse.vstack([each.matrix for each in demands])),
+        np.concatenate([each.least for each in demands]),
+        np.concatenate([each.chosen for each in demands]),
+        np.concatenate([each.short for each in demands]),
+    )
+
+
+@dataclass(frozen=True)
+class _Below:
+    """Points uv (k, 2) of the surface below fibres of paths (k,) at points (k, 3), and directions up to them (k, 3)."""
+
+    path: Ints
+    uv: Floats
+    points: Floats
+    direction: Floats
+
+    def some(self, which: Bools) -> "_Below":
+        """Those of a mask (k,)."""
+        return _Below(self.path[which], self.uv[which], self.points[which], self.direction[which])
+
+
+def _above(paths: Paths, below: _Below, first: Ints, last: Ints, chosen: Bools | None) -> Demands:
+    """The surface must come up to the lines between particles `first` and `last` (k,); without `chosen`, if short."""
+    surface = paths.surface
+    begin, end = paths.points[below.path, first], paths.points[below.path, last]
+    chord = end - begin
+    beyond = ((below.points - begin) * chord).sum(axis=1) / np.maximum((chord**2).sum(axis=1), TINY)
+    line = begin + beyond[:, None] * chord
+    least = ((line - surface.points(below.uv)) * below.direction).sum(axis=1)
+    size, rows = surface.control_points.size // 3, []
+    ends = (paths.uv[below.path, first], beyond - 1.0), (paths.uv[below.path, last], -beyond)
+    for uv, weight in ((below.uv, np.ones(len(beyond))), *ends):
+        found, (part,) = weights(surface, uv, ((0, 0),))
+        rows.append(along(found, part * weight[:, None], below.direction, size))
+    none = np.zeros(len(least), dtype=bool)
+    matrix = sparse.csr_array(rows[0] + rows[1] + rows[2])
+    return Demands(matrix, least, none, ~none) if chosen is None else Demands(matrix, least, chosen, none)
+
+
+def _beyond(paths: Paths, run: Floats, path: Ints, at: Ints, by: float) -> Ints:
+    """Numbers (k,) of the particles so many spans further along the paths than those at `at`, or the paths' ends."""
+    wanted = run[path, at] + by
+    order = np.concatenate([np.searchsorted(run[k], wanted[path == k]) for k in np.unique(path)] or [at])
+    back = np.argsort(np.argsort(path, kind="stable"), kind="stable")
+    return np.minimum(order[back], paths.gap.shape[1] - 1)
 
 
 def press(paths: Paths, curvature: float) -> Demands:
@@ -81,7 +141,8 @@ def press(paths: Paths, curvature: float) -> Demands:
     length = max(pitches(surface)) ** 2
     matrix = along(found, -length * change, normal, surface.control_points.size // 3)
     least = length * (curvature + (turn * normal).sum(axis=1))
-    return Demands(matrix, least, np.ones(len(least), dtype=bool))
+    every = np.ones(len(least), dtype=bool)
+    return Demands(matrix, least, every, ~every)
 
 
 def _pressed(paths: Paths) -> tuple[Floats, Floats]:
@@ -144,17 +205,15 @@ def _new_span(start: Floats, length: Floats, step: Floats | Ints, pieces: Floats
     return np.asarray(np.floor(now) > np.floor(before))
 
 
-def _chords(paths: Paths) -> Floats:
-    """Unit vector (p, n, 3) of the chord that each lifted particle lies on, between touching ones."""
+def _touching(paths: Paths) -> tuple[Ints, Ints]:
+    """Numbers (p, n) of the last particle before each that touches, or ends its path, and of the next one."""
     touching = paths.on_surface.copy()
     touching[:, 0] = touching[:, -1] = True
     index = np.broadcast_to(np.arange(touching.shape[1]), touching.shape)
     before = np.maximum.accumulate(np.where(touching, index, 0), axis=1)
     last = touching.shape[1] - 1
     after = np.minimum.accumulate(np.where(touching, index, last)[:, ::-1], axis=1)[:, ::-1]
-    rows = np.arange(len(paths))[:, None]
-    chord = paths.points[rows, after] - paths.points[rows, before]
-    return unit(chord)
+    return before, after
 
 
 def _across(normal: Floats, chord: Floats) -> Floats:

@@ -14,7 +14,7 @@ from meshwind.editing.freedom import free_moves, frozen_mask
 from meshwind.editing.options import EditOptions
 from meshwind.editing.program import ACCURACY
 from meshwind.editing.result import Outcome, Round
-from meshwind.editing.step import Step, energy, step
+from meshwind.editing.step import Demanded, Limits, Step, energy, step
 from meshwind.path import Paths, solve
 from meshwind.path.lengths import tolerated
 from meshwind.planning.families import families
@@ -22,12 +22,17 @@ from meshwind.surface.surface import Surface
 from meshwind.workflow.clock import Progress
 from meshwind.workflow.options import Options
 
-FIRM = 0.3
-"""Of a gap that counts as none: the rounds go on while one is above this, which leaves room for the refit's error."""
 LEAST_GAP = 1e-6
 """Largest gap, over the part's size, that counts as none on any surface, unless a threshold is given."""
-FAR_SHORT = 0.5
-"""Of the largest gap: a surface that is left further below the fibre cannot reach it, and such an edit is not made."""
+SAME = 0.01
+"""Share of the largest gap by which two states are alike in it: then that which bridges less is better."""
+LAST = 0.03
+"""Of the largest gap before all rounds: below it a round that does not gain much is followed by ones that take nothing
+back, which would lift other fibres again."""
+QUICK = 0.1
+"""Of the largest gap before a round: what a round leaves that gains much."""
+SHARES = (1.0, 0.5, 0.25, 0.1)
+"""Of a change that leaves fibres out of reach: those that are tried in turn until the largest gap is lower."""
 MAX_IDLE_ROUNDS = 2
 """Rounds in succession without a gain after which the edit stops."""
 UNSOLVED = 1e3 * ACCURACY
@@ -70,7 +75,7 @@ class _State:
 
 @dataclass(frozen=True)
 class _Problem:
-    """What is the same in all rounds: the surface before them, the free moves and their cost, and the limits."""
+    """What is the same in all rounds: first surface and largest gap, the free moves and their cost, and the limits."""
 
     first: Surface
     moves: sparse.csr_array
@@ -78,28 +83,43 @@ class _Problem:
     curvature: float
     bound: float | None
     threshold: float
+    gap: float
+
+    def stalls(self, gap: float, before: float) -> bool:
+        """Whether the largest gap, after a round from `before`, is small but no longer falls fast."""
+        return QUICK * before < gap <= LAST * self.gap
 
     def moved(self, surface: Surface) -> Floats:
         """How far the control points of a surface have been moved (m, 3)."""
         return np.asarray((surface.control_points - self.first.control_points).reshape(-1, 3))
 
-    def step(self, now: _State) -> Step:
-        """Solve for the change of the control points that the paths demand."""
+    def step(self, now: _State, total: bool, short: bool) -> Step:
+        """Solve for the change of the control points that the paths demand; total and short: as in `step`."""
+        moved = self.moved(now.surface)
+        limits = Limits(self.moves, moved, np.full(len(moved), np.inf if self.bound is None else self.bound))
         demands = reach(now.paths), press(now.paths, self.curvature)
-        return step(*demands, self.cost, self.moves, self.moved(now.surface), self.bound, self.threshold)
+        return step(Demanded(*demands, self.cost, limits, self.threshold, total), short)
 
     def after(self, now: _State, found: Step) -> _State:
-        """Change the control points, and lay the paths again from where they were."""
+        """Change the control points, and lay the paths again from where they were.
+
+        Where a fibre stays out of reach the paths may leave what the program knows of them.  Then only a share of the
+        change is made, if less lowers the largest gap, and none where that does not help.
+        """
+        for share in SHARES if found.least > 0.0 else (1.0,):
+            after = self.changed(now, share * found.change)
+            if found.least == 0.0 or is_better((after.bridged, after.gap), (now.bridged, now.gap)):
+                return after
+        return now
+
+    def changed(self, now: _State, change: Floats) -> _State:
+        """A state with its control points changed (m, 3)."""
         # round-off may leave the bound's ball
-        moves = within(self.moved(now.surface) + found.change, self.bound)
+        moves = within(self.moved(now.surface) + change, self.bound)
         net = self.first.control_points
         surface, uv = replace(self.first, control_points=net + moves.reshape(net.shape)), np.array(now.paths.uv)
         laid = solve(surface, uv[:, 0], uv[:, -1], family=now.paths.family, particles=uv.shape[1], initial=uv)
         return _State(surface, laid)
-
-    def merit(self, state: _State) -> tuple[float, float]:
-        """Bridged share and largest gap, in this order: less is better."""
-        return state.bridged, state.gap
 
     def figures(self, before: _State, after: _State, found: Step) -> Round:
         """The figures of a round."""
@@ -136,13 +156,14 @@ def edit(
     if moves.shape[1] == 0:
         raise BadInputError("every control point is frozen; leave some free to move")
     cost = energy(surface, options.fairness)
-    problem = _Problem(surface, moves, cost, options.pressing / surface.size, options.bound, limit)
     revolutions, particles = float(winding.turns), winding.particles
     paths = winding.paths or PATHS
     per_gap = -(-surface.control_points.shape[0] // paths)
     ends = families(surface, paths * per_gap, revolutions)
     laid = solve(surface, ends.start, ends.end, family=ends.family, particles=particles)
-    best, outcome, figures = _rounds(problem, _State(surface, laid), options.rounds, progress)
+    now = _State(surface, laid)
+    problem = _Problem(surface, moves, cost, options.pressing / surface.size, options.bound, limit, now.gap)
+    best, outcome, figures = _rounds(problem, now, options.rounds, progress)
     own = families(surface, paths, revolutions)
     curves = np.array(best.paths.uv[np.arange(2 * paths) * per_gap])
     final = solve(best.surface, own.start, own.end, family=own.family, particles=particles, initial=curves)
@@ -153,36 +174,44 @@ def _rounds(
     problem: _Problem, now: _State, most: int, progress: Progress | None
 ) -> tuple[_State, Outcome, tuple[Round, ...]]:
     """Do up to so many rounds; returns the best state, the outcome, and the figures of the rounds."""
-    limit, best, idle, figures = problem.threshold, now, 0, list[Round]()
+    best, idle, total, short, figures = now, 0, True, False, list[Round]()
     outcome = Outcome.ROUNDS_SPENT
     for number in range(most):
-        if not lifted(now.paths, FIRM).any():
+        if now.bridged == 0.0:
             break
         if progress is not None:
             progress(f"round {number + 1}: {100 * now.bridged:.2g} % bridged, gap {now.gap:.3g}")
-        found = problem.step(now)
-        if found.shortfall > max(limit, FAR_SHORT * now.gap):
-            outcome = Outcome.OUT_OF_REACH
-            figures.append(problem.figures(now, now, found))
-            break
+        found = problem.step(now, total, short)
+        short = found.least > 0.0
         after = problem.after(now, found)
+        total = total and not problem.stalls(after.gap, now.gap)
         figures.append(problem.figures(now, after, found))
-        now = after
-        better = problem.merit(now) < problem.merit(best)
-        best, idle = (now, 0) if better else (best, idle + 1)
+        before, now = now, after
+        better = is_better((now.bridged, now.gap), (best.bridged, best.gap))
+        best, idle = (now, 0) if better else (best, idle + 1 if after is not before else MAX_IDLE_ROUNDS)
         outcome = _outcome(now, found, idle)
-        if outcome != Outcome.ROUNDS_SPENT and (outcome != Outcome.WINDABLE or not better):
+        if outcome != Outcome.ROUNDS_SPENT:
             break
     return best, Outcome.WINDABLE if best.bridged == 0.0 else outcome, tuple(figures)
 
 
-def lifted(paths: Paths, share: float = 1.0) -> Bools:
-    """Mask (p, n) of the particles that lie off the surface by more than this share of what counts as none."""
+def is_better(one: tuple[float, float], other: tuple[float, float]) -> bool:
+    """Whether one state is better than another, by their bridged shares and largest gaps."""
+    (bridged, gap), (bridged_before, gap_before) = one, other
+    if (bridged == 0.0) != (bridged_before == 0.0):
+        return bridged == 0.0
+    if abs(gap - gap_before) > SAME * gap_before:
+        return gap < gap_before
+    return bridged < bridged_before
+
+
+def lifted(paths: Paths) -> Bools:
+    """Mask (p, n) of the particles that lie off the surface by more than counts as none."""
     surface = paths.surface
     limit = tolerated(paths)
     if surface.threshold is None:
         limit = np.maximum(limit, LEAST_GAP * surface.size)
-    return np.asarray(paths.gap > share * limit)
+    return np.asarray(paths.gap > limit)
 
 
 def threshold_of(surface: Surface) -> float:
@@ -198,4 +227,6 @@ def _outcome(now: _State, found: Step, idle: int) -> Outcome:
         return Outcome.WINDABLE
     if max(found.solution.primal, found.solution.dual) > UNSOLVED:
         return Outcome.NOT_SOLVED
-    return Outcome.NO_GAIN if idle >= MAX_IDLE_ROUNDS else Outcome.ROUNDS_SPENT
+    if idle < MAX_IDLE_ROUNDS:
+        return Outcome.ROUNDS_SPENT
+    return Outcome.OUT_OF_REACH if found.least > 0.0 else Outcome.NO_GAIN

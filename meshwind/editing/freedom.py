@@ -1,4 +1,4 @@
-"""How the control net may move: frozen control points, rotational symmetry, and a bound on every move."""
+"""How the control net may move: frozen control points and rotational symmetry."""
 
 from collections.abc import Callable
 from typing import TypeAlias
@@ -75,22 +75,3 @@ def _cylindrical(points: Floats, surface: Surface) -> Floats:
     outward = from_axis / size
     along = np.broadcast_to(axis, outward.shape)
     return np.stack([outward, np.cross(along, outward), along], axis=1)
-
-
-def octahedra(moved: Floats, which: Ints, bound: float) -> tuple[sparse.csr_array, Floats]:
-    """Rows (8k, 3m) and upper bounds that keep control points `which` within octahedra in the ball of radius `bound`.
-
-    moved (m, 3) is the move of each without the bound: a tip of its octahedron lies in that direction, in which the
-    bound is then exact.  Unlike the ball, the octahedra are linear constraints.
-    """
-    tip = moved[which] / np.linalg.norm(moved[which], axis=1, keepdims=True)
-    away = np.eye(3)[np.argmin(np.abs(tip), axis=1)]
-    side = np.cross(tip, away)
-    side /= np.linalg.norm(side, axis=1, keepdims=True)
-    frame = np.stack([tip, side, np.cross(tip, side)], axis=1)
-    signs = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3, indexing="ij"), axis=-1).reshape(8, 3)
-    normal = np.einsum("sa,kad->ksd", signs, frame)
-    row = np.repeat(np.arange(8 * len(which)), 3)
-    column = np.broadcast_to(3 * which[:, None, None] + np.arange(3), normal.shape)
-    rows = sparse.csr_array((normal.ravel(), (row, column.ravel())), shape=(8 * len(which), moved.size))
-    return rows, np.full(8 * len(which), bound)

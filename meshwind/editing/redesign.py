@@ -8,7 +8,7 @@ from meshwind.core.cast import Floats
 from meshwind.core.cast import frozen as immutable
 from meshwind.core.defaults import PATHS
 from meshwind.core.errors import BadInputError
-from meshwind.editing.edit import Edit, edit
+from meshwind.editing.edit import Edit, edit, is_better
 from meshwind.editing.edited_mesh import displaced, displacement, turned_over, volume_change, within
 from meshwind.editing.freedom import Frozen
 from meshwind.editing.options import REVOLUTIONS, EditOptions
@@ -167,7 +167,7 @@ def redesign(  # noqa: PLR0913
     fairness : float, default 0.4
         Wave length, over the size of the part, at which bending a change costs as much as the change itself.  0 for
         the objective of (6.12) alone.
-    pressing : float, default 0.2
+    pressing : float, default 0.3
         Least normal curvature along the fibres, times the size of the part.
     threshold : float, optional
         Ignore gaps up to this, in the mesh's units.  By default the largest distance of a vertex from the fitted
@@ -248,7 +248,7 @@ class _Candidate:
 
     @property
     def merit(self) -> tuple[float, float]:
-        """Bridged share and largest gap, in this order: less is better."""
+        """Bridged share and largest gap."""
         return self.proof.bridged, self.proof.gap
 
 
@@ -302,8 +302,8 @@ def _edit_in_stages(run: _Run, first: _Candidate) -> tuple[_Candidate, tuple[tup
             outcome = Outcome.WALL_PIERCED
             break
         now = after
-        gains = now.merit < best.merit
-        best = min(now, best, key=lambda each: each.merit)
+        gains = is_better(now.merit, best.merit)
+        best = now if gains else best
         if not (gains and outcome == Outcome.WINDABLE and not now.proof.windable):
             break
         if len(stages) == STAGES or not (left and run.can_go_on(now.proof)):

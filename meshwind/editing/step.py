@@ -1,51 +1,49 @@
-"""One round of the redesign: the least change of the control net that meets the demands of the paths, (6.12).
+"""One round of the redesign: the least total change of the control net that meets the demands of the paths, (6.12).
 
-The inequalities are elastic: min dC^T (1 + f B) dC + |t|^2 / d subject to M dC + t >= b.  Paths lie closer together
-than control points, so that the rows of (6.10) nearly repeat each other; their multipliers are then not unique, unless
-the form is elastic.  A row is violated by one or two
-hundredths of the largest demand, which the margin compensates; without a solution a row is violated by much more.
+What is minimised is the energy of the change from the surface before all rounds, not of the step from the last one:
+iterated to rest, the rounds then end at a least change, and take back what an early round moved too far.
+
+Rows give way softly, at such a cost that they do only where they cannot be met.  Where a bound or what is frozen keeps
+the surface below a fibre, a second program finds the least largest shortfall of the rows of `reach`, and the first is
+solved again with no row shorter than that: what can be met is met, the rest as far as it goes.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import sparse
 
 from meshwind.core.cast import Bools, Floats
 from meshwind.editing.demands import Demands
-from meshwind.editing.freedom import octahedra
-from meshwind.editing.program import Solution, minimise
+from meshwind.editing.program import Balls, Program, Solution, minimise
 from meshwind.editing.stencil import bending
 from meshwind.surface.surface import Surface
 
-ELASTICITY = 3e-2
-"""d, with rows of length 1, change of order 1 and demands up to 1."""
-LEAST_FREE = (0.05, 0.5)
+SOFTNESS = 1e-5
+"""d of |t|^2 / d, the cost of falling short by t of a row of length 1, with changes and their cost of order 1.
+
+Neighbouring paths lie closer than control points, so that their rows nearly repeat each other.
+"""
+LEAST_FREE = (0.2, 0.5)
 """Least free share of the length of a row of `reach` and of `press`; others move what is frozen, and are left out."""
-MARGIN = 0.02
-"""Distance beyond the fibre over the largest gap: more than a row is violated."""
-MAX_SOLVES, MAX_BOUND_SOLVES = 3, 12
-"""Programs that are solved in a round for rows that were left unmet, and for control points beyond the bound."""
-BOUND_SHARE = 1 - 1e-4
-"""Share of the bound that the program is given, so that its error stays within the bound."""
-
-
-@dataclass(frozen=True)
-class Program:
-    """min x^T P x / 2 subject to low <= A x <= high; the first columns of x, times `unit`, are the moves."""
-
-    P: sparse.csc_array
-    A: sparse.csc_array
-    low: Floats
-    high: Floats
-    unit: float
+ROUGH = 0.02
+"""Of the largest gap: what the next round can see to, so that rows left out of a program may be missed by so much."""
+MAX_SOLVES = 12
+"""Programs of one kind that are solved in a round for rows left unmet."""
+SLIGHT = 1e-8
+"""Weight of the change's energy where the least shortfall is sought."""
+AGAIN = 1.003
+"""Of the least shortfall: what may be left when the change is sought; without some room its price has no limit."""
+FREE = np.inf
+"""Shortfall that may be left where none is limited."""
 
 
 @dataclass(frozen=True)
 class Step:
     """A change (m, 3) of the control points, and by how much it falls short of the fibre at most.
 
-    objective is the change's energy in the surface's units squared: dC^T dC of (6.12) plus its bending.
+    objective is the energy of the total change in the surface's units squared: dC^T dC of (6.12) plus its bending;
+    least: the least that the largest shortfall can be, 0 where all demands are met.
     """
 
     change: Floats
@@ -53,6 +51,7 @@ class Step:
     shortfall: float
     solution: Solution
     rows: int
+    least: float = 0.0
 
 
 def energy(surface: Surface, fairness: float) -> sparse.csr_array:
@@ -67,70 +66,159 @@ def energy(surface: Surface, fairness: float) -> sparse.csr_array:
     return sparse.csr_array(sparse.kron(total, sparse.eye_array(3)))
 
 
-def step(
-    reach: Demands, press: Demands, cost: sparse.csr_array, moves: sparse.csr_array, moved: Floats,
-    bound: float | None, margin: float,
-) -> Step:  # fmt: skip
-    """Solve (6.12) for the chosen demands, and again with those that are left unmet.
+@dataclass(frozen=True)
+class Limits:
+    """What a change may be.
 
-    cost (3m, 3m): from `energy`; moves (3m, r): span the allowed moves; moved (m, 3): displacements of the control
-    points so far; bound: largest total displacement; margin: least distance beyond the fibre.
+    moves (3m, r): span the allowed moves; moved (m, 3): displacements of the control points so far; bound (m,): largest
+    total displacement of each, infinite where there is none.
     """
-    margin = max(margin, MARGIN * float(reach.least.max(initial=0.0)))
-    bounded = np.zeros(len(moved), dtype=bool)
-    tips = moved
-    kept = reach.chosen.copy()
-    solves = 0
+
+    moves: sparse.csr_array
+    moved: Floats
+    bound: Floats
+
+    def balls(self, unit: float) -> Balls | None:
+        """The balls of the bounded control points that may move, by the moves over `unit`; None without any."""
+        free = np.diff(self.moves.indptr).reshape(-1, 3).any(axis=1)
+        which = np.flatnonzero(free & np.isfinite(self.bound))
+        if not len(which):
+            return None
+        rows = (3 * which[:, None] + np.arange(3)).ravel()
+        return Balls(self.moves[rows], self.moved[which].ravel() / unit, self.bound[which] / unit)
+
+
+@dataclass(frozen=True)
+class Demanded:
+    """What a round demands; cost (3m, 3m): from `energy`; margin: distance beyond the fibre for a row of length 1.
+
+    total: whether the total change is to be the least, or only that of the round.
+    """
+
+    reach: Demands
+    press: Demands
+    cost: sparse.csr_array
+    limits: Limits
+    margin: float
+    total: bool = True
+
+
+def step(demanded: Demanded, short: bool = False) -> Step:
+    """The change that a round makes; `short` says that the last round found demands that cannot all be met."""
+    rough = max(demanded.margin, ROUGH * float(demanded.reach.least.max(initial=0.0)))
+    if not demanded.total:
+        demanded = replace(demanded, margin=rough)
+    if not short:
+        found = _solved(demanded, FREE)
+        if found.shortfall <= rough:
+            return found
+    least = _solved(demanded, 0.0).shortfall
+    if short and least <= rough:
+        return _solved(demanded, FREE)
+    return replace(_solved(demanded, AGAIN * least), least=least)
+
+
+def _solved(demanded: Demanded, most: float) -> Step:
+    """The change with no row of `reach` further short than `most`; with 0, that with the least largest shortfall."""
+    reach, limits = demanded.reach, demanded.limits
+    rough = max(demanded.margin, ROUGH * float(reach.least.max(initial=0.0)))
+    kept, solves = reach.chosen | reach.short if most < FREE else reach.chosen.copy(), 0
     while True:
         solves += 1
-        limits = None if bound is None else octahedra(tips, np.flatnonzero(bounded), BOUND_SHARE * bound)
-        program = assembled(reach, press, kept, cost, moves, moved, limits, margin)
-        solution = minimise(program.P, program.A, program.low, program.high)
-        change = moves @ (solution.x[: moves.shape[1]] * program.unit)
+        rows = rows_of(demanded, kept)
+        solution = minimise(levelled(rows) if most == 0.0 else soft(rows, most))
+        change = limits.moves @ (solution.x[: limits.moves.shape[1]] * rows.unit)
         missed = reach.least - reach.matrix @ change
+        total = limits.moved.ravel() + change
         found = Step(
-            change.reshape(-1, 3), float(change @ (cost @ change)), max(0.0, float(missed.max(initial=0.0))),
-            solution, program.A.shape[0],
+            change.reshape(-1, 3), float(total @ (demanded.cost @ total)), max(0.0, float(missed.max(initial=0.0))),
+            solution, len(rows.least),
         )  # fmt: skip
-        more: Bools = (missed > 0) & ~kept
-        over = np.zeros_like(bounded)
-        if bound is not None:
-            total = moved + found.change
-            over = (np.linalg.norm(total, axis=1) > bound) & ~bounded
-            tips = np.where(over[:, None], total, tips)
-        if solves >= MAX_BOUND_SOLVES or not (over.any() or (more.any() and solves < MAX_SOLVES)):
+        largest = max(0.0, float(missed[kept].max(initial=0.0)))
+        more: Bools = (missed > largest + rough) & ~kept
+        if solves >= MAX_SOLVES or not more.any():
             return found
-        kept, bounded = kept | more, bounded | over
+        kept = kept | more
 
 
-def assembled(
-    reach: Demands, press: Demands, kept: Bools, cost: sparse.csr_array, moves: sparse.csr_array, moved: Floats,
-    limits: tuple[sparse.csr_array, Floats] | None, margin: float,
-) -> Program:  # fmt: skip
-    """The elastic program for the rows `kept` of reach and the chosen ones of press, in units of the largest demand."""
-    pressing = press.chosen & (press.least > -0.1 * float(press.least.max(initial=0.0)) - 10 * margin)
+@dataclass(frozen=True)
+class Rows:
+    """The rows of a program, scaled to length 1, and what is common to its forms.
+
+    free (k, r): by the moves; least (k,): what they must be at least, and beyond it (k,), over `unit`; reaching: number
+    of the rows of `reach`, which come first; length (k,): that they had; cost (r, r) and slope (r,): of the moves.
+    """
+
+    free: sparse.csr_array
+    least: Floats
+    beyond: Floats
+    reaching: int
+    length: Floats
+    cost: sparse.csr_array
+    slope: Floats
+    balls: Balls | None
+    unit: float
+
+
+def rows_of(demanded: Demanded, kept: Bools) -> Rows:
+    """The rows `kept` of reach and the chosen ones of press."""
+    reach, press, limits, margin = demanded.reach, demanded.press, demanded.limits, demanded.margin
+    moves, pressing = limits.moves, press.chosen
     rows = sparse.vstack([reach.matrix[kept], press.matrix[pressing]]).tocsr()
-    least = np.concatenate([reach.least[kept] + margin, press.least[pressing]])
+    least = np.concatenate([reach.least[kept], press.least[pressing]])
+    beyond = np.concatenate([np.full(int(kept.sum()), margin), np.zeros(int(pressing.sum()))])
     free = sparse.csr_array(rows @ moves)
     may_move = np.diff(moves.indptr) > 0  # symmetry shortens a row as well, but a shortened row can still be met
     length, free_length = _lengths(rows), _lengths(rows * may_move)
     first = int(kept.sum())
     usable = free_length > np.where(np.arange(len(length)) < first, *LEAST_FREE) * length
-    free, least, length = free[usable], least[usable] / length[usable], length[usable]
-    unit = float(np.abs(least).max(initial=margin))
-    count, size = free.shape
-    scale = sparse.diags_array(1.0 / length)
-    parts = [[scale @ free, np.sqrt(ELASTICITY) * sparse.eye_array(count)]]
-    low, high = [least / unit], [np.full(count, np.inf)]
-    if limits is not None:
-        parts.append([limits[0] @ moves, sparse.csr_array((len(limits[1]), count))])
-        high.append((limits[1] - limits[0] @ moved.ravel()) / unit)
-        low.append(np.full(len(limits[1]), -np.inf))
-    own_cost = moves.T @ cost @ moves
-    own_cost = own_cost / own_cost.diagonal().mean()
-    P = sparse.csc_array(sparse.block_diag([own_cost, sparse.eye_array(count)]))
-    A = sparse.csc_array(sparse.block_array(parts))
-    return Program(P, A, np.concatenate(low), np.concatenate(high), unit)
+    free, least, beyond, length = free[usable], least[usable], beyond[usable], length[usable]
+    unit = max(float(reach.least.max(initial=margin)), float(np.abs(limits.moved).max(initial=0.0)))
+    cost = moves.T @ demanded.cost @ moves
+    mean = float(cost.diagonal().mean())
+    slope = moves.T @ (demanded.cost @ limits.moved.ravel()) / (unit * mean) * demanded.total
+    return Rows(
+        sparse.diags_array(1.0 / length) @ free, least / length / unit, beyond / unit, int(usable[:first].sum()),
+        length, cost / mean, slope, limits.balls(unit), unit,
+    )  # fmt: skip
+
+
+def soft(rows: Rows, most: float = FREE) -> Program:
+    """The program of least change, its unknowns the moves and the t by which rows fall short.
+
+    With a limit, rows of reach may be short by up to `most`, and t counts there in lengths, not in rows of length 1:
+    near its ends a bridge has short rows, which would outweigh the others.
+    """
+    count, n, size = len(rows.least), rows.reaching, rows.cost.shape[0]
+    give = np.full(count, np.sqrt(SOFTNESS))
+    low, limits = rows.least + rows.beyond, sparse.csr_array((0, size + count))
+    if most < FREE:
+        give[:n] /= rows.length[:n]
+        limits = sparse.csr_array((-give[:n], (np.arange(n), size + np.arange(n))), shape=(n, size + count))
+        low = np.append(low, -(rows.beyond[:n] + most / rows.unit / rows.length[:n]))
+    A = sparse.vstack([sparse.hstack([rows.free, sparse.diags_array(give)]), limits])
+    P = sparse.block_diag([rows.cost, sparse.eye_array(count)])
+    q = np.append(rows.slope, np.zeros(count))
+    return Program(sparse.csc_array(P), q, sparse.csc_array(A), low, _padded(rows.balls, count))
+
+
+def levelled(rows: Rows) -> Program:
+    """That of the least largest shortfall, the last of its unknowns beside the moves."""
+    n = rows.reaching
+    P = sparse.block_diag([SLIGHT * rows.cost, sparse.eye_array(1)])
+    A = sparse.hstack([rows.free[:n], sparse.csr_array(1.0 / rows.length[:n, None])])
+    return Program(
+        sparse.csc_array(P), np.append(SLIGHT * rows.slope, 0.0), sparse.csc_array(A), rows.least[:n],
+        _padded(rows.balls, 1),
+    )  # fmt: skip
+
+
+def _padded(balls: Balls | None, more: int) -> Balls | None:
+    """Balls of a program with so many more unknowns."""
+    if balls is None:
+        return None
+    matrix = sparse.csr_array(sparse.hstack([balls.matrix, sparse.csr_array((balls.matrix.shape[0], more))]))
+    return Balls(matrix, balls.centre, balls.radius)
 
 
 def _lengths(rows: sparse.csr_array) -> Floats:
