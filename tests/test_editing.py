@@ -18,6 +18,7 @@ from meshwind.editing.options import EditOptions
 from meshwind.editing.program import ACCURACY, Balls, Program, certified, minimise
 from meshwind.editing.redesign import redesign
 from meshwind.editing.result import Outcome
+from meshwind.editing.stencil import weights
 from meshwind.editing.step import SOFTNESS, Demanded, Limits, energy, rows_of, soft
 from meshwind.mesh import mesh_from
 from meshwind.mesh.geometry.areas_and_volumes import volume
@@ -159,6 +160,7 @@ def test_frozen_control_points_do_not_move_and_impossible_demands_say_so() -> No
     assert (found.surface.control_points[mask] == surface.control_points[mask]).all()
     assert found.outcome is Outcome.OUT_OF_REACH and "less" in found.outcome.advice
     assert found.bridged > 0 and found.rounds[-1].shortfall > 0.3
+    assert all(each.held_by == ("frozen",) and each.by_bound == 0.0 for each in found.left)
     low = edit(surface, Options(8, 0.0, 61), EditOptions(rounds=1, frozen=lambda at: at[:, 2] < -1.6))
     below = surface.control_points[..., 2] < -1.6
     assert (low.surface.control_points[below] == surface.control_points[below]).all()
@@ -221,6 +223,11 @@ def test_within_a_bound_the_largest_gap_becomes_the_least(held: int) -> None:
     before, after = np.sqrt(1.81) - 1, float(found.paths.gap.max())
     assert before - after > 0.9 * bound
     assert after == pytest.approx(least_gap(found.surface, moved, held, bound), rel=0.01)
+    worst = found.left[0]
+    assert worst.gap == after and len(found.left) == 32 and worst.v == (0.0, 1.0)
+    assert worst.held_by == ("bound",) if held == 0 else set(worst.held_by) <= {"bound", "frozen"}
+    assert worst.by_bound == pytest.approx((before - after) / bound, rel=0.02)  # it is linear here
+    assert (worst.by_frozen == {}) if held == 0 else worst.by_frozen["frozen"] > 0.9  # the rims alone carry 1
 
 
 def least_profile(surface: Surface, pressing: float) -> float:
@@ -259,6 +266,50 @@ def test_a_round_waist_is_moved_no_more_than_needed(shape: tuple[float, float, f
     change = (found.surface.control_points - surface.control_points).ravel()
     spent = float(change @ (energy(surface, EditOptions.fairness) @ change))
     assert spent == pytest.approx(least_profile(surface, EditOptions.pressing), rel=0.05)
+
+
+def least_by_curvature(surface: Surface, count: int, pressing: float) -> float:
+    """The least energy by own programs, solved by PIQP to rest: the meridians' curvature on S_u x S_v, linearised."""
+    net, m = surface.control_points, surface.control_points.size // 3
+    cost, change = energy(surface, EditOptions.fairness), np.zeros(net.size)
+    for _ in range(6):
+        now = Surface(net + change.reshape(net.shape))
+        lines = straight(now, count).uv
+        once, twice = np.gradient(lines, axis=1), np.gradient(np.gradient(lines, axis=1), axis=1)
+        uv, tangent, bend = (each[:, 1:-1:2].reshape(-1, 2) for each in (lines, once, twice))
+        which, (u, v, uu, uv_, vv) = weights(now, uv, ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2)))
+        a, b = tangent.T[:, :, None]
+        first = a * u + b * v
+        second = a * a * uu + 2 * a * b * uv_ + b * b * vv + bend[:, :1] * u + bend[:, 1:] * v
+        at = now.control_points.reshape(-1, 3)[which]
+        s_u, s_v, t, tt = (np.einsum("kj,kjd->kd", w, at) for w in (u, v, first, second))
+        normal = np.cross(s_u, s_v)
+        area, speed = np.linalg.norm(normal, axis=1), np.linalg.norm(t, axis=1)
+        kappa = pressing / surface.size
+        value = -(tt * normal).sum(axis=1) - kappa * speed**2 * area
+        by_normal = -tt - (kappa * speed**2 / area)[:, None] * normal
+        part = (
+            second[:, :, None] * -normal[:, None] - first[:, :, None] * (2 * kappa * area[:, None] * t)[:, None]
+            + u[:, :, None] * np.cross(s_v, by_normal)[:, None] + v[:, :, None] * np.cross(by_normal, s_u)[:, None]
+        )  # fmt: skip
+        row, column = np.repeat(np.arange(len(uv)), part[0].size), 3 * which[:, :, None] + np.arange(3)
+        rows = sparse.csr_array((part.ravel(), (row, column.ravel())), (len(uv), 3 * m))
+        length = np.sqrt(rows.multiply(rows).sum(axis=1))
+        solver = piqp.SparseSolver()
+        G = sparse.csc_matrix(sparse.diags_array(1.0 / length) @ rows)
+        solver.setup(sparse.csc_matrix(cost), np.zeros(3 * m), G=G, h_l=(rows @ change - value) / length)
+        solver.solve()
+        change = np.array(solver.result.x)
+    return float(change @ (cost @ change))
+
+
+def test_a_waist_that_is_not_round_is_moved_no_more_than_needed() -> None:
+    surface = Surface(shapes.hyperboloid(1.0, 0.6, 1.5, (16, 16)).control_points * [1.3, 1.0, 1.0])
+    found = edit(surface, Options(16, 0.0, 61))
+    assert found.outcome is Outcome.WINDABLE
+    change = (found.surface.control_points - surface.control_points).ravel()
+    spent = float(change @ (energy(surface, EditOptions.fairness) @ change))
+    assert spent == pytest.approx(least_by_curvature(surface, 16, EditOptions.pressing), rel=0.05)
 
 
 @pytest.mark.parametrize("order", [4, 16])

@@ -6,7 +6,7 @@ from meshwind.appearance.words import quantity, ratio, size
 from meshwind.cli.layer_table import layer_table
 from meshwind.core.units import reported_unit
 from meshwind.results.pattern_types import AlternativeFigures, PatternFigures
-from meshwind.results.redesign_report_types import RedesignFigures, RedesignReport, RoundFigures
+from meshwind.results.redesign_report_types import LeftFigures, RedesignFigures, RedesignReport, RoundFigures
 from meshwind.results.report_types import Failure, PathsFigures, Report, StationFigures, SurfaceFigures
 
 
@@ -154,6 +154,7 @@ def redesign_lines(report: RedesignReport) -> list[str]:
         *_edited_part(report),
         *(_round(each, units) for each in report["rounds"]),
         *_edit(report["redesign"], units),
+        *_left(report["redesign"]["left"], units),
         *_warnings(report),
     ]
 
@@ -186,6 +187,23 @@ def _edit(figures: RedesignFigures, units: str) -> list[str]:
         f"moved     up to {quantity(moved['max'], units, 3)}, {quantity(moved['mean'], units, 3)} on average; "
         + (f"volume {100 * volume['relative']:+.2g} %" if volume["relative"] is not None else "volume unknown"),
     ]
+
+
+def _left(bridges: list[LeftFigures], units: str) -> list[str]:
+    """The bridges that are left, and what holds them."""
+    if not bridges:
+        return []
+    worst, names = bridges[0], dict.fromkeys(name for each in bridges for name in each["held_by"])
+    place = ", ".join(f"{x:.4g}" for x in worst["at"])
+    by = " and ".join(worst["held_by"]) or "neither a bound nor what is frozen"
+    lines = [
+        f"left      {len(bridges)} bridges; the largest, {quantity(worst['gap'], units, 3)} at ({place}), v "
+        f"{worst['v'][0]:.2f} to {worst['v'][1]:.2f}, is held by {by}"
+    ]
+    for name in names:
+        held = [each["gap"] for each in bridges if name in each["held_by"]]
+        lines.append(f"          {name} holds {len(held)} of them, gaps up to {quantity(max(held), units, 3)}")
+    return lines
 
 
 def _warnings(report: RedesignReport) -> list[str]:

@@ -69,12 +69,22 @@ def reach(paths: Paths) -> Demands:
     for before, after in BEYOND if chosen.any() else ():
         begin = _beyond(paths, run, some.path, first[chosen], -before)
         end = _beyond(paths, run, some.path, last[chosen], after)
-        demands.append(_above(paths, some, begin, end, None))
+        demands.append(_above(paths, some, begin, end))
     return Demands(
         sparse.csr_array(sparse.vstack([each.matrix for each in demands])),
         np.concatenate([each.least for each in demands]),
         np.concatenate([each.chosen for each in demands]),
         np.concatenate([each.short for each in demands]),
+    )
+
+
+def reach_at(paths: Paths, path: Ints, at: Ints) -> Demands:
+    """The demands of `reach` at lifted particles `at` (k,) of paths (k,) alone."""
+    first, last = (ends[path, at] for ends in _touching(paths))
+    chord = unit(paths.points[path, last] - paths.points[path, first])
+    uv = paths.uv[path, at]
+    return _above(
+        paths, _Below(path, uv, paths.points[path, at], _across(paths.surface.normals(uv), chord)), first, last
     )
 
 
@@ -92,7 +102,7 @@ class _Below:
         return _Below(self.path[which], self.uv[which], self.points[which], self.direction[which])
 
 
-def _above(paths: Paths, below: _Below, first: Ints, last: Ints, chosen: Bools | None) -> Demands:
+def _above(paths: Paths, below: _Below, first: Ints, last: Ints, chosen: Bools | None = None) -> Demands:
     """The surface must come up to the lines between particles `first` and `last` (k,); without `chosen`, if short."""
     surface = paths.surface
     begin, end = paths.points[below.path, first], paths.points[below.path, last]

@@ -1,5 +1,6 @@
 """The rounds of an edit on one surface: wind, move the control points, wind again (section 6.4)."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.editing.demands import press, reach
 from meshwind.editing.edited_mesh import within
 from meshwind.editing.freedom import free_moves, frozen_mask
+from meshwind.editing.left import Held, Left, bridges_left
 from meshwind.editing.options import EditOptions
 from meshwind.editing.program import ACCURACY
 from meshwind.editing.result import Outcome, Round
@@ -41,13 +43,14 @@ UNSOLVED = 1e3 * ACCURACY
 
 @dataclass(frozen=True)
 class Edit:
-    """An edited surface: the rounds' figures, the surface, the paths on it and how it ended."""
+    """An edited surface: the rounds' figures, the surface, the paths on it, how it ended, and the bridges it leaves."""
 
     rounds: tuple[Round, ...]
     surface: Surface
     paths: Paths
     outcome: Outcome
     threshold: float
+    left: tuple[Left, ...] = ()
 
     @property
     def bridged(self) -> float:
@@ -85,6 +88,11 @@ class _Problem:
     threshold: float
     gap: float
 
+    @property
+    def bounds(self) -> Floats:
+        """Largest displacement of each control point (m,)."""
+        return np.full(self.first.control_points.size // 3, np.inf if self.bound is None else self.bound)
+
     def stalls(self, gap: float, before: float) -> bool:
         """Whether the largest gap, after a round from `before`, is small but no longer falls fast."""
         return QUICK * before < gap <= LAST * self.gap
@@ -95,8 +103,7 @@ class _Problem:
 
     def step(self, now: _State, total: bool, short: bool) -> Step:
         """Solve for the change of the control points that the paths demand; total and short: as in `step`."""
-        moved = self.moved(now.surface)
-        limits = Limits(self.moves, moved, np.full(len(moved), np.inf if self.bound is None else self.bound))
+        limits = Limits(self.moves, self.moved(now.surface), self.bounds)
         demands = reach(now.paths), press(now.paths, self.curvature)
         return step(Demanded(*demands, self.cost, limits, self.threshold, total), short)
 
@@ -140,19 +147,24 @@ class _Problem:
 
 
 def edit(
-    surface: Surface, winding: Options, options: EditOptions | None = None, progress: Progress | None = None
+    surface: Surface,
+    winding: Options,
+    options: EditOptions | None = None,
+    progress: Progress | None = None,
+    frozen: Mapping[str, Bools] | None = None,
 ) -> Edit:
     """Move the control points as little as possible until no path of two families bridges.
 
     winding: numbers of paths, revolutions and particles.  Between these paths others are wound, no further apart than
     the control points, so that the result does not depend on where the first path starts.  progress: called with a
-    line before each round.
+    line before each round.  frozen: masks (nu, nv) of what is frozen, by names, for what is said of bridges left.
     """
     options = options or EditOptions()
     if options.threshold is not None:
         surface = replace(surface, threshold=options.threshold)
     limit = threshold_of(surface)
-    moves = free_moves(surface, frozen_mask(surface, options.frozen), options.symmetry)
+    mask = frozen_mask(surface, options.frozen)
+    moves = free_moves(surface, mask, options.symmetry)
     if moves.shape[1] == 0:
         raise BadInputError("every control point is frozen; leave some free to move")
     cost = energy(surface, options.fairness)
@@ -167,7 +179,15 @@ def edit(
     own = families(surface, paths, revolutions)
     curves = np.array(best.paths.uv[np.arange(2 * paths) * per_gap])
     final = solve(best.surface, own.start, own.end, family=own.family, particles=particles, initial=curves)
-    return Edit(figures, best.surface, final, outcome, limit)
+    held = Held(problem.moved(best.surface), problem.bounds, _named(mask, frozen))
+    return Edit(figures, best.surface, final, outcome, limit, bridges_left(final, lifted(final), held))
+
+
+def _named(mask: Bools, frozen: Mapping[str, Bools] | None) -> dict[str, Bools]:
+    """Masks (m,) of what is frozen, by names."""
+    if not mask.any():
+        return {}
+    return {name: each.ravel() for name, each in (frozen or {"frozen": mask}).items()}
 
 
 def _rounds(
@@ -192,6 +212,8 @@ def _rounds(
         outcome = _outcome(now, found, idle)
         if outcome != Outcome.ROUNDS_SPENT:
             break
+    if short and outcome == Outcome.ROUNDS_SPENT:
+        outcome = Outcome.OUT_OF_REACH
     return best, Outcome.WINDABLE if best.bridged == 0.0 else outcome, tuple(figures)
 
 

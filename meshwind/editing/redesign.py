@@ -11,6 +11,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.editing.edit import Edit, edit, is_better
 from meshwind.editing.edited_mesh import displaced, displacement, turned_over, volume_change, within
 from meshwind.editing.freedom import Frozen
+from meshwind.editing.left import Left
 from meshwind.editing.options import REVOLUTIONS, EditOptions
 from meshwind.editing.proof import Proof, prove, prove_fitted
 from meshwind.editing.region import FrozenPart, frozen_part
@@ -67,6 +68,8 @@ class Redesign:
         Change of the volume by the edit.
     turned_over : int
         Number of faces that the edit turned by more than a right angle, 0 in a sound one.
+    left : tuple of Left
+        The bridges that the edit leaves, from the largest, each with its gap, where it is, and what holds it.
 
     Examples
     --------
@@ -88,6 +91,7 @@ class Redesign:
     volume: float
     volume_change: float
     turned_over: int
+    left: tuple[Left, ...] = ()
 
     def __repr__(self) -> str:
         return f"<meshwind Redesign: {self.mesh.name}, {len(self.rounds)} rounds, {self.outcome.advice}>"
@@ -217,7 +221,8 @@ def redesign(  # noqa: PLR0913
         winding = replace(winding, revolutions=chosen.choice)
     first = prove_fitted(part, winding)
     run = _Run(source.mesh, winding, options, region, report, part.chart.annulus.wall)
-    best, stages, outcome = _edit_in_stages(run, _Candidate(np.zeros_like(source.mesh.vertices), first))
+    ended = _edit_in_stages(run, _Candidate(np.zeros_like(source.mesh.vertices), first))
+    best = ended.best
     vertices, faces = source.mesh.vertices, source.mesh.faces
     return Redesign(
         part=source.mesh,
@@ -225,13 +230,14 @@ def redesign(  # noqa: PLR0913
         displacement=immutable(best.moves),
         before=first,
         after=best.proof,
-        stages=stages,
-        outcome=outcome,
+        stages=ended.stages,
+        outcome=ended.outcome,
         revolutions=float(winding.turns),
         chosen=chosen,
         volume=volume(vertices, faces),
         volume_change=volume_change(source.mesh, best.moves),
         turned_over=turned_over(source.mesh, best.moves),
+        left=ended.left,
     )
 
 
@@ -271,7 +277,8 @@ class _Run:
         if number > 0:
             pressing, threshold = given.pressing * FIRMER**number, TIGHTER * now.proof.threshold
             options = replace(options, rounds=min(rounds, MORE_ROUNDS), pressing=pressing, threshold=threshold)
-        return edit(now.proof.surface, self.winding, options, self.progress)
+        surface = now.proof.surface
+        return edit(surface, self.winding, options, self.progress, self.frozen.named(surface, now.proof.chart.uv))
 
     def after(self, now: _Candidate, found: Edit) -> _Candidate | None:
         """Move the vertices as the surface was moved, then fit and wind the mesh; None where that pierces its wall."""
@@ -288,12 +295,22 @@ class _Run:
         return self.frozen.on_any_surface and around % self.options.symmetry == 0
 
 
-def _edit_in_stages(run: _Run, first: _Candidate) -> tuple[_Candidate, tuple[tuple[Round, ...], ...], Outcome]:
+@dataclass(frozen=True)
+class _Ended:
+    """What the stages came to, and the bridges left on the surface that was edited for the best candidate."""
+
+    best: _Candidate
+    stages: tuple[tuple[Round, ...], ...]
+    outcome: Outcome
+    left: tuple[Left, ...]
+
+
+def _edit_in_stages(run: _Run, first: _Candidate) -> _Ended:
     """Edit the fitted surface, and again the one that is fitted to the edited mesh while fibres leave that."""
     best = now = first
     left = run.options.rounds
     found = run.stage(now, 0, left)
-    stages, outcome = list[tuple[Round, ...]](), found.outcome
+    stages, outcome, bridges = list[tuple[Round, ...]](), found.outcome, found.left
     while found.rounds:
         stages.append(found.rounds)
         left -= len(found.rounds)
@@ -303,7 +320,7 @@ def _edit_in_stages(run: _Run, first: _Candidate) -> tuple[_Candidate, tuple[tup
             break
         now = after
         gains = is_better(now.merit, best.merit)
-        best = now if gains else best
+        best, bridges = (now, found.left) if gains else (best, bridges)
         if not (gains and outcome == Outcome.WINDABLE and not now.proof.windable):
             break
         if len(stages) == STAGES or not (left and run.can_go_on(now.proof)):
@@ -313,7 +330,7 @@ def _edit_in_stages(run: _Run, first: _Candidate) -> tuple[_Candidate, tuple[tup
         outcome = Outcome.WINDABLE
     elif outcome == Outcome.WINDABLE:
         outcome = Outcome.NOT_KEPT if left > 0 else Outcome.ROUNDS_SPENT
-    return best, tuple(stages), outcome
+    return _Ended(best, tuple(stages), outcome, () if best.proof.windable else bridges)
 
 
 def _bound_left(bound: float | None, moves: Floats) -> float | None:

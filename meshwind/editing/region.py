@@ -57,9 +57,7 @@ class Region:
         uv (n, 2): parameters of points that are looked at beside a lattice over the whole surface, such as the mesh's
         vertices.  Raises BadInputError where the region is empty.
         """
-        around, along = (SAMPLES_PER_SPAN * spans for spans in surface.spans)
-        u, v = np.meshgrid(np.arange(around) / around, np.linspace(0.0, 1.0, along + 1), indexing="ij")
-        samples = np.concatenate([np.stack([u.ravel(), v.ravel()], axis=1), uv])
+        samples = self._samples(surface, uv)
         inside = self._contains(samples, surface.points(samples), scalars)
         if not inside.any():
             raise BadInputError(f"freeze {self.text!r} contains no point of the part; {_ADVICE}")
@@ -67,6 +65,22 @@ class Region:
         mask = np.zeros(surface.control_points.shape[:2], dtype=bool)
         mask.reshape(-1)[which] = True
         return mask
+
+    @property
+    def parts(self) -> tuple["Region", ...]:
+        """A region of each range, and that of the field."""
+        terms = [term.strip() for term in self.text.split(",")]
+        return tuple(parse(term) for term in terms)
+
+    def touches(self, surface: Surface, uv: Floats, scalars: Scalars | None) -> bool:
+        """Whether a point of the part lies in it."""
+        samples = self._samples(surface, uv)
+        return bool(self._contains(samples, surface.points(samples), scalars).any())
+
+    def _samples(self, surface: Surface, uv: Floats) -> Floats:
+        around, along = (SAMPLES_PER_SPAN * spans for spans in surface.spans)
+        u, v = np.meshgrid(np.arange(around) / around, np.linspace(0.0, 1.0, along + 1), indexing="ij")
+        return np.concatenate([np.stack([u.ravel(), v.ravel()], axis=1), uv])
 
     def _contains(self, uv: Floats, points: Floats, scalars: Scalars | None) -> Bools:
         inside = np.zeros(len(uv), dtype=bool)
@@ -114,6 +128,16 @@ class FrozenPart:
     def on_skin(self, annulus: Annulus) -> "FrozenPart":
         """The same with the scalars of the skin that is wound, if the part has a wall."""
         return self if self.scalars is None else replace(self, scalars=on_wound_skin(self.scalars, annulus))
+
+    def named(self, surface: Surface, uv: Floats) -> dict[str, Bools] | None:
+        """Masks of control points by each range and field, as they were given; None where it is no region."""
+        if self.region is None:
+            return None
+        return {
+            each.text: each.control_points(surface, uv, self.scalars if each.field else None)
+            for each in self.region.parts
+            if each.touches(surface, uv, self.scalars if each.field else None)
+        }
 
     @property
     def on_any_surface(self) -> bool:

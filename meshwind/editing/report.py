@@ -6,11 +6,18 @@ from dataclasses import replace
 import numpy as np
 
 from meshwind.core.version import version
+from meshwind.editing.left import Left
 from meshwind.editing.proof import Proof
 from meshwind.editing.redesign import Redesign
 from meshwind.editing.result import Round
 from meshwind.path.paths import Status
-from meshwind.results.redesign_report_types import RedesignFigures, RedesignReport, RoundFigures, WoundFigures
+from meshwind.results.redesign_report_types import (
+    LeftFigures,
+    RedesignFigures,
+    RedesignReport,
+    RoundFigures,
+    WoundFigures,
+)
 from meshwind.results.report import failures, mesh_figures, plain
 
 
@@ -71,6 +78,20 @@ def _redesign(edited: Redesign) -> RedesignFigures:
             "relative": edited.volume_change / edited.volume if edited.volume else None,
         },
         "faces_turned_over": edited.turned_over,
+        "left": [_left(each) for each in edited.left],
+    }
+
+
+def _left(each: Left) -> LeftFigures:
+    return {
+        "path": each.path,
+        "family": each.family,
+        "v": list(each.v),
+        "gap": each.gap,
+        "at": list(each.at),
+        "held_by": list(each.held_by),
+        "by_bound": each.by_bound,
+        "by_frozen": dict(each.by_frozen),
     }
 
 

@@ -37,6 +37,23 @@ class VolumeFigures(TypedDict):
     relative: float | None
 
 
+class LeftFigures(TypedDict):
+    """A bridge that is left on the edited surface: its fibre, between which v, its largest gap and where that is.
+
+    by_bound: how much lower the gap would be, to first order, with a bound larger by 1; by_frozen: the same with what
+    is frozen moved by 1, by its name; held_by: those of them that matter.
+    """
+
+    path: int
+    family: int
+    v: list[float]
+    gap: float
+    at: list[float]
+    held_by: list[str]
+    by_bound: float
+    by_frozen: dict[str, float]
+
+
 class RedesignFigures(TypedDict):
     """Outcome of a redesign; bridged is the share of the particles whose gap is above the threshold."""
 
@@ -50,6 +67,7 @@ class RedesignFigures(TypedDict):
     displacement: DisplacementFigures
     volume: VolumeFigures
     faces_turned_over: int
+    left: list[LeftFigures]
 
 
 class RoundFigures(TypedDict):
