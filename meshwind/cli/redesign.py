@@ -86,7 +86,19 @@ def redesign(
             seconds={"redesign": perf_counter() - begin},
             options={"mesh": mesh, "out": target, "freeze": edit.frozen, "units": winding.units}
             | {"render": files.render}
-            | {name: getattr(edit, name) for name in ("bound", "symmetry", "threshold", "rounds")}
+            | {
+                name: getattr(edit, name)
+                for name in (
+                    "bound",
+                    "symmetry",
+                    "threshold",
+                    "at_most",
+                    "keep_volume",
+                    "only_outward",
+                    "only_inward",
+                    "rounds",
+                )
+            }
             | wound,
         )
     print_report([*redesign_lines(report), f"files     {target}"], {**report, "folder": str(target)}, printed)

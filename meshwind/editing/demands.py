@@ -42,8 +42,8 @@ class Demands:
     short: Bools
 
 
-def reach(paths: Paths) -> Demands:
-    """The surface must come up to every lifted particle, (6.9) to (6.11).
+def reach(paths: Paths, at_most: float = 0.0) -> Demands:
+    """The surface must come up to every lifted particle, (6.9) to (6.11), or as near as `at_most`.
 
     The fibre there is a straight line between two points where it touches, and moves as the surface does there: the
     row is the change of the surface below it less that of the line.  Where the surface sinks at such a point, the fibre
@@ -66,13 +66,13 @@ def reach(paths: Paths) -> Demands:
     below = _Below(path, uv, points, _across(surface.normals(uv), unit(chord)))
     some = below.some(chosen)
     demands = [_above(paths, below, first, last, chosen)]
-    for before, after in BEYOND if chosen.any() else ():
+    for before, after in BEYOND:
         begin = _beyond(paths, run, some.path, first[chosen], -before)
         end = _beyond(paths, run, some.path, last[chosen], after)
         demands.append(_above(paths, some, begin, end))
     return Demands(
         sparse.csr_array(sparse.vstack([each.matrix for each in demands])),
-        np.concatenate([each.least for each in demands]),
+        np.concatenate([each.least for each in demands]) - at_most,
         np.concatenate([each.chosen for each in demands]),
         np.concatenate([each.short for each in demands]),
     )
@@ -128,20 +128,22 @@ def _beyond(paths: Paths, run: Floats, path: Ints, at: Ints, by: float) -> Ints:
     return np.minimum(order[back], paths.gap.shape[1] - 1)
 
 
-def press(paths: Paths, curvature: float) -> Demands:
+def press(paths: Paths, curvature: float, at_most: float = 0.0) -> Demands:
     """The normal curvature along every path must be at least `curvature` (1 / length), times a span's length squared.
+
+    Below a bridge that may stay by `at_most` it may be that of an arc which sags by so much.
 
     The change of the second fundamental form is n . (D_tt - G^k D_k) for a change D of the surface, with the
     Christoffel symbols G of the fibre's direction t; the rows are in lengths, like those of `reach`.
     """
     surface = paths.surface
-    uv, chord = _pressed(paths)
+    uv, chord, less = _pressed(paths, at_most)
     frames = surface.frames(uv)
     normal = surface.normals(uv)
     a, b = _components(frames, chord)
     speed = np.linalg.norm(a[:, None] * frames[:, 1] + b[:, None] * frames[:, 2], axis=1)
     sound = speed > 1e-9 * np.linalg.norm(chord, axis=1)
-    uv, frames, normal = uv[sound], frames[sound], normal[sound]
+    uv, frames, normal, less = uv[sound], frames[sound], normal[sound], less[sound]
     a, b = a[sound] / speed[sound], b[sound] / speed[sound]
     turn = (a * a)[:, None] * frames[:, 3] + (2 * a * b)[:, None] * frames[:, 4] + (b * b)[:, None] * frames[:, 5]
     along_u, along_v = _components(frames, turn)
@@ -150,13 +152,13 @@ def press(paths: Paths, curvature: float) -> Demands:
     change -= along_u[:, None] * d_u + along_v[:, None] * d_v
     length = max(pitches(surface)) ** 2
     matrix = along(found, -length * change, normal, surface.control_points.size // 3)
-    least = length * (curvature + (turn * normal).sum(axis=1))
+    least = length * (np.where(less > 0.0, -less, curvature) + (turn * normal).sum(axis=1))
     every = np.ones(len(least), dtype=bool)
     return Demands(matrix, least, every, ~every)
 
 
-def _pressed(paths: Paths) -> tuple[Floats, Floats]:
-    """Parameters (k, 2) of the points where the fibres must press, and their chords there (k, 3).
+def _pressed(paths: Paths, at_most: float) -> tuple[Floats, Floats, Floats]:
+    """Parameters (k, 2) of the points where the fibres must press, their chords there (k, 3), and curvatures (k,) less.
 
     About one point per span along each path, and also between neighbours that are further apart than a span: from
     round to round paths move sideways there, and with another start one may pass between them.
@@ -170,7 +172,11 @@ def _pressed(paths: Paths) -> tuple[Floats, Floats]:
     chosen[:, [0, -1]] = False
     chord = np.zeros(points.shape)
     chord[:, 1:-1] = points[:, 2:] - points[:, :-2]
-    parameters, chords = [uv[chosen]], [chord[chosen]]
+    first, last = _touching(paths)
+    rows = np.arange(len(paths))[:, None]
+    bridge = np.linalg.norm(points[rows, last] - points[rows, first], axis=2)
+    less = 8.0 * at_most / np.where(paths.on_surface | (bridge == 0.0), np.inf, bridge) ** 2
+    parameters, chords, lesses = [uv[chosen]], [chord[chosen]], [less[chosen]]
     left = np.arange(len(paths))
     right, turns = _neighbours(paths)
     beside = uv[right] + turns[:, None, None] * [1.0, 0.0]
@@ -182,7 +188,8 @@ def _pressed(paths: Paths) -> tuple[Floats, Floats]:
         share = (part / np.maximum(pieces, 1))[here][:, None]
         parameters.append((1 - share) * uv[here] + share * beside[here])
         chords.append((1 - share) * chord[here] + share * chord[right][here])
-    return np.concatenate(parameters), np.concatenate(chords)
+        lesses.append(less[here])
+    return np.concatenate(parameters), np.concatenate(chords), np.concatenate(lesses)
 
 
 def _neighbours(paths: Paths) -> tuple[Ints, Floats]:

@@ -16,6 +16,7 @@ from meshwind.editing.left import Held, Left, bridges_left
 from meshwind.editing.options import EditOptions
 from meshwind.editing.program import ACCURACY
 from meshwind.editing.result import Outcome, Round
+from meshwind.editing.shape_rows import FINE, Kept, nothing, one_way, same_volume, volume_gain
 from meshwind.editing.step import Demanded, Limits, Step, energy, step
 from meshwind.path import Paths, solve
 from meshwind.path.lengths import tolerated
@@ -51,11 +52,12 @@ class Edit:
     outcome: Outcome
     threshold: float
     left: tuple[Left, ...] = ()
+    at_most: float = 0.0
 
     @property
     def bridged(self) -> float:
-        """Share of the paths' particles that lie off the surface by more than counts as none."""
-        return float(lifted(self.paths).mean())
+        """Share of the paths' particles that lie off the surface by more than counts as none, and than may stay."""
+        return float(lifted(self.paths, self.at_most).mean())
 
 
 @dataclass(frozen=True)
@@ -64,6 +66,7 @@ class _State:
 
     surface: Surface
     paths: Paths
+    at_most: float
 
     @property
     def gap(self) -> float:
@@ -73,7 +76,7 @@ class _State:
     @property
     def bridged(self) -> float:
         """Share of the particles that lie off the surface by more than counts as none."""
-        return float(lifted(self.paths).mean())
+        return float(lifted(self.paths, self.at_most).mean())
 
 
 @dataclass(frozen=True)
@@ -83,10 +86,30 @@ class _Problem:
     first: Surface
     moves: sparse.csr_array
     cost: sparse.csr_array
-    curvature: float
-    bound: float | None
+    options: EditOptions
     threshold: float
     gap: float
+
+    @property
+    def curvature(self) -> float:
+        """Least normal curvature along the fibres."""
+        return self.options.pressing / self.first.size
+
+    @property
+    def bound(self) -> float | None:
+        """Largest displacement."""
+        return self.options.bound
+
+    def kept(self, surface: Surface, moved: Floats) -> Kept:
+        """What every change keeps, on a surface whose control points have moved so far (m, 3)."""
+        options, rows = self.options, nothing(self.first)
+        if options.only_outward or options.only_inward:
+            rows = rows.and_(one_way(self.first, moved, options.only_inward))
+        return rows.and_(same_volume(self.first, surface)) if options.keep_volume else rows
+
+    def holds(self, state: _State) -> bool:
+        """Whether what is kept to first order only is kept indeed."""
+        return not self.options.keep_volume or abs(volume_gain(self.first, state.surface)) <= FINE
 
     @property
     def bounds(self) -> Floats:
@@ -103,8 +126,9 @@ class _Problem:
 
     def step(self, now: _State, total: bool, short: bool) -> Step:
         """Solve for the change of the control points that the paths demand; total and short: as in `step`."""
-        limits = Limits(self.moves, self.moved(now.surface), self.bounds)
-        demands = reach(now.paths), press(now.paths, self.curvature)
+        moved = self.moved(now.surface)
+        limits = Limits(self.moves, moved, self.bounds, self.kept(now.surface, moved))
+        demands = reach(now.paths, self.options.at_most), press(now.paths, self.curvature, self.options.at_most)
         return step(Demanded(*demands, self.cost, limits, self.threshold, total), short)
 
     def after(self, now: _State, found: Step) -> _State:
@@ -126,7 +150,7 @@ class _Problem:
         net = self.first.control_points
         surface, uv = replace(self.first, control_points=net + moves.reshape(net.shape)), np.array(now.paths.uv)
         laid = solve(surface, uv[:, 0], uv[:, -1], family=now.paths.family, particles=uv.shape[1], initial=uv)
-        return _State(surface, laid)
+        return _State(surface, laid, self.options.at_most)
 
     def figures(self, before: _State, after: _State, found: Step) -> Round:
         """The figures of a round."""
@@ -173,14 +197,15 @@ def edit(
     per_gap = -(-surface.control_points.shape[0] // paths)
     ends = families(surface, paths * per_gap, revolutions)
     laid = solve(surface, ends.start, ends.end, family=ends.family, particles=particles)
-    now = _State(surface, laid)
-    problem = _Problem(surface, moves, cost, options.pressing / surface.size, options.bound, limit, now.gap)
+    now = _State(surface, laid, options.at_most)
+    problem = _Problem(surface, moves, cost, options, limit, now.gap)
     best, outcome, figures = _rounds(problem, now, options.rounds, progress)
     own = families(surface, paths, revolutions)
     curves = np.array(best.paths.uv[np.arange(2 * paths) * per_gap])
     final = solve(best.surface, own.start, own.end, family=own.family, particles=particles, initial=curves)
     held = Held(problem.moved(best.surface), problem.bounds, _named(mask, frozen))
-    return Edit(figures, best.surface, final, outcome, limit, bridges_left(final, lifted(final), held))
+    left = bridges_left(final, lifted(final, options.at_most), held)
+    return Edit(figures, best.surface, final, outcome, limit, left, options.at_most)
 
 
 def _named(mask: Bools, frozen: Mapping[str, Bools] | None) -> dict[str, Bools]:
@@ -197,7 +222,7 @@ def _rounds(
     best, idle, total, short, figures = now, 0, True, False, list[Round]()
     outcome = Outcome.ROUNDS_SPENT
     for number in range(most):
-        if now.bridged == 0.0:
+        if now.bridged == 0.0 and problem.holds(now):
             break
         if progress is not None:
             progress(f"round {number + 1}: {100 * now.bridged:.2g} % bridged, gap {now.gap:.3g}")
@@ -207,9 +232,10 @@ def _rounds(
         total = total and not problem.stalls(after.gap, now.gap)
         figures.append(problem.figures(now, after, found))
         before, now = now, after
-        better = is_better((now.bridged, now.gap), (best.bridged, best.gap))
-        best, idle = (now, 0) if better else (best, idle + 1 if after is not before else MAX_IDLE_ROUNDS)
-        outcome = _outcome(now, found, idle)
+        holds = problem.holds(now)
+        better = holds and is_better((now.bridged, now.gap), (best.bridged, best.gap))
+        best, idle = (now, 0) if better else (best, idle + holds if after is not before else MAX_IDLE_ROUNDS)
+        outcome = _outcome(now.bridged == 0.0 and holds, found, idle)
         if outcome != Outcome.ROUNDS_SPENT:
             break
     if short and outcome == Outcome.ROUNDS_SPENT:
@@ -227,13 +253,13 @@ def is_better(one: tuple[float, float], other: tuple[float, float]) -> bool:
     return bridged < bridged_before
 
 
-def lifted(paths: Paths) -> Bools:
-    """Mask (p, n) of the particles that lie off the surface by more than counts as none."""
+def lifted(paths: Paths, at_most: float = 0.0) -> Bools:
+    """Mask (p, n) of the particles that lie off the surface by more than counts as none, and than may stay."""
     surface = paths.surface
     limit = tolerated(paths)
     if surface.threshold is None:
         limit = np.maximum(limit, LEAST_GAP * surface.size)
-    return np.asarray(paths.gap > limit)
+    return np.asarray(paths.gap > np.maximum(limit, at_most))
 
 
 def threshold_of(surface: Surface) -> float:
@@ -244,8 +270,8 @@ def threshold_of(surface: Surface) -> float:
     return max(doubt, LEAST_GAP * surface.size)
 
 
-def _outcome(now: _State, found: Step, idle: int) -> Outcome:
-    if now.bridged == 0.0:
+def _outcome(windable: bool, found: Step, idle: int) -> Outcome:
+    if windable:
         return Outcome.WINDABLE
     if max(found.solution.primal, found.solution.dual) > UNSOLVED:
         return Outcome.NOT_SOLVED

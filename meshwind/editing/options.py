@@ -24,7 +24,8 @@ class EditOptions:
     bound: largest displacement, None for any; frozen: what must not move (see `redesign`), as a mask (nu, nv) of
     control points or a function from their positions (m, 3) to a mask (m,) where a surface is edited by itself;
     symmetry: order of rotation about u that is kept; threshold: a gap up to this is none, None for the
-    surface's uncertainty; rounds: largest number of them; fairness: wave length over the part's size at which a change
+    surface's uncertainty; at_most: gap that may stay; keep_volume, only_outward, only_inward: what the change keeps, at
+    samples of the surface; rounds: largest number of them; fairness: wave length over the part's size at which a change
     of the net costs as much by its bending as by its size, 0 for (6.12) alone; pressing: least normal curvature along
     the fibres times the part's size.
     """
@@ -50,6 +51,13 @@ class EditOptions:
             "Ignore gaps smaller than this", EDIT, unit=IN_MESH_UNITS, otherwise="the surface's uncertainty"
         ),
     )
+    at_most: float = field(
+        default=0.0,
+        metadata=option("Largest gap that may stay, such as the thickness of the band", EDIT, unit=IN_MESH_UNITS),
+    )
+    keep_volume: bool = field(default=False, metadata=option("Keep the volume, to 1e-3 of it", EDIT))
+    only_outward: bool = field(default=False, metadata=option("Add material only", EDIT))
+    only_inward: bool = field(default=False, metadata=option("Take material away only", EDIT))
     rounds: int = field(default=10, metadata=option("Maximum number of rounds of editing and winding again", EDIT))
     fairness: float = 0.4
     pressing: float = 0.3
@@ -66,7 +74,9 @@ class EditOptions:
             value = getattr(self, name)
             if value is not None and not (isfinite(value) and value > 0):
                 raise BadInputError(f"{name} is {value}; give a length above 0, or none at all")
-        for name in ("fairness", "pressing"):
+        if self.only_outward and self.only_inward:
+            raise BadInputError("only_outward and only_inward leave nothing to move; give one of them")
+        for name in ("fairness", "pressing", "at_most"):
             value = getattr(self, name)
             if not (isfinite(value) and value >= 0):
                 raise BadInputError(f"{name} is {value}; give a number from 0 up")

@@ -23,6 +23,7 @@ class Proof:
     surface: Surface
     paths: Paths
     threshold: float
+    at_most: float = 0.0
 
     @property
     def counted(self) -> Bools:
@@ -36,8 +37,8 @@ class Proof:
 
     @property
     def bridged(self) -> float:
-        """Share of those paths' particles that lie off the surface by more than counts as none."""
-        return float(lifted(self.paths)[self.counted].mean())
+        """Share of those paths' particles that lie off the surface by more than counts as none, and than may stay."""
+        return float(lifted(self.paths, self.at_most)[self.counted].mean())
 
     @property
     def windable(self) -> bool:
@@ -45,13 +46,13 @@ class Proof:
         return self.bridged == 0.0
 
 
-def prove(mesh: Mesh, winding: Options, threshold: float | None) -> Proof:
-    """Fit and wind a mesh; threshold as in `redesign`."""
-    return prove_fitted(fit_part(Source(mesh), winding, Clock()).counting(threshold), winding)
+def prove(mesh: Mesh, winding: Options, threshold: float | None, at_most: float = 0.0) -> Proof:
+    """Fit and wind a mesh; threshold and at_most as in `redesign`."""
+    return prove_fitted(fit_part(Source(mesh), winding, Clock()).counting(threshold), winding, at_most)
 
 
-def prove_fitted(part: Part, winding: Options) -> Proof:
+def prove_fitted(part: Part, winding: Options, at_most: float = 0.0) -> Proof:
     """Wind a part that is fitted; the number of revolutions must be given."""
     surface = part.surface
     laid = lay(surface, winding, float(winding.turns))
-    return Proof(part.chart, surface, laid, threshold_of(surface))
+    return Proof(part.chart, surface, laid, threshold_of(surface), at_most)

@@ -8,36 +8,22 @@ from meshwind.core.cast import Floats
 from meshwind.core.cast import frozen as immutable
 from meshwind.core.defaults import PATHS
 from meshwind.core.errors import BadInputError
-from meshwind.editing.edit import Edit, edit, is_better
-from meshwind.editing.edited_mesh import displaced, displacement, turned_over, volume_change, within
+from meshwind.editing.edited_mesh import displaced, turned_over, volume_change
 from meshwind.editing.freedom import Frozen
 from meshwind.editing.left import Left
 from meshwind.editing.options import REVOLUTIONS, EditOptions
-from meshwind.editing.proof import Proof, prove, prove_fitted
-from meshwind.editing.region import FrozenPart, frozen_part
+from meshwind.editing.proof import Proof, prove_fitted
+from meshwind.editing.region import frozen_part
 from meshwind.editing.result import Outcome, Round
-from meshwind.editing.wall_left import wall_left
+from meshwind.editing.stages import Candidate, Run, edit_in_stages
 from meshwind.mesh import Mesh
 from meshwind.mesh.geometry.areas_and_volumes import volume
-from meshwind.mesh.geometry.mesh import Wall
 from meshwind.path import Paths, Status
 from meshwind.planning.revolutions import Revolutions
 from meshwind.workflow.clock import Clock, Progress
 from meshwind.workflow.options import Options
 from meshwind.workflow.part import MeshLike, fit_part, read_source
 from meshwind.workflow.winding import chosen_revolutions
-
-STAGES = 3
-"""Largest number of surfaces that are edited: the one fitted to an edited mesh is not quite the edited one, and fibres
-may bridge on it again."""
-FIRMER, TIGHTER, MORE_ROUNDS = 1.5, 0.1, 2
-"""Of each later stage: the factor of the pressing, the factor of the threshold, and the largest number of rounds.
-
-On the sample cast the refit lifts fibres by 0.003 mm, within its fit error; one such stage moves the part by 1.2 mm
-more, and no fibre leaves it.
-"""
-LEAST_LEFT = 0.02
-"""Of the bound: what a later stage may always move, as the sum is cut down to the bound afterwards."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -135,6 +121,10 @@ def redesign(  # noqa: PLR0913
     fairness: float = EditOptions.fairness,
     pressing: float = EditOptions.pressing,
     threshold: float | None = EditOptions.threshold,
+    at_most: float = EditOptions.at_most,
+    keep_volume: bool = EditOptions.keep_volume,
+    only_outward: bool = EditOptions.only_outward,
+    only_inward: bool = EditOptions.only_inward,
     component: int | None = Options.component,
     ends: str = Options.ends,
     opening: float | None = Options.opening,
@@ -176,6 +166,12 @@ def redesign(  # noqa: PLR0913
     threshold : float, optional
         Ignore gaps up to this, in the mesh's units.  By default the largest distance of a vertex from the fitted
         surface.
+    at_most : float, default 0
+        Gap that may stay, in the mesh's units, such as the thickness of the band.
+    keep_volume : bool, default False
+        Whether to keep the volume, to 1e-3 of it.
+    only_outward, only_inward : bool, default False
+        Whether to add material only, or to take it away only.
     component, ends, opening, side, opening_by, tolerance : optional
         As for `wind`.
     progress : callable, optional
@@ -203,7 +199,9 @@ def redesign(  # noqa: PLR0913
     >>> edited.outcome.advice
     'no fibre bridges any more'
     """
-    options = EditOptions(bound, frozen, symmetry, threshold, rounds, fairness, pressing)
+    options = EditOptions(
+        bound, frozen, symmetry, threshold, at_most, keep_volume, only_outward, only_inward, rounds, fairness, pressing
+    )
     winding = Options(
         paths, revolutions, particles, component=component, ends=ends, opening=opening, side=side,
         opening_by=opening_by, tolerance=tolerance,
@@ -219,9 +217,9 @@ def redesign(  # noqa: PLR0913
     chosen = chosen_revolutions(part.surface, winding, Clock(progress), further=False)
     if chosen is not None:
         winding = replace(winding, revolutions=chosen.choice)
-    first = prove_fitted(part, winding)
-    run = _Run(source.mesh, winding, options, region, report, part.chart.annulus.wall)
-    ended = _edit_in_stages(run, _Candidate(np.zeros_like(source.mesh.vertices), first))
+    first = prove_fitted(part, winding, at_most)
+    run = Run(source.mesh, winding, options, region, report, part.chart.annulus.wall)
+    ended = edit_in_stages(run, Candidate(np.zeros_like(source.mesh.vertices), first))
     best = ended.best
     vertices, faces = source.mesh.vertices, source.mesh.faces
     return Redesign(
@@ -243,98 +241,3 @@ def redesign(  # noqa: PLR0913
 
 def _ignore(_: str) -> None:
     """Report no progress."""
-
-
-@dataclass(frozen=True)
-class _Candidate:
-    """The mesh with its vertices moved by `moves` (n, 3), fitted and wound."""
-
-    moves: Floats
-    proof: Proof
-
-    @property
-    def merit(self) -> tuple[float, float]:
-        """Bridged share and largest gap."""
-        return self.proof.bridged, self.proof.gap
-
-
-@dataclass(frozen=True)
-class _Run:
-    """What is the same in all stages: the mesh, its winding, the options as given, what must not move, and the wall."""
-
-    mesh: Mesh
-    winding: Options
-    options: EditOptions
-    frozen: FrozenPart
-    progress: Progress
-    wall: Wall | None
-
-    def stage(self, now: _Candidate, number: int, rounds: int) -> Edit:
-        """Edit the surface of a candidate; each stage after the first is tighter than the one before."""
-        given = self.options
-        options = replace(given, rounds=rounds, frozen=self.frozen.on(now.proof.surface, now.proof.chart.uv),
-                          bound=_bound_left(given.bound, now.moves))  # fmt: skip
-        if number > 0:
-            pressing, threshold = given.pressing * FIRMER**number, TIGHTER * now.proof.threshold
-            options = replace(options, rounds=min(rounds, MORE_ROUNDS), pressing=pressing, threshold=threshold)
-        surface = now.proof.surface
-        return edit(surface, self.winding, options, self.progress, self.frozen.named(surface, now.proof.chart.uv))
-
-    def after(self, now: _Candidate, found: Edit) -> _Candidate | None:
-        """Move the vertices as the surface was moved, then fit and wind the mesh; None where that pierces its wall."""
-        self.progress("fit")
-        more = displacement(now.proof.chart, now.proof.surface, found.surface)
-        moves = within(now.moves + more, self.options.bound)
-        if self.wall is not None and wall_left(self.mesh, self.wall, moves).pierced:
-            return None
-        return _Candidate(moves, prove(displaced(self.mesh, moves), self.winding, self.options.threshold))
-
-    def can_go_on(self, proof: Proof) -> bool:
-        """Whether what must not move and the symmetry can be kept on the control net of another surface."""
-        around = proof.surface.control_points.shape[0]
-        return self.frozen.on_any_surface and around % self.options.symmetry == 0
-
-
-@dataclass(frozen=True)
-class _Ended:
-    """What the stages came to, and the bridges left on the surface that was edited for the best candidate."""
-
-    best: _Candidate
-    stages: tuple[tuple[Round, ...], ...]
-    outcome: Outcome
-    left: tuple[Left, ...]
-
-
-def _edit_in_stages(run: _Run, first: _Candidate) -> _Ended:
-    """Edit the fitted surface, and again the one that is fitted to the edited mesh while fibres leave that."""
-    best = now = first
-    left = run.options.rounds
-    found = run.stage(now, 0, left)
-    stages, outcome, bridges = list[tuple[Round, ...]](), found.outcome, found.left
-    while found.rounds:
-        stages.append(found.rounds)
-        left -= len(found.rounds)
-        after = run.after(now, found)
-        if after is None:
-            outcome = Outcome.WALL_PIERCED
-            break
-        now = after
-        gains = is_better(now.merit, best.merit)
-        best, bridges = (now, found.left) if gains else (best, bridges)
-        if not (gains and outcome == Outcome.WINDABLE and not now.proof.windable):
-            break
-        if len(stages) == STAGES or not (left and run.can_go_on(now.proof)):
-            break
-        found = run.stage(now, len(stages), left)
-    if best.proof.windable:
-        outcome = Outcome.WINDABLE
-    elif outcome == Outcome.WINDABLE:
-        outcome = Outcome.NOT_KEPT if left > 0 else Outcome.ROUNDS_SPENT
-    return _Ended(best, tuple(stages), outcome, () if best.proof.windable else bridges)
-
-
-def _bound_left(bound: float | None, moves: Floats) -> float | None:
-    """What is left of the bound after the moves (n, 3) so far."""
-    if bound is None:
-        return None
-    return max(bound - float(np.linalg.norm(moves, axis=1).max()), LEAST_LEFT * bound)

@@ -22,8 +22,8 @@ def weights(surface: Surface, uv: Floats, orders: tuple[Order, ...]) -> tuple[In
     in_u, in_v = (_derivatives(local[:, a] - first[:, a], int(spans[a])) for a in range(2))
     offset = np.arange(DEGREE + 1)
     rows, columns = (first[:, :1] + offset) % nu, first[:, 1:] + offset
-    which = (rows[:, :, None] * nv + columns[:, None, :]).reshape(len(uv), -1)
-    parts = [(in_u[a][:, :, None] * in_v[b][:, None, :]).reshape(len(uv), -1) for a, b in orders]
+    which = (rows[:, :, None] * nv + columns[:, None, :]).reshape(len(uv), (DEGREE + 1) ** 2)
+    parts = [(in_u[a][:, :, None] * in_v[b][:, None, :]).reshape(len(uv), (DEGREE + 1) ** 2) for a, b in orders]
     return which, parts
 
 

@@ -16,6 +16,7 @@ from scipy import sparse
 from meshwind.core.cast import Bools, Floats
 from meshwind.editing.demands import Demands
 from meshwind.editing.program import Balls, Program, Solution, minimise
+from meshwind.editing.shape_rows import Kept
 from meshwind.editing.stencil import bending
 from meshwind.surface.surface import Surface
 
@@ -71,12 +72,13 @@ class Limits:
     """What a change may be.
 
     moves (3m, r): span the allowed moves; moved (m, 3): displacements of the control points so far; bound (m,): largest
-    total displacement of each, infinite where there is none.
+    total displacement of each, infinite where there is none; kept: rows that every change keeps.
     """
 
     moves: sparse.csr_array
     moved: Floats
     bound: Floats
+    kept: Kept
 
     def balls(self, unit: float) -> Balls | None:
         """The balls of the bounded control points that may move, by the moves over `unit`; None without any."""
@@ -146,7 +148,8 @@ class Rows:
     """The rows of a program, scaled to length 1, and what is common to its forms.
 
     free (k, r): by the moves; least (k,): what they must be at least, and beyond it (k,), over `unit`; reaching: number
-    of the rows of `reach`, which come first; length (k,): that they had; cost (r, r) and slope (r,): of the moves.
+    of the rows of `reach`, which come first; length (k,): that they had; cost (r, r) and slope (r,): of the moves;
+    hard, hard_least: rows that do not give way.
     """
 
     free: sparse.csr_array
@@ -158,6 +161,8 @@ class Rows:
     slope: Floats
     balls: Balls | None
     unit: float
+    hard: sparse.csr_array
+    hard_least: Floats
 
 
 def rows_of(demanded: Demanded, kept: Bools) -> Rows:
@@ -179,8 +184,18 @@ def rows_of(demanded: Demanded, kept: Bools) -> Rows:
     slope = moves.T @ (demanded.cost @ limits.moved.ravel()) / (unit * mean) * demanded.total
     return Rows(
         sparse.diags_array(1.0 / length) @ free, least / length / unit, beyond / unit, int(usable[:first].sum()),
-        length, cost / mean, slope, limits.balls(unit), unit,
+        length, cost / mean, slope, limits.balls(unit), unit, *_hard(limits, unit),
     )  # fmt: skip
+
+
+def _hard(limits: Limits, unit: float) -> tuple[sparse.csr_array, Floats]:
+    """The rows that are kept, by the moves and scaled to length 1, and what they must be at least, over `unit`."""
+    free = sparse.csr_array(limits.kept.matrix @ limits.moves)
+    size = _lengths(free)
+    some = size > 0.0  # of what cannot move nothing is asked
+    return sparse.csr_array(sparse.diags_array(1.0 / size[some]) @ free[some]), limits.kept.least[some] / size[
+        some
+    ] / unit
 
 
 def soft(rows: Rows, most: float = FREE) -> Program:
@@ -196,7 +211,8 @@ def soft(rows: Rows, most: float = FREE) -> Program:
         give[:n] /= rows.length[:n]
         limits = sparse.csr_array((-give[:n], (np.arange(n), size + np.arange(n))), shape=(n, size + count))
         low = np.append(low, -(rows.beyond[:n] + most / rows.unit / rows.length[:n]))
-    A = sparse.vstack([sparse.hstack([rows.free, sparse.diags_array(give)]), limits])
+    A = sparse.vstack([sparse.hstack([rows.free, sparse.diags_array(give)]), limits, _padded_rows(rows.hard, count)])
+    low = np.append(low, rows.hard_least)
     P = sparse.block_diag([rows.cost, sparse.eye_array(count)])
     q = np.append(rows.slope, np.zeros(count))
     return Program(sparse.csc_array(P), q, sparse.csc_array(A), low, _padded(rows.balls, count))
@@ -207,18 +223,21 @@ def levelled(rows: Rows) -> Program:
     n = rows.reaching
     P = sparse.block_diag([SLIGHT * rows.cost, sparse.eye_array(1)])
     A = sparse.hstack([rows.free[:n], sparse.csr_array(1.0 / rows.length[:n, None])])
-    return Program(
-        sparse.csc_array(P), np.append(SLIGHT * rows.slope, 0.0), sparse.csc_array(A), rows.least[:n],
-        _padded(rows.balls, 1),
-    )  # fmt: skip
+    A, low = sparse.vstack([A, _padded_rows(rows.hard, 1)]), np.append(rows.least[:n], rows.hard_least)
+    q = np.append(SLIGHT * rows.slope, 0.0)
+    return Program(sparse.csc_array(P), q, sparse.csc_array(A), low, _padded(rows.balls, 1))
 
 
 def _padded(balls: Balls | None, more: int) -> Balls | None:
     """Balls of a program with so many more unknowns."""
     if balls is None:
         return None
-    matrix = sparse.csr_array(sparse.hstack([balls.matrix, sparse.csr_array((balls.matrix.shape[0], more))]))
-    return Balls(matrix, balls.centre, balls.radius)
+    return Balls(_padded_rows(balls.matrix, more), balls.centre, balls.radius)
+
+
+def _padded_rows(rows: sparse.csr_array, more: int) -> sparse.csr_array:
+    """Rows with so many more unknowns, which they do not hold."""
+    return sparse.csr_array(sparse.hstack([rows, sparse.csr_array((rows.shape[0], more))]))
 
 
 def _lengths(rows: sparse.csr_array) -> Floats:
