@@ -29,9 +29,11 @@ LEAST_GAP = 1e-6
 """Largest gap, over the part's size, that counts as none on any surface, unless a threshold is given."""
 SAME = 0.01
 """Share of the largest gap by which two states are alike in it: then that which bridges less is better."""
-LAST = 0.03
+LAST = 0.12
 """Of the largest gap before all rounds: below it a round that does not gain much is followed by ones that take nothing
 back, which would lift other fibres again."""
+FINISH = 1.5
+"""Factor of the pressing in those rounds, which leaves room for the refit's error."""
 QUICK = 0.1
 """Of the largest gap before a round: what a round leaves that gains much."""
 SHARES = (1.0, 0.5, 0.25, 0.1)
@@ -126,9 +128,9 @@ class _Problem:
 
     def step(self, now: _State, total: bool, short: bool) -> Step:
         """Solve for the change of the control points that the paths demand; total and short: as in `step`."""
-        moved = self.moved(now.surface)
+        moved, curvature = self.moved(now.surface), self.curvature * (1.0 if total else FINISH)
         limits = Limits(self.moves, moved, self.bounds, self.kept(now.surface, moved))
-        demands = reach(now.paths, self.options.at_most), press(now.paths, self.curvature, self.options.at_most)
+        demands = reach(now.paths, self.options.at_most), press(now.paths, curvature, self.options.at_most)
         return step(Demanded(*demands, self.cost, limits, self.threshold, total), short)
 
     def after(self, now: _State, found: Step) -> _State:

@@ -60,8 +60,8 @@ class EditOptions:
     only_inward: bool = field(default=False, metadata=option("Take material away only", EDIT))
     rounds: int = field(default=10, metadata=option("Maximum number of rounds of editing and winding again", EDIT))
     fairness: float = 0.4
-    pressing: float = 0.3
-    """A bow of 1/27 of a chord as long as the part.
+    pressing: float = 0.2
+    """A bow of 1/40 of a chord as long as the part.
 
     A refit of the edited mesh moves the surface by its fit error over waves of some spans; with this much the fibres
     of the sample parts lift off again by less than that error.

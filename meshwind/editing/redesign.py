@@ -161,7 +161,7 @@ def redesign(  # noqa: PLR0913
     fairness : float, default 0.4
         Wave length, over the size of the part, at which bending a change costs as much as the change itself.  0 for
         the objective of (6.12) alone.
-    pressing : float, default 0.3
+    pressing : float, default 0.2
         Least normal curvature along the fibres, times the size of the part.
     threshold : float, optional
         Ignore gaps up to this, in the mesh's units.  By default the largest distance of a vertex from the fitted

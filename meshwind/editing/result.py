@@ -44,7 +44,7 @@ class Round:
 
     threshold: a particle bridges where its gap is above this; bridged_before, bridged_after: share of the particles
     that bridge; gap_before, gap_after: largest gap, in the mesh's units; change: largest displacement of a control
-    point so far; objective: energy of this round's change, in the mesh's units squared; shortfall: how far the edit
+    point so far; objective: energy of the whole change, in the mesh's units squared; shortfall: how far the edit
     leaves the surface below the fibre where the fibre stays; primal, dual: KKT residuals of the scaled program; rows,
     iterations: its constraints, and the steps of its solver.
     """

@@ -109,7 +109,7 @@ def edit_in_stages(run: Run, first: Candidate) -> Ended:
         now = after
         gains = is_better(now.merit, best.merit)
         best, bridges = (now, found.left) if gains else (best, bridges)
-        if not (gains and outcome == Outcome.WINDABLE and not now.proof.windable):
+        if outcome != Outcome.WINDABLE or now.proof.windable:
             break
         if len(stages) == STAGES or not (left and run.can_go_on(now.proof)):
             break
