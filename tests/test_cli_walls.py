@@ -73,14 +73,14 @@ def test_check_describes_a_walled_part_and_refuses_a_large_handle(tmp_path: Path
     assert done.returncode == 2 and "genus 1" in done.stderr and "round at (" in done.stderr
 
 
-def waisted() -> Walled:
+def waisted(wall: float = 4.0, cut: float = 1.5) -> Walled:
     """A chamfered pipe with a waist, which fibres along it bridge."""
 
     def place(points: Floats) -> Floats:
         slim = 1.0 - 0.2 * np.sin(np.pi * points[:, 2] / 120.0) ** 2
         return points * np.column_stack([slim, slim, np.ones(len(points))])
 
-    return chamfered().moved(place)
+    return chamfered(wall=wall, cut=cut).moved(place)
 
 
 @pytest.fixture(scope="module")
@@ -128,8 +128,8 @@ def test_a_wall_that_becomes_thin_or_is_pierced_has_a_warning(edited: mw.Redesig
 
 
 def test_an_edit_that_would_pierce_the_wall_ends_with_advice() -> None:
-    """The inside is filled to straight lines from rim to rim, further than the wall is thick."""
-    part = waisted()
+    """The inside is filled to straight lines from rim to rim, by 3 mm in the middle and so through the wall."""
+    part = waisted(wall=2.0, cut=0.6)
     mesh = mesh_from(part.vertices, part.faces)
     edited = mw.redesign(mesh, revolutions=0.1, paths=4, particles=101, side="inner")
     assert not edited.windable and "through the other skin of its wall" in edited.outcome.advice
