@@ -216,3 +216,23 @@ def test_what_is_named_holds_on_any_part(bulge: float, wave: float, lobes: int, 
     if named.friction > 0.0:
         assert rest(solve(surface, rims.start, rims.end, particles=73, friction=named.friction))
     assert rest(lost) == (named.text == "")
+
+
+def test_a_search_finds_the_limit_of_two_readings() -> None:
+    """Paths hold up to 1 by the one and to 0.6 by the other: the number found is the largest with both, to 1 %."""
+
+    def held(number: float, paths: Ints) -> Bools:
+        return np.full(len(paths), number <= 1.0)
+
+    def held_by_the_other(number: float, paths: Ints) -> Bools:
+        return (paths != 5) | (number <= 0.6)
+
+    search = Search(held, Way(2.0, 0.05, 0.5), np.arange(8), 144, held_by_the_other)
+    assert 0.594 <= search.run() <= 0.6 and search.budget > 0
+
+
+def test_nobody_is_told_a_friction_that_is_next_to_none() -> None:
+    search = Search(
+        lambda number, paths: np.full(len(paths), number > 1e-8), Way(0.0, 1.0, 1.0, 1e-3), np.arange(8), 144
+    )
+    assert 5e-4 <= search.run() <= 1e-3 and search.budget > 0

@@ -18,6 +18,8 @@ from meshwind.surface.surface import Surface
 
 ROUGHEST = 1.0
 """Largest coefficient of friction that is looked at: fibres on a part rarely have more."""
+_SMOOTHEST = 1e-3
+"""Difference of coefficients of friction that nobody can tell."""
 _FEWEST = 1.0 / 64.0
 """Least share of the revolutions asked for that is looked at."""
 _BUDGET = 96, 6
@@ -137,7 +139,7 @@ class _Runs:
             return self._hold(replace(options, friction=friction), paths)
 
         if even:
-            return self._search(attempt, Way(largest, ROUGHEST, _FIRST[1]))
+            return self._search(attempt, Way(largest, ROUGHEST, _FIRST[1], _SMOOTHEST))
         most = Way(np.inf, 0.0, 0.0).rounded(ROUGHEST / largest) if largest > 0.0 else 0.0
         return self._search(attempt, Way(1.0, most, _FIRST[1])) if most > 1.0 else 0.0
 

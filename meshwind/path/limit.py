@@ -34,6 +34,8 @@ class Way:
     asked: float
     last: float
     first_step: float
+    least: float = 0.0
+    """Distance of numbers below which they are the same to whoever asks."""
 
     @property
     def down(self) -> bool:
@@ -78,6 +80,8 @@ class Search:
     also: Attempt | None = None
     together: bool = False
     failed: list[float] = field(default_factory=list)
+    lost: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    """Paths that did not hold by the other reading, the last ones first."""
 
     def run(self) -> float:
         """The number nearest to the one asked for that holds all paths; 0 where none was found.
@@ -94,7 +98,7 @@ class Search:
                     return 0.0
             else:
                 number = way.rounded(0.5 * (good + bad))
-                if abs(bad - good) <= CLOSE * good or number in (good, bad):
+                if abs(bad - good) <= max(CLOSE * good, way.least) or number in (good, bad):
                     number = self._beyond(good)
                     if number == 0.0:
                         if self._all_hold(good, self.order if self.together else self.order[_LOOKED_AT[0] :]):
@@ -113,7 +117,8 @@ class Search:
     def _beyond(self, good: float) -> float:
         """A number further on that holds the paths looked at, although one in between did not; 0 for none."""
         tried = self.way.beyond(good)
-        if not self.way.nearer(self.way.asked, tried) or not self._hold(tried, self.order[: _LOOKED_AT[0]]):
+        told = abs(tried - good) > self.way.least and self.way.nearer(self.way.asked, tried)
+        if not told or not self._hold(tried, self.order[: _LOOKED_AT[0]]):
             return 0.0
         number = self.way.rounded(tried)
         return number if self.way.nearer(number, good) and self._hold(number, self.order[: _LOOKED_AT[0]]) else 0.0
@@ -135,9 +140,13 @@ class Search:
         )
 
     def _hold(self, number: float, paths: Ints) -> bool:
-        """Whether the paths looked at hold: those that failed last first."""
+        """Whether the paths looked at hold: those lost by the other reading, those that failed last, then others."""
         first = _LOOKED_AT[1]
-        return self._try(number, paths[:first]) and self._try(number, paths[first:])
+        return (
+            self._try(number, self.lost[:first], self.also)
+            and self._try(number, paths[:first])
+            and self._try(number, paths[first:])
+        )
 
     def _try(self, number: float, paths: Ints, attempt: Attempt | None = None) -> bool:
         """Whether some paths hold; those that do not go to the front of the order."""
@@ -146,6 +155,9 @@ class Search:
         self.budget -= len(paths)
         lost = paths[~(attempt or self.attempt)(number, paths)]
         if len(lost):
-            self.order = np.concatenate([lost, self.order[~np.isin(self.order, lost)]])
             self.failed.append(number)
+            if attempt is not None and attempt is self.also:
+                self.lost = np.concatenate([lost, self.lost[~np.isin(self.lost, lost)]])
+            else:
+                self.order = np.concatenate([lost, self.order[~np.isin(self.order, lost)]])
         return not len(lost)
