@@ -54,7 +54,7 @@ class AxisWords:
     def placed(self, k: int, value: int) -> str:
         """The word of axis k that moves to a value, and not by an increment."""
         if self._machine.axes[k].modulo:
-            return self._in_turn(k, np.array([value]), np.array([0]))[0]
+            return self._in_turn(k, np.array([value]), np.array([value]))[0]  # from the mark, by its sign
         return self.counted(k, value - (self.count if self._machine.axes[k].moves == "mandrel" else 0))
 
     def counted(self, k: int, value: int) -> str:
