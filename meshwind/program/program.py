@@ -230,7 +230,7 @@ def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
         lowest = 0.0 if "shorter" in change else min(best.nearest, 0.0)
         left = sum(fault.kind == wanted for fault in another.faults)
         better = len(another.faults) < len(best.faults) and another.nearest >= lowest
-        better &= "shorter" not in change or smooth(another.blocks, _steps(work), _SMALL * work.diagonal)
+        better &= not other.shorter or smooth(another.blocks, _steps(work), _SMALL * work.diagonal)
         tried.append(f"{words}: {left} of {hits} blocks still meet the part; {'taken' if better else 'not taken'}")
         best, way = (another, other) if better else (best, way)
     blocks = replace(best.blocks, tension=frozen(np.where(best.blocks.kind == TRAVEL, 0.0, tension)))
