@@ -73,7 +73,7 @@ def test_killed_at_random_times_real_results_are_whole(tmp_path: Path) -> None:
             data = {name: content for name, content in files.items() if name != "report.json"}
             assert data in whole if "report.json" in files else any(within(data, held) for held in whole)
         assert not sight["then"] or "report.json" in sight["then"]
-    assert sum(sight["killed"] for sight in sights) > MOMENTS // 5  # more where nothing else runs
+    assert sum(sight["killed"] for sight in sights) > MOMENTS // 2
     assert len({json.dumps(sight["then"]) for sight in sights}) > 1
 
 
