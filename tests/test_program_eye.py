@@ -18,7 +18,7 @@ from meshwind.filament.ends import LayerPlan
 from meshwind.filament.filament import filaments_of
 from meshwind.mesh import mesh_from
 from meshwind.program.body import Body, body_round, to_radius
-from meshwind.program.eye import Spans, at_radius, axes, on_body, poses, taut
+from meshwind.program.eye import Solver, Spans, at_radius, axes, on_body, taut
 from meshwind.program.machine import Machine, read_machine
 from meshwind.program.mandrel import Mandrel, mandrel_of
 from meshwind.program.program import Work, program
@@ -198,14 +198,14 @@ def test_the_eye_stands_still_while_a_bridge_lands() -> None:
     assert not (on.motion == PIVOT).any()
     place = float(np.flatnonzero(on.motion == AIR)[0])
     body = Body(np.array([-60.0, 60.0]), np.array([40.0, 40.0]))
-    found = poses(on, axis_x(), on_body(body), np.array([place, place + 1.0]))
+    found = Solver(on, axis_x(), on_body(body))(np.array([place, place + 1.0]))
     lift, land = found.point
     assert [lift, land] == pytest.approx(np.stack([before.points[-1], after.points[0]]))
     assert found.span[0] - found.span[1] == pytest.approx(np.linalg.norm(land - lift), abs=1e-12)
     eyes = found.point + found.span[:, None] * found.tangent
     assert eyes[1] == pytest.approx(eyes[0], abs=1e-12)
     steps = Steps(radians(5.0), radians(10.0), radians(10.0), 3.0, 3.0, 20.0)
-    block = stepped(on, lambda at: poses(on, axis_x(), on_body(body), at), steps)
+    block = stepped(on, Solver(on, axis_x(), on_body(body)), steps)
     assert place + 1.0 in block.at
     assert not ((block.at >= place) & (block.at < place + 1.0)).any()
     # where the span may be at most 2 long up to there, the eye draws near, runs out along the bridge, and moves off
@@ -215,7 +215,7 @@ def test_the_eye_stands_still_while_a_bridge_lands() -> None:
         before_it = points @ ahead <= lift @ ahead
         return body.spans(points, rays), np.where(before_it & (points @ ahead > -5.0 + lift @ ahead), most, np.inf)
 
-    block = stepped(on, lambda at: poses(on, axis_x(), Spans(near), at), steps)
+    block = stepped(on, Solver(on, axis_x(), Spans(near)), steps)
     eyes = block.point + block.span[:, None] * block.tangent
     at = block.at
     assert (np.diff(block.span + block.laid) >= -1e-9).all()
@@ -232,7 +232,7 @@ def test_the_eye_stands_still_while_a_bridge_lands() -> None:
     # with a lift it keeps off the part past the point where the bridge lands, along the normal there
     height = 0.15
     places: Floats = np.concatenate([np.arange(place), place + np.linspace(0.0, 1.0, 401), [place + 2.0]])
-    lifted = poses(on, axis_x(), Spans(near, height), places)
+    lifted = Solver(on, axis_x(), Spans(near, height))(places)
     eyes = (lifted.point + lifted.span[:, None] * lifted.tangent)[int(place) : int(place) + 401]
     off = (eyes - eyes[0]) @ up
     assert off[[0, -1]] == pytest.approx(0.0, abs=1e-9)
@@ -284,7 +284,7 @@ def test_blocks_and_places_grow_with_the_circuits_alone() -> None:
 
         def solve(at: Floats, on: object = on, mandrel: Mandrel = mandrel, looked: list[int] = looked) -> object:
             looked.append(len(at))
-            return poses(on, mandrel, at_radius(80.0, 1e3), at)  # type: ignore[arg-type]
+            return Solver(on, mandrel, at_radius(80.0, 1e3))(at)  # type: ignore[arg-type]
 
         steps = Steps(radians(5.0), radians(10.0), radians(10.0), 10.0, 10.0, 10.0)
         counts.append((len(stepped(on, solve, steps)), sum(looked)))  # type: ignore[arg-type]

@@ -80,11 +80,6 @@ def at_radius(radius: float, longest: float) -> Spans:
     )
 
 
-def poses(track: Track, mandrel: Mandrel, spans: Spans, at: Floats) -> Poses:
-    """The eye at places (n,) of a track, growing; the fibre is never slack between them."""
-    return Solver(track, mandrel, spans)(at)
-
-
 @dataclass(frozen=True)
 class _Found:
     """What is found at a place (n,) of a track whatever the others are.
