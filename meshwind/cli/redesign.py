@@ -1,6 +1,6 @@
 """`meshwind redesign`: mesh in, the nearest mesh that can be wound out."""
 
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from pathlib import Path
 from time import perf_counter
 from typing import Annotated
@@ -86,19 +86,7 @@ def redesign(
             seconds={"redesign": perf_counter() - begin},
             options={"mesh": mesh, "out": target, "freeze": edit.frozen, "units": winding.units}
             | {"render": files.render}
-            | {
-                name: getattr(edit, name)
-                for name in (
-                    "bound",
-                    "symmetry",
-                    "threshold",
-                    "at_most",
-                    "keep_volume",
-                    "only_outward",
-                    "only_inward",
-                    "rounds",
-                )
-            }
+            | {each.name: getattr(edit, each.name) for each in fields(edit) if each.metadata and each.name != "frozen"}
             | wound,
         )
     print_report([*redesign_lines(report), f"files     {target}"], {**report, "folder": str(target)}, printed)
