@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
-Say = Callable[[str], None]
-"""Called with a few words as a task goes on."""
+Progress = Callable[[str], None]
+"""Called with a few words as a task goes on: a stage that starts, or how far it is, as "choose, 0.42 revolutions"."""
 
 
 def silent(words: str) -> None:

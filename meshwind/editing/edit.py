@@ -9,6 +9,7 @@ from scipy import sparse
 from meshwind.core.cast import Bools, Floats
 from meshwind.core.defaults import PATHS
 from meshwind.core.errors import BadInputError
+from meshwind.core.progress import Progress
 from meshwind.editing.demands import press, reach
 from meshwind.editing.edited_mesh import within
 from meshwind.editing.freedom import free_moves, frozen_mask
@@ -22,7 +23,6 @@ from meshwind.path import Paths, solve
 from meshwind.path.lengths import tolerated
 from meshwind.planning.families import families
 from meshwind.surface.surface import Surface
-from meshwind.workflow.clock import Progress
 from meshwind.workflow.options import Options
 
 LEAST_GAP = 1e-6

@@ -8,6 +8,7 @@ from meshwind.core.cast import Floats
 from meshwind.core.cast import frozen as immutable
 from meshwind.core.defaults import PATHS
 from meshwind.core.errors import BadInputError
+from meshwind.core.progress import Progress
 from meshwind.editing.edited_mesh import displaced, turned_over, volume_change
 from meshwind.editing.freedom import Frozen
 from meshwind.editing.left import Left
@@ -20,7 +21,7 @@ from meshwind.mesh import Mesh
 from meshwind.mesh.geometry.areas_and_volumes import volume
 from meshwind.path import Paths, Status
 from meshwind.planning.revolutions import Revolutions
-from meshwind.workflow.clock import Clock, Progress
+from meshwind.workflow.clock import Clock
 from meshwind.workflow.options import Options
 from meshwind.workflow.part import MeshLike, fit_part, read_source
 from meshwind.workflow.winding import chosen_revolutions

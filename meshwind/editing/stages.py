@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshwind.core.cast import Floats
+from meshwind.core.progress import Progress
 from meshwind.editing.edit import Edit, edit, is_better
 from meshwind.editing.edited_mesh import displaced, displacement, within
 from meshwind.editing.left import Left
@@ -15,7 +16,6 @@ from meshwind.editing.result import Outcome, Round
 from meshwind.editing.wall_left import wall_left
 from meshwind.mesh import Mesh
 from meshwind.mesh.geometry.mesh import Wall
-from meshwind.workflow.clock import Progress
 from meshwind.workflow.options import Options
 
 STAGES = 3

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints, frozen
-from meshwind.core.progress import Say, silent
+from meshwind.core.progress import Progress, silent
 from meshwind.filament.cap_turn import Cap, ends_with_caps, joined_on_caps, passes_on_caps
 from meshwind.filament.course import Course, Courses, Kind, Stretch, in_line
 from meshwind.filament.ends import CAP, LayerPlan, Pairs
@@ -67,7 +67,7 @@ class ClosedLayer:
         return float(sum(each.arc_length[-1] for each in self.filaments))
 
 
-def close_layer(surface: Surface, plan: LayerPlan, say: Say = silent) -> ClosedLayer:
+def close_layer(surface: Surface, plan: LayerPlan, say: Progress = silent) -> ClosedLayer:
     """Wind a layer as one closed filament.
 
     The revolutions are moved to R = (M/N - d_A - d_B) / 2, d_A and d_B being the dwells that the turnarounds need and M

@@ -7,7 +7,7 @@ import numpy as np
 from meshwind.core.cast import Bools
 from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
-from meshwind.core.progress import Say, silent
+from meshwind.core.progress import Progress, silent
 from meshwind.filament.ends import ROOM, End, LayerPlan, choose_end
 from meshwind.filament.pattern import nearest_pattern, patterns
 from meshwind.filament.stations import median_angle
@@ -63,7 +63,7 @@ class Settled:
         return self.revolutions >= 0.0 and abs(self.revolutions - self.plan.revolutions) <= _FAR / self.plan.paths
 
 
-def lay(surface: Surface, plan: LayerPlan, say: Say = silent) -> tuple[Settled, Paths, int]:
+def lay(surface: Surface, plan: LayerPlan, say: Progress = silent) -> tuple[Settled, Paths, int]:
     """What was settled on, all paths of a layer in equilibrium, as many of each family, and how many are left out.
 
     Where some of the paths come to rest in one place or another, a few tell the angle of all badly: if it is not met
@@ -86,7 +86,7 @@ def _laid(surface: Surface, settled: Settled) -> tuple[Paths, int]:
     return _some(_solved(surface, plan, plan.paths, settled.revolutions, -settled.dwells[0]))
 
 
-def settle(surface: Surface, plan: LayerPlan, angled: int | None = _ANGLED, say: Say = silent) -> Settled:
+def settle(surface: Surface, plan: LayerPlan, angled: int | None = _ANGLED, say: Progress = silent) -> Settled:
     """The pattern next to what was asked for, with dwells that are long enough at the revolutions that it leaves.
 
     Where that does not exist, or not within the angle that was asked for, the revolutions stay as they are, or as the
@@ -165,7 +165,7 @@ def _at_angle(
     settled: Settled,
     needed: tuple[float, float],
     scouts: tuple[int, int | None],
-    say: Say,
+    say: Progress,
 ) -> Settled:
     """The pattern with the revolutions that the angle takes, with its circuits, where these are.
 

@@ -8,7 +8,7 @@ import numpy as np
 from meshwind.core.cast import Floats
 from meshwind.core.defaults import PARTICLES, STEPS_PER_TURN
 from meshwind.core.errors import BadInputError
-from meshwind.core.progress import Say, silent
+from meshwind.core.progress import Progress, silent
 from meshwind.path.friction import Friction
 from meshwind.path.limit import Way
 from meshwind.path.solve import check_count
@@ -95,7 +95,7 @@ def choose_revolutions(
     friction: float | Friction = 0.0,
     most: float | None = None,
     further: bool = True,
-    say: Say = silent,
+    say: Progress = silent,
 ) -> Revolutions:
     """Choose the number of revolutions.
 

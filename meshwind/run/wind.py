@@ -2,13 +2,14 @@
 
 from os import PathLike, fspath
 
+from meshwind.core.progress import Progress
 from meshwind.mesh import check_file
 from meshwind.pictures import driver
 from meshwind.planning.pins import check_pins
 from meshwind.results import folder
 from meshwind.run.result import Result, write_result
 from meshwind.workflow.band_plan import check_band
-from meshwind.workflow.clock import Clock, Progress
+from meshwind.workflow.clock import Clock
 from meshwind.workflow.layer_plans import read_layers
 from meshwind.workflow.options import Options
 from meshwind.workflow.part import MeshLike, fit_part, read_source

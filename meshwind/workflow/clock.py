@@ -1,11 +1,11 @@
 """Progress and wall time of the stages of a run."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from time import perf_counter
 
-Progress = Callable[[str], None]
-"""Called with the name of a stage as it starts, and as it goes on: "choose, 0.42 revolutions"."""
+from meshwind.core.progress import Progress
+
 _EVERY = 2.0
 """Seconds between two of these at least."""
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from meshwind.core.cast import Bools
 from meshwind.core.errors import BadInputError
-from meshwind.core.progress import Say, silent
+from meshwind.core.progress import Progress, silent
 from meshwind.filament.ends import Wish
 from meshwind.filament.levels import Levels, station
 from meshwind.filament.settling import SCOUTS_PER_TURN
@@ -117,7 +117,7 @@ class Helices:
     friction: float | Friction
     lines: Levels
     paths: int = _COUNTED_PATHS
-    say: Say = silent
+    say: Progress = silent
 
     def laid(self, paths: int, revolutions: float, particles: int | None) -> Paths:
         """Lay both families."""

@@ -11,7 +11,7 @@ import numpy as np
 from meshwind.appearance.words import quantity
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import AUTO
-from meshwind.core.progress import Say, silent
+from meshwind.core.progress import Progress, silent
 from meshwind.filament.closing import close_layer
 from meshwind.filament.ends import LayerPlan as ClosingPlan
 from meshwind.filament.hoop import HoopPlan, hoop
@@ -43,7 +43,7 @@ class Layered:
 
 
 def lay_layers(
-    surface: Surface, asked: LayersFile, options: Options, units: str, say: Say = silent
+    surface: Surface, asked: LayersFile, options: Options, units: str, say: Progress = silent
 ) -> tuple[Layered, tuple[Note, ...]]:
     """Wind layers on a surface, each on the one below, with notes on what does not hold.
 
@@ -68,8 +68,8 @@ def lay_layers(
     return Layered(Laminate(tuple(layers)), asked.file, options, first), tuple(dict.fromkeys(notes))
 
 
-def _say_of(say: Say, layer: str, words: str) -> None:
-    """Say something of a layer."""
+def _say_of(say: Progress, layer: str, words: str) -> None:
+    """Progress something of a layer."""
     say(f"{layer}, {words}")
 
 
@@ -125,7 +125,7 @@ class _Below:
         return cls(last.raised.surface, None if last.strand is None else last.strand.tail)
 
 
-def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options, say: Say) -> tuple[LaidLayer, Settled | None]:
+def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options, say: Progress) -> tuple[LaidLayer, Settled | None]:
     """Wind one layer on a surface; with what was settled on for it, if it is helical."""
     surface = below.surface
     lines = levels(surface)

@@ -9,7 +9,7 @@ import numpy as np
 from meshwind.chart import Chart
 from meshwind.core.defaults import PATHS
 from meshwind.core.parsing import AUTO
-from meshwind.core.progress import Say
+from meshwind.core.progress import Progress
 from meshwind.filament.closing import ClosedLayer, close_layer
 from meshwind.filament.ends import LayerPlan
 from meshwind.filament.filament import Filament, filament_of_layers, filaments_of
@@ -142,7 +142,7 @@ def _wound(
     options: Options,
     revolutions: float,
     friction: float | Friction,
-    close: tuple[LayerPlan | None, Say],
+    close: tuple[LayerPlan | None, Progress],
     paths: int,
 ) -> Laid:
     """So many paths a family, as one filament if they are to close, and then a few more where the plan lets them."""
@@ -163,7 +163,7 @@ def lay(surface: Surface, options: Options, revolutions: float, friction: float 
 
 
 def _planned(
-    surface: Surface, options: Options, revolutions: float, friction: float | Friction, say: Say
+    surface: Surface, options: Options, revolutions: float, friction: float | Friction, say: Progress
 ) -> tuple[Options, Turned | None, tuple[Note, ...]]:
     """The options with the revolutions of their angle, if any, and with as many paths as cover the part."""
     helices = Helices(surface, (0.0, 1.0), friction, levels(surface), say=say)
