@@ -1,5 +1,6 @@
 """Automatic surface editing: the program's certificate, what may not move, and parts that wind after it."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ from meshwind.editing.edit import edit
 from meshwind.editing.edited_mesh import displacement, within
 from meshwind.editing.freedom import free_moves, frozen_mask
 from meshwind.editing.options import EditOptions
-from meshwind.editing.program import ACCURACY, Balls, Program, certified, minimise
+from meshwind.editing.program import ACCURACY, FEW, Balls, Program, certified, minimise
 from meshwind.editing.redesign import redesign
 from meshwind.editing.result import Outcome
 from meshwind.editing.shape_rows import nothing
@@ -57,9 +58,13 @@ def by_piqp(program: Program) -> float:
     return float(solver.result.info.primal_obj)
 
 
-def test_clarabel_and_piqp_agree_and_the_certificate_holds() -> None:
+@pytest.mark.parametrize("violated", [1.0, 0.03])
+def test_clarabel_and_piqp_agree_and_the_certificate_holds(violated: float) -> None:
     program = real_program(hyperboloid())
+    slack = 0.0 if violated == 1.0 else float(np.quantile(program.low, 1.0 - violated))
+    program = replace(program, low=program.low - slack)
     found = minimise(program)
+    assert violated == 1.0 or (program.low > 0.0).mean() < FEW
     assert program.A.shape[0] > 100
     assert found.primal <= ACCURACY and found.dual <= ACCURACY
     assert found.objective == pytest.approx(by_piqp(program), rel=1e-5)
