@@ -18,6 +18,7 @@ from meshwind.editing.program import ACCURACY, FEW, Balls, Program, certified, m
 from meshwind.editing.redesign import redesign
 from meshwind.editing.result import Outcome
 from meshwind.editing.shape_rows import nothing
+from meshwind.editing.stencil import pitches
 from meshwind.editing.step import SOFTNESS, Demanded, Limits, energy, rows_of, soft
 from meshwind.mesh import mesh_from
 from meshwind.mesh.geometry.areas_and_volumes import volume
@@ -137,6 +138,17 @@ def test_a_row_of_press_is_the_derivative_of_the_normal_curvature() -> None:
     predicted = demanded.least - demanded.matrix @ change.ravel()
     assert press(again, 0.0).least == pytest.approx(predicted, rel=2e-3, abs=2e-6)
     assert np.abs(predicted - demanded.least).max() > 1e-5
+
+
+def test_at_the_rims_the_fibres_must_press_more_and_a_thinned_program_has_fewer_rows() -> None:
+    surface = hyperboloid()
+    laid, curvature = straight(surface), 0.2 / surface.size
+    plain, firm = press(laid, curvature), press(laid, curvature, rim=3.0)
+    more = (firm.least - plain.least) / (2.0 * curvature * max(pitches(surface)) ** 2)
+    assert set(np.round(more, 9)) == {0.0, 1.0}
+    assert more.mean() == pytest.approx(2.0 / surface.spans[1], abs=1.0 / surface.spans[1])  # of fibres rim to rim
+    thin = firm.thinned(4)
+    assert abs(thin.chosen.sum() - firm.chosen.sum() / 4) < 1 and not (thin.chosen & ~firm.chosen).any()
 
 
 def test_a_hyperboloid_becomes_a_barrel_that_the_fibres_press() -> None:

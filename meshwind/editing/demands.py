@@ -9,7 +9,7 @@ again.  Each particle therefore also demands a little normal curvature along the
 points as well; then the rounds converge like Newton's method.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import sparse
@@ -40,6 +40,12 @@ class Demands:
     least: Floats
     chosen: Bools
     short: Bools
+
+    def thinned(self, by: int) -> "Demands":
+        """The same with only every so many-th of the chosen ones chosen."""
+        few = np.zeros_like(self.chosen)
+        few[np.flatnonzero(self.chosen)[::by]] = True
+        return replace(self, chosen=few)
 
 
 def reach(paths: Paths, at_most: float = 0.0) -> Demands:
@@ -128,10 +134,11 @@ def _beyond(paths: Paths, run: Floats, path: Ints, at: Ints, by: float) -> Ints:
     return np.minimum(order[back], paths.gap.shape[1] - 1)
 
 
-def press(paths: Paths, curvature: float, at_most: float = 0.0) -> Demands:
+def press(paths: Paths, curvature: float, at_most: float = 0.0, rim: float = 1.0) -> Demands:
     """The normal curvature along every path must be at least `curvature` (1 / length), times a span's length squared.
 
-    Below a bridge that may stay by `at_most` it may be that of an arc which sags by so much.
+    Below a bridge that may stay by `at_most` it may be that of an arc which sags by so much.  Within a span of a rim it
+    must be `rim` times as much.
 
     The change of the second fundamental form is n . (D_tt - G^k D_k) for a change D of the surface, with the
     Christoffel symbols G of the fibre's direction t; the rows are in lengths, like those of `reach`.
@@ -152,7 +159,9 @@ def press(paths: Paths, curvature: float, at_most: float = 0.0) -> Demands:
     change -= along_u[:, None] * d_u + along_v[:, None] * d_v
     length = max(pitches(surface)) ** 2
     matrix = along(found, -length * change, normal, surface.control_points.size // 3)
-    least = length * (np.where(less > 0.0, -less, curvature) + (turn * normal).sum(axis=1))
+    from_rim = np.minimum(uv[:, 1], 1.0 - uv[:, 1]) * surface.spans[1]
+    firm = np.where(from_rim < 1.0, rim, 1.0) * curvature
+    least = length * (np.where(less > 0.0, -less, firm) + (turn * normal).sum(axis=1))
     every = np.ones(len(least), dtype=bool)
     return Demands(matrix, least, every, ~every)
 
