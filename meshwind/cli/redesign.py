@@ -14,7 +14,7 @@ from meshwind.cli.signature import Pick, with_records
 from meshwind.cli.summary import redesign_lines
 from meshwind.cli.wind import NOT_CONVERGED, command_line
 from meshwind.core.option import Option
-from meshwind.editing.options import REVOLUTIONS, EditOptions
+from meshwind.editing.options import EditOptions, WindingOptions
 from meshwind.workflow.options import FIBRES, Options
 
 EXAMPLES = """
@@ -24,18 +24,22 @@ EXAMPLES = """
     # at most 5 mm away, and the rims stay as they are
     meshwind redesign part.stl --revolutions 0.3 --bound 5 --freeze "v<0.05, v>0.95"
 
+    # one part for two windings, or for all layers of a laminate
+    meshwind redesign part.stl --revolutions 0.3,0.8
+    meshwind redesign part.stl --layers laminate.toml
+
     # keep a part of four arms the same on each
     meshwind redesign part.stl --symmetry 4 --out four-arms
 """
 WINDING = (
-    "paths", "revolutions", "particles", "tolerance", "component", "ends", "opening", "side", "opening_by",
+    "paths", "particles", "tolerance", "component", "ends", "opening", "side", "opening_by",
 )  # fmt: skip
 """Options of the winding that a redesign takes, in the order of meshwind.toml."""
-WindingOptions = Annotated[
+RunOptions = Annotated[
     Options,
     Pick(
         (*WINDING, "units"),
-        {"revolutions": REVOLUTIONS},
+        {},
         {"particles": Option("Number of particles per path", FIBRES)},
     ),
 ]
@@ -45,7 +49,8 @@ WindingOptions = Annotated[
 def redesign(
     *,
     mesh: MeshFile,
-    winding: WindingOptions,
+    winding: RunOptions,
+    windings: WindingOptions,
     edit: EditOptions,
     out: Annotated[
         str | None,
@@ -72,7 +77,7 @@ def redesign(
     check_file(mesh)
     folder.prepare(target, files.overwrite)
     begin = perf_counter()
-    wound = {name: getattr(winding, name) for name in WINDING}
+    wound = {name: getattr(winding, name) for name in WINDING} | asdict(windings)
     with stages(printed) as progress:
         edited = edit_mesh(mesh, progress=progress, **wound, **asdict(edit))
         progress("write")
@@ -87,7 +92,8 @@ def redesign(
             options={"mesh": mesh, "out": target, "freeze": edit.frozen, "units": winding.units}
             | {"render": files.render}
             | {each.name: getattr(edit, each.name) for each in fields(edit) if each.metadata and each.name != "frozen"}
-            | wound,
+            | wound
+            | windings.written(),
         )
     print_report([*redesign_lines(report), f"files     {target}"], {**report, "folder": str(target)}, printed)
     return 0 if edited.windable and edited.settled else NOT_CONVERGED

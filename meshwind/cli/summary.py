@@ -6,7 +6,13 @@ from meshwind.appearance.words import quantity, ratio, size
 from meshwind.cli.layer_table import layer_table
 from meshwind.core.units import reported_unit
 from meshwind.results.pattern_types import AlternativeFigures, PatternFigures
-from meshwind.results.redesign_report_types import LeftFigures, RedesignFigures, RedesignReport, RoundFigures
+from meshwind.results.redesign_report_types import (
+    CourseFigures,
+    LeftFigures,
+    RedesignFigures,
+    RedesignReport,
+    RoundFigures,
+)
 from meshwind.results.report_types import Failure, PathsFigures, Report, StationFigures, SurfaceFigures
 
 
@@ -154,18 +160,33 @@ def redesign_lines(report: RedesignReport) -> list[str]:
         *_edited_part(report),
         *(_round(each, units) for each in report["rounds"]),
         *_edit(report["redesign"], units),
+        *_windings(report["windings"], units),
         *_left(report["redesign"]["left"], units),
         *_warnings(report),
     ]
 
 
 def _edited_part(report: RedesignReport) -> list[str]:
-    part, winding = report["mesh"], report["winding"]
+    part, winding, windings = report["mesh"], report["winding"], report["windings"]
     return [
         f"part      {part['name']}: {size(part['size'], reported_unit(part['units']), part['units_from'])}",
         f"mesh      {part['vertices']} vertices, {part['faces']} faces",
         f"winding   {winding['revolutions']:.4g} revolutions, {winding['why']}; "
-        f"{winding['paths_per_family']} paths per family",
+        f"{winding['paths_per_family']} paths per family"
+        if len(windings) == 1
+        else f"windings  {'; '.join(each['name'] for each in windings)}",
+    ]
+
+
+def _windings(windings: list[CourseFigures], units: str) -> list[str]:
+    """What became of each winding, where there are several."""
+    if len(windings) == 1:
+        return []
+    return [
+        f"{'' if at else 'each':<10}{each['name']}: bridged {100 * each['bridged']['before']:.3g} % before, "
+        f"{100 * each['bridged']['after']:.3g} % after; largest gap {quantity(each['max_gap']['before'], units, 3)} "
+        f"before, {quantity(each['max_gap']['after'], units, 3)} after"
+        for at, each in enumerate(windings)
     ]
 
 

@@ -25,6 +25,16 @@ def turns(text: str) -> float | str:
         raise BadInputError(f"revolutions is {text!r}; give a number as in 0.5 or 5/12, or auto") from error
 
 
+def several_turns(text: str) -> float | str | tuple[float, ...]:
+    """One number of revolutions or `AUTO`, or several numbers separated by commas."""
+    given = [turns(each) for each in text.split(",")]
+    if len(given) == 1:
+        return given[0]
+    if AUTO in given:
+        raise BadInputError(f"revolutions is {shortened(repr(text))}; auto chooses one number and stands alone")
+    return tuple(float(each) for each in given)
+
+
 def paths(text: str) -> int | None:
     """Whole number of paths, or None for auto."""
     return count(text, "paths")

@@ -9,6 +9,7 @@ again.  Each particle therefore also demands a little normal curvature along the
 points as well; then the rounds converge like Newton's method.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -76,9 +77,15 @@ def reach(paths: Paths, at_most: float = 0.0) -> Demands:
         begin = _beyond(paths, run, some.path, first[chosen], -before)
         end = _beyond(paths, run, some.path, last[chosen], after)
         demands.append(_above(paths, some, begin, end))
+    whole = together(demands)
+    return replace(whole, least=whole.least - at_most)
+
+
+def together(demands: Sequence[Demands]) -> Demands:
+    """All of several demands on one surface."""
     return Demands(
         sparse.csr_array(sparse.vstack([each.matrix for each in demands])),
-        np.concatenate([each.least for each in demands]) - at_most,
+        np.concatenate([each.least for each in demands]),
         np.concatenate([each.chosen for each in demands]),
         np.concatenate([each.short for each in demands]),
     )

@@ -1,16 +1,15 @@
 """The rounds of an edit on one surface: wind, move the control points, wind again (section 6.4)."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import sparse
 
 from meshwind.core.cast import Bools, Floats
-from meshwind.core.defaults import PATHS
 from meshwind.core.errors import BadInputError
 from meshwind.core.progress import Progress
-from meshwind.editing.demands import press, reach
+from meshwind.editing.demands import press, reach, together
 from meshwind.editing.edited_mesh import within
 from meshwind.editing.freedom import free_moves, frozen_mask
 from meshwind.editing.left import Held, Left, bridges_left
@@ -20,9 +19,9 @@ from meshwind.editing.result import Outcome, Round
 from meshwind.editing.shape_rows import FINE, Kept, nothing, one_way, same_volume, volume_gain
 from meshwind.editing.stencil import pitches
 from meshwind.editing.step import Demanded, Limits, Step, energy, step
-from meshwind.path import Paths, solve
+from meshwind.editing.windings import Course, marked_share
+from meshwind.path import Paths
 from meshwind.path.lengths import tolerated
-from meshwind.planning.families import families
 from meshwind.surface.surface import Surface
 from meshwind.workflow.options import Options
 
@@ -52,46 +51,52 @@ UNSOLVED = 1e3 * ACCURACY
 
 @dataclass(frozen=True)
 class Edit:
-    """An edited surface: the rounds' figures, the surface, the paths on it, how it ended, and the bridges it leaves."""
+    """An edited surface: the rounds' figures, the surface, each winding's paths on it, how it ended, what is left."""
 
     rounds: tuple[Round, ...]
     surface: Surface
-    paths: Paths
+    wound: tuple[Paths, ...]
     outcome: Outcome
     threshold: float
     left: tuple[Left, ...] = ()
     at_most: float = 0.0
 
     @property
+    def paths(self) -> Paths:
+        """The paths of the first winding."""
+        return self.wound[0]
+
+    @property
     def bridged(self) -> float:
-        """Share of the paths' particles that lie off the surface by more than counts as none, and than may stay."""
-        return float(lifted(self.paths, self.at_most).mean())
+        """Share of all particles that lie off the surface by more than counts as none, and than may stay."""
+        return marked_share([lifted(paths, self.at_most) for paths in self.wound])
 
 
 @dataclass(frozen=True)
 class _State:
-    """A surface with the paths on it."""
+    """A surface with the paths of each winding on it."""
 
     surface: Surface
-    paths: Paths
+    wound: tuple[Paths, ...]
     at_most: float
 
     @property
     def gap(self) -> float:
         """Largest gap of the paths."""
-        return float(self.paths.gap.max())
+        return max(float(paths.gap.max()) for paths in self.wound)
 
     @property
     def bridged(self) -> float:
         """Share of the particles that lie off the surface by more than counts as none."""
-        return float(lifted(self.paths, self.at_most).mean())
+        return marked_share([lifted(paths, self.at_most) for paths in self.wound])
 
 
 @dataclass(frozen=True)
 class _Problem:
-    """What is the same in all rounds: first surface and largest gap, the free moves and their cost, and the limits."""
+    """What is the same in all rounds: first surface and largest gap, windings, free moves and cost, limits."""
 
     first: Surface
+    courses: tuple[Course, ...]
     moves: sparse.csr_array
     cost: sparse.csr_array
     options: EditOptions
@@ -147,7 +152,10 @@ class _Problem:
         moved, curvature = self.moved(now.surface), self.curvature * (1.0 if total else FINISH)
         at_most = self.options.at_most
         limits = Limits(self.moves, moved, self.bounds, self.kept(now.surface, moved))
-        demands = reach(now.paths, at_most), press(now.paths, curvature, at_most, self.rim)
+        demands = (
+            together([reach(paths, at_most) for paths in now.wound]),
+            together([press(paths, curvature, at_most, self.rim) for paths in now.wound]),
+        )
         early = total and now.gap > max(LAST * self.gap, self.pitch)
         return step(Demanded(*demands, self.cost, limits, self.threshold, total), short, early)
 
@@ -168,9 +176,9 @@ class _Problem:
         # round-off may leave the bound's ball
         moves = within(self.moved(now.surface) + change, self.bound)
         net = self.first.control_points
-        surface, uv = replace(self.first, control_points=net + moves.reshape(net.shape)), np.array(now.paths.uv)
-        laid = solve(surface, uv[:, 0], uv[:, -1], family=now.paths.family, particles=uv.shape[1], initial=uv)
-        return _State(surface, laid, self.options.at_most)
+        surface = replace(self.first, control_points=net + moves.reshape(net.shape))
+        laid = [each.again(surface, paths) for each, paths in zip(self.courses, now.wound, strict=True)]
+        return _State(surface, tuple(laid), self.options.at_most)
 
     def figures(self, before: _State, after: _State, found: Step) -> Round:
         """The figures of a round."""
@@ -192,16 +200,17 @@ class _Problem:
 
 def edit(
     surface: Surface,
-    winding: Options,
+    winding: Options | Sequence[Course],
     options: EditOptions | None = None,
     progress: Progress | None = None,
     frozen: Mapping[str, Bools] | None = None,
 ) -> Edit:
-    """Move the control points as little as possible until no path of two families bridges.
+    """Move the control points as little as possible until no path of any winding bridges.
 
-    winding: numbers of paths, revolutions and particles.  Between these paths others are wound, no further apart than
-    the control points, so that the result does not depend on where the first path starts.  progress: called with a
-    line before each round.  frozen: masks (nu, nv) of what is frozen, by names, for what is said of bridges left.
+    winding: numbers of paths, revolutions and particles, or several windings.  Between these paths others are wound, no
+    further apart than the control points, so that the result does not depend on where the first path starts.
+    progress: called with a line before each round.  frozen: masks (nu, nv) of what is frozen, by names, for what is
+    said of bridges left.
     """
     options = options or EditOptions()
     if options.threshold is not None:
@@ -212,19 +221,13 @@ def edit(
     if moves.shape[1] == 0:
         raise BadInputError("every control point is frozen; leave some free to move")
     cost = energy(surface, options.fairness)
-    revolutions, particles = float(winding.turns), winding.particles
-    paths = winding.paths or PATHS
-    per_gap = -(-surface.control_points.shape[0] // paths)
-    ends = families(surface, paths * per_gap, revolutions)
-    laid = solve(surface, ends.start, ends.end, family=ends.family, particles=particles)
-    now = _State(surface, laid, options.at_most)
-    problem = _Problem(surface, moves, cost, options, limit, now.gap)
+    courses = (Course.of(winding),) if isinstance(winding, Options) else tuple(winding)
+    now = _State(surface, tuple(each.dense(surface) for each in courses), options.at_most)
+    problem = _Problem(surface, courses, moves, cost, options, limit, now.gap)
     best, outcome, figures = _rounds(problem, now, options.rounds, progress)
-    own = families(surface, paths, revolutions)
-    curves = np.array(best.paths.uv[np.arange(2 * paths) * per_gap])
-    final = solve(best.surface, own.start, own.end, family=own.family, particles=particles, initial=curves)
+    final = tuple(each.own(best.surface, paths) for each, paths in zip(courses, best.wound, strict=True))
     held = Held(problem.moved(best.surface), problem.bounds, _named(mask, frozen))
-    left = bridges_left(final, lifted(final, options.at_most), held)
+    left = bridges_left(final, [lifted(paths, options.at_most) for paths in final], held)
     return Edit(figures, best.surface, final, outcome, limit, left, options.at_most)
 
 

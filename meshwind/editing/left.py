@@ -1,6 +1,6 @@
 """What an edit leaves: the bridges that remain, and whether the bound or what is frozen holds each."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,11 +20,12 @@ COUNTS = 0.1
 class Left:
     """A bridge that an edit leaves.
 
-    path, family: of the fibre; v: parameters between which it is off the surface; gap: the largest, at the point `at`;
-    by_bound: how much lower the gap would be, to first order, with a bound larger by 1; by_frozen: how much with what
-    is frozen moved by 1, by its name.
+    winding: its number; path, family: of the fibre; v: parameters between which it is off the surface; gap: the
+    largest, at the point `at`; by_bound: how much lower the gap would be, to first order, with a bound larger by 1;
+    by_frozen: how much with what is frozen moved by 1, by its name.
     """
 
+    winding: int
     path: int
     family: int
     v: tuple[float, float]
@@ -54,8 +55,13 @@ class Held:
     frozen: Mapping[str, Bools]
 
 
-def bridges_left(paths: Paths, lifted: Bools, held: Held) -> tuple[Left, ...]:
-    """The bridges of the paths, where a particle is `lifted` (p, n), from the largest gap to the smallest."""
+def bridges_left(wound: Sequence[Paths], lifted: Sequence[Bools], held: Held) -> tuple[Left, ...]:
+    """The bridges of all windings, where a particle is `lifted` (p, n), from the largest gap to the smallest."""
+    found = [each for k, laid in enumerate(wound) for each in _of_winding(k, laid, lifted[k], held)]
+    return tuple(sorted(found, key=lambda each: -each.gap))
+
+
+def _of_winding(number: int, paths: Paths, lifted: Bools, held: Held) -> tuple[Left, ...]:
     off = np.zeros((len(paths), paths.gap.shape[1] + 2), dtype=np.int64)
     off[:, 1:-1] = ~paths.on_surface
     path, first = np.nonzero(np.diff(off, axis=1) == 1)
@@ -73,6 +79,7 @@ def bridges_left(paths: Paths, lifted: Bools, held: Held) -> tuple[Left, ...]:
     begin, end = np.maximum(first - 1, 0), np.minimum(last, paths.gap.shape[1] - 1)
     return tuple(
         Left(
+            winding=number,
             path=int(path[k]),
             family=int(paths.family[path[k]]),
             v=(float(paths.uv[path[k], begin[k], 1]), float(paths.uv[path[k], end[k], 1])),

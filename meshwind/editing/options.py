@@ -1,20 +1,21 @@
-"""The options of a redesign beside those of its winding."""
+"""The options of a redesign: what it is to hold, and how it is edited."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import isfinite
 from numbers import Integral
+from os import PathLike
+from pathlib import Path
 from typing import Any
 
 from meshwind.core.errors import BadInputError
 from meshwind.core.option import option
-from meshwind.core.parsing import AUTO
-from meshwind.workflow.option_checks import FIELD
-from meshwind.workflow.options import IN_MESH_UNITS
+from meshwind.core.parsing import AUTO, several_turns
+from meshwind.workflow.option_checks import FIELD, number
+from meshwind.workflow.options import FIBRES, IN_MESH_UNITS
 
 EDIT = "The edit"
 """Group of these options."""
-REVOLUTIONS = AUTO
-"""Default of a redesign's revolutions: the number that bridges least leaves the least to edit."""
 
 
 @dataclass(frozen=True)
@@ -80,3 +81,55 @@ class EditOptions:
             value = getattr(self, name)
             if not (isfinite(value) and value >= 0):
                 raise BadInputError(f"{name} is {value}; give a number from 0 up")
+
+
+@dataclass(frozen=True)
+class WindingOptions:
+    """What a redesigned part is to hold; raises BadInputError for what cannot be wound.
+
+    revolutions: one number, "auto", or several, of a winding each; layers: the file of a laminate instead.  By default
+    the revolutions are chosen, as those that bridge least leave the least to edit.
+    """
+
+    revolutions: float | str | tuple[float, ...] = field(
+        default=AUTO,
+        metadata=option(
+            "Turns of a path from end to end, as in 0.5 or 5/12; auto picks the value with stable paths and least "
+            "bridging; several, by commas, are windings that the part is to hold at once",
+            FIBRES,
+            metavar="TURNS",
+            words=(AUTO,),
+            read=several_turns,
+        ),
+    )
+    layers: str | PathLike[str] | None = field(
+        default=None,
+        metadata=option(
+            "TOML file of a laminate, whose layers the part is to hold, each on the bare part", FIBRES, is_file=True
+        ),
+    )
+
+    def __post_init__(self) -> None:
+        if isinstance(self.revolutions, Sequence) and not isinstance(self.revolutions, str):
+            if not len(self.revolutions):
+                raise BadInputError("revolutions is empty; give one number or more")
+            numbers = tuple(number(each, "revolutions", 0.0) for each in self.revolutions)
+            object.__setattr__(self, "revolutions", numbers if len(numbers) > 1 else numbers[0])
+        if self.layers is not None and self.revolutions != AUTO:
+            raise BadInputError("revolutions and layers both say what is wound; give one of both")
+
+    def written(self) -> dict[str, object]:
+        """The options as they stand in files."""
+        several = ",".join(f"{each!r}" for each in self.several)
+        file = None if self.layers is None else Path(self.layers)
+        return {"revolutions": several or self.revolutions, "layers": file}
+
+    @property
+    def most(self) -> float | str:
+        """The revolutions, or the most of several."""
+        return max(self.revolutions) if isinstance(self.revolutions, tuple) else self.revolutions
+
+    @property
+    def several(self) -> tuple[float, ...]:
+        """The revolutions, where they are several."""
+        return self.revolutions if isinstance(self.revolutions, tuple) else ()

@@ -1,22 +1,24 @@
 """From a mesh to the nearest one that can be wound: the automatic surface editing of section 6.4."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from os import PathLike
 
 import numpy as np
 
 from meshwind.core.cast import Floats
 from meshwind.core.cast import frozen as immutable
 from meshwind.core.defaults import PATHS
-from meshwind.core.errors import BadInputError
 from meshwind.core.progress import Progress
 from meshwind.editing.edited_mesh import displaced, turned_over, volume_change
 from meshwind.editing.freedom import Frozen
 from meshwind.editing.left import Left
-from meshwind.editing.options import REVOLUTIONS, EditOptions
+from meshwind.editing.options import EditOptions, WindingOptions
 from meshwind.editing.proof import Proof, prove_fitted
 from meshwind.editing.region import frozen_part
 from meshwind.editing.result import Outcome, Round
 from meshwind.editing.stages import Candidate, Run, edit_in_stages
+from meshwind.editing.windings import Course, courses
 from meshwind.mesh import Mesh
 from meshwind.mesh.geometry.areas_and_volumes import volume
 from meshwind.path import Paths, Status
@@ -45,8 +47,8 @@ class Redesign:
         Figures of each round, for each of the fitted surfaces that were edited.
     outcome : Outcome
         How the redesign ended, with advice.
-    revolutions : float
-        Revolutions of the windings.
+    windings : tuple of Course
+        The windings that the part is to hold, each with its revolutions and its name.
     chosen : Revolutions or None
         How the revolutions were chosen, where they were.
     volume : float
@@ -73,7 +75,7 @@ class Redesign:
     after: Proof
     stages: tuple[tuple[Round, ...], ...]
     outcome: Outcome
-    revolutions: float
+    windings: tuple[Course, ...]
     chosen: Revolutions | None
     volume: float
     volume_change: float
@@ -90,8 +92,13 @@ class Redesign:
 
     @property
     def paths(self) -> Paths:
-        """Paths on the edited mesh."""
+        """Paths of the first winding on the edited mesh; those of all are in `after.wound`."""
         return self.after.paths
+
+    @property
+    def revolutions(self) -> float:
+        """Revolutions of the first winding."""
+        return self.windings[0].revolutions
 
     @property
     def windable(self) -> bool:
@@ -101,18 +108,19 @@ class Redesign:
     @property
     def settled(self) -> bool:
         """Whether every path is in equilibrium: without bridges, fibres may still slide off the ends."""
-        return bool((self.paths.status == Status.CONVERGED).all())
+        return all(bool((paths.status == Status.CONVERGED).all()) for paths in self.after.wound)
 
     @property
     def bridged(self) -> float:
-        """Share of the particles of `paths` that lie off the surface by more than counts as none."""
+        """Share of the particles of all windings that lie off the surface by more than counts as none."""
         return self.after.bridged
 
 
 def redesign(  # noqa: PLR0913
     mesh: MeshLike,
     *,
-    revolutions: float | str = REVOLUTIONS,
+    revolutions: float | str | Sequence[float] = WindingOptions.revolutions,
+    layers: str | PathLike[str] | None = WindingOptions.layers,
     paths: int = PATHS,
     particles: int | None = Options.particles,
     rounds: int = EditOptions.rounds,
@@ -134,7 +142,7 @@ def redesign(  # noqa: PLR0913
     tolerance: float = Options.tolerance,
     progress: Progress | None = None,
 ) -> Redesign:
-    """Change a part as little as possible until no path of two families bridges.
+    """Change a part as little as possible until no path of its windings bridges.
 
     The control points of the fitted surface are moved by a quadratic program per round, and the part is wound again.
     The edited mesh is then fitted and wound as by `wind`; only where nothing bridges on that, the part is windable.
@@ -143,8 +151,11 @@ def redesign(  # noqa: PLR0913
     ----------
     mesh : str, PathLike, Mesh, trimesh.Trimesh, pyvista.PolyData, meshio.Mesh or tuple of two arrays
         Mesh, or the path of its file; see `read` for those of other libraries.
-    revolutions : float or str, default "auto"
-        Revolutions of the winding, or "auto" to have them chosen.
+    revolutions : float, str or sequence of float, default "auto"
+        Revolutions of the winding, or "auto" to have them chosen.  Several are windings that the part is to hold all.
+    layers : str or PathLike, optional
+        File of a laminate as for `wind`, instead of the revolutions: the part is to hold each of its layers, helical or
+        hoops, as if it lay on the bare part.
     paths : int, default 12
         Number of paths per family.
     particles : int, default 401
@@ -203,23 +214,25 @@ def redesign(  # noqa: PLR0913
     options = EditOptions(
         bound, frozen, symmetry, threshold, at_most, keep_volume, only_outward, only_inward, rounds, fairness, pressing
     )
+    asked = WindingOptions(revolutions if isinstance(revolutions, str | float | int) else tuple(revolutions), layers)
     winding = Options(
-        paths, revolutions, particles, component=component, ends=ends, opening=opening, side=side,
+        paths, asked.most, particles, component=component, ends=ends, opening=opening, side=side,
         opening_by=opening_by, tolerance=tolerance,
     )  # fmt: skip
-    if winding.particles is None:
-        raise BadInputError("particles is None; give a whole number, the same for all rounds of an edit")
+    Course.of(winding, 0.0)
     report = progress or _ignore
     region = frozen_part(frozen, mesh)
     report("fit")
     source = read_source(mesh, winding)
     part = fit_part(source, winding, Clock()).counting(threshold)
     region = region.on_skin(part.chart.annulus)
-    chosen = chosen_revolutions(part.surface, winding, Clock(progress), further=False)
-    if chosen is not None:
-        winding = replace(winding, revolutions=chosen.choice)
-    first = prove_fitted(part, winding, at_most)
-    run = Run(source.mesh, winding, options, region, report, part.chart.annulus.wall)
+    chosen = None
+    if layers is None:
+        chosen = chosen_revolutions(part.surface, winding, Clock(progress), further=False)
+        winding = replace(winding, revolutions=winding.turns if chosen is None else chosen.choice)
+    wanted = courses(part.surface, asked, winding, source.mesh.units)
+    first = prove_fitted(part, wanted, at_most)
+    run = Run(source.mesh, winding, wanted, options, region, report, part.chart.annulus.wall)
     ended = edit_in_stages(run, Candidate(np.zeros_like(source.mesh.vertices), first))
     best = ended.best
     vertices, faces = source.mesh.vertices, source.mesh.faces
@@ -231,7 +244,7 @@ def redesign(  # noqa: PLR0913
         after=best.proof,
         stages=ended.stages,
         outcome=ended.outcome,
-        revolutions=float(winding.turns),
+        windings=wanted,
         chosen=chosen,
         volume=volume(vertices, faces),
         volume_change=volume_change(source.mesh, best.moves),

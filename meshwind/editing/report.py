@@ -12,6 +12,7 @@ from meshwind.editing.redesign import Redesign
 from meshwind.editing.result import Round
 from meshwind.path.paths import Status
 from meshwind.results.redesign_report_types import (
+    CourseFigures,
     LeftFigures,
     RedesignFigures,
     RedesignReport,
@@ -43,6 +44,7 @@ def redesign_report(
             "particles": edited.paths.gap.shape[1],
             "why": "as asked for" if edited.chosen is None else edited.chosen.why,
         },
+        "windings": [_winding(edited, number) for number in range(len(edited.windings))],
         "redesign": _redesign(edited),
         "rounds": [
             _round(stage, number, each)
@@ -55,6 +57,23 @@ def redesign_report(
     }
     result: RedesignReport = plain(figures)
     return result
+
+
+def _winding(edited: Redesign, number: int) -> CourseFigures:
+    course, before, after = edited.windings[number], edited.before, edited.after
+    laid = after.wound[number]
+    return {
+        "name": course.name,
+        "kind": "hoop" if course.is_hoop else "helical",
+        "revolutions": course.revolutions,
+        "paths": len(laid),
+        "particles": laid.gap.shape[1],
+        "between": list(course.between),
+        "bridged": {"before": before.shares[number], "after": after.shares[number]},
+        "max_gap": {"before": before.gaps[number], "after": after.gaps[number]},
+        "converged": int((laid.status == Status.CONVERGED).sum()),
+        "bridges_left": sum(each.winding == number for each in edited.left),
+    }
 
 
 def _redesign(edited: Redesign) -> RedesignFigures:
@@ -84,6 +103,7 @@ def _redesign(edited: Redesign) -> RedesignFigures:
 
 def _left(each: Left) -> LeftFigures:
     return {
+        "winding": each.winding,
         "path": each.path,
         "family": each.family,
         "v": list(each.v),
@@ -112,11 +132,11 @@ def _round(stage: int, number: int, each: Round) -> RoundFigures:
 
 
 def _proof(proof: Proof) -> WoundFigures:
-    paths = replace(proof.paths, asked=None)  # other revolutions would lead to another edit: none are advised
+    wound = [replace(paths, asked=None) for paths in proof.wound]  # no other revolutions are advised: another edit
     return {
         "control_points": list(proof.surface.control_points.shape[:2]),
-        "converged": int((proof.paths.status == Status.CONVERGED).sum()),
-        "not_converged": failures(paths),
+        "converged": sum(int((paths.status == Status.CONVERGED).sum()) for paths in wound),
+        "not_converged": [failure for paths in wound for failure in failures(paths)],
         "bridged": proof.bridged,
         "max_gap": proof.gap,
         "threshold": proof.threshold,

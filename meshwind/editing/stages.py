@@ -14,6 +14,7 @@ from meshwind.editing.proof import Proof, prove
 from meshwind.editing.region import FrozenPart
 from meshwind.editing.result import Outcome, Round
 from meshwind.editing.wall_left import wall_left
+from meshwind.editing.windings import Course
 from meshwind.mesh import Mesh
 from meshwind.mesh.geometry.mesh import Wall
 from meshwind.workflow.options import Options
@@ -46,10 +47,11 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Run:
-    """What is the same in all stages: the mesh, its winding, the options as given, what must not move, and the wall."""
+    """What is the same in all stages: the mesh, windings, the options as given, what must not move, and the wall."""
 
     mesh: Mesh
     winding: Options
+    courses: tuple[Course, ...]
     options: EditOptions
     frozen: FrozenPart
     progress: Progress
@@ -64,7 +66,7 @@ class Run:
             pressing, threshold = given.pressing * FIRMER**number, TIGHTER * now.proof.threshold
             options = replace(options, rounds=min(rounds, MORE_ROUNDS), pressing=pressing, threshold=threshold)
         surface = now.proof.surface
-        return edit(surface, self.winding, options, self.progress, self.frozen.named(surface, now.proof.chart.uv))
+        return edit(surface, self.courses, options, self.progress, self.frozen.named(surface, now.proof.chart.uv))
 
     def after(self, now: Candidate, found: Edit) -> Candidate | None:
         """Move the vertices as the surface was moved, then fit and wind the mesh; None where that pierces its wall."""
@@ -74,7 +76,10 @@ class Run:
         if self.wall is not None and wall_left(self.mesh, self.wall, moves).pierced:
             return None
         return Candidate(
-            moves, prove(displaced(self.mesh, moves), self.winding, self.options.threshold, self.options.at_most)
+            moves,
+            prove(
+                displaced(self.mesh, moves), self.winding, self.courses, self.options.threshold, self.options.at_most
+            ),
         )
 
     def can_go_on(self, proof: Proof) -> bool:

@@ -5,20 +5,39 @@ from typing import TypedDict, final
 from meshwind.results.report_types import Failure, MeshFigures
 
 
-class RedesignWindingFigures(TypedDict):
-    """What was wound on both meshes, and the reason for the number of revolutions."""
-
-    revolutions: float
-    paths_per_family: int
-    particles: int
-    why: str
-
-
 class BeforeAfter(TypedDict):
     """A figure before and after."""
 
     before: float
     after: float
+
+
+class CourseFigures(TypedDict):
+    """One of the windings that the part is to hold, on the mesh that was read and on the edited one.
+
+    between: v where its paths start and end; paths, particles: their numbers; converged: those at rest on the edited
+    mesh; bridges_left: how many of the bridges in `left` are its own.
+    """
+
+    name: str
+    kind: str
+    revolutions: float
+    paths: int
+    particles: int
+    between: list[float]
+    bridged: BeforeAfter
+    max_gap: BeforeAfter
+    converged: int
+    bridges_left: int
+
+
+class RedesignWindingFigures(TypedDict):
+    """The first winding, and the reason for its number of revolutions."""
+
+    revolutions: float
+    paths_per_family: int
+    particles: int
+    why: str
 
 
 class DisplacementFigures(TypedDict):
@@ -38,12 +57,13 @@ class VolumeFigures(TypedDict):
 
 
 class LeftFigures(TypedDict):
-    """A bridge that is left on the edited surface: its fibre, between which v, its largest gap and where that is.
+    """A bridge left on the edited surface: winding and fibre, between which v, its largest gap and where that is.
 
     by_bound: how much lower the gap would be, to first order, with a bound larger by 1; by_frozen: the same with what
     is frozen moved by 1, by its name; held_by: those of them that matter.
     """
 
+    winding: int
     path: int
     family: int
     v: list[float]
@@ -112,6 +132,7 @@ class RedesignReport(TypedDict):
     command: str
     mesh: MeshFigures
     winding: RedesignWindingFigures
+    windings: list[CourseFigures]
     redesign: RedesignFigures
     rounds: list[RoundFigures]
     wound: WoundBeforeAfter
