@@ -109,11 +109,6 @@ class _Problem:
         return self.options.pressing / self.first.size
 
     @property
-    def bound(self) -> float | None:
-        """Largest displacement."""
-        return self.options.bound
-
-    @property
     def rim(self) -> float:
         """Factor of the pressing at the rims: a refit changes the more, the more was changed."""
         return 1.0 + (RIM - 1.0) * min(1.0, self.gap / self.pitch)
@@ -137,7 +132,7 @@ class _Problem:
     @property
     def bounds(self) -> Floats:
         """Largest displacement of each control point (m,)."""
-        return np.full(self.first.control_points.size // 3, np.inf if self.bound is None else self.bound)
+        return _bounds(self.first, self.options)
 
     def stalls(self, gap: float, before: float) -> bool:
         """Whether the largest gap, after a round from `before`, is small but no longer falls fast."""
@@ -174,7 +169,7 @@ class _Problem:
     def changed(self, now: _State, change: Floats) -> _State:
         """A state with its control points changed (m, 3)."""
         # round-off may leave the bound's ball
-        moves = within(self.moved(now.surface) + change, self.bound)
+        moves = within(self.moved(now.surface) + change, None if self.options.bound is None else self.bounds)
         net = self.first.control_points
         surface = replace(self.first, control_points=net + moves.reshape(net.shape))
         laid = [each.again(surface, paths) for each, paths in zip(self.courses, now.wound, strict=True)]
@@ -216,7 +211,9 @@ def edit(
     if options.threshold is not None:
         surface = replace(surface, threshold=options.threshold)
     limit = threshold_of(surface)
-    mask = frozen_mask(surface, options.frozen)
+    mask, still = frozen_mask(surface, options.frozen), _bounds(surface, options) == 0.0
+    names = _named(mask, frozen) | ({"a bound of 0": still} if still.any() else {})
+    mask = mask | still.reshape(mask.shape)
     moves = free_moves(surface, mask, options.symmetry)
     if moves.shape[1] == 0:
         raise BadInputError("every control point is frozen; leave some free to move")
@@ -226,9 +223,14 @@ def edit(
     problem = _Problem(surface, courses, moves, cost, options, limit, now.gap)
     best, outcome, figures = _rounds(problem, now, options.rounds, progress)
     final = tuple(each.own(best.surface, paths) for each, paths in zip(courses, best.wound, strict=True))
-    held = Held(problem.moved(best.surface), problem.bounds, _named(mask, frozen))
+    held = Held(problem.moved(best.surface), np.where(still, np.inf, problem.bounds), names)
     left = bridges_left(final, [lifted(paths, options.at_most) for paths in final], held)
     return Edit(figures, best.surface, final, outcome, limit, left, options.at_most)
+
+
+def _bounds(surface: Surface, options: EditOptions) -> Floats:
+    """Largest displacement of each control point (m,), infinite without one."""
+    return np.broadcast_to(np.inf if options.bound is None else options.bound, surface.control_points.size // 3)
 
 
 def _named(mask: Bools, frozen: Mapping[str, Bools] | None) -> dict[str, Bools]:

@@ -8,11 +8,9 @@ from scipy.spatial import cKDTree
 
 from meshwind.chart.chart import Chart
 from meshwind.core.cast import Bools, Floats, Ints, frozen
-from meshwind.core.threads import parallel_for
+from meshwind.editing.feet import feet_of
 from meshwind.mesh.geometry.areas_and_volumes import area_vectors, perimeter, volume
 from meshwind.mesh.geometry.mesh import Mesh
-from meshwind.surface.evaluate import Spline
-from meshwind.surface.foot import feet
 from meshwind.surface.surface import Surface
 
 FADE = 0.15
@@ -29,25 +27,28 @@ OFF = 0.01
 """Over the part's size: a vertex further off the extended surface is not part of it."""
 
 
-def displacement(chart: Chart, before: Surface, after: Surface) -> Floats:
+def displacement(chart: Chart, before: Surface, after: Surface, fixed: Bools | None = None) -> Floats:
     """Displacement (n, 3) of each vertex of the mesh that was read when the surface changes from `before` to `after`.
 
     A vertex of the wound region moves as the surface does at its foot point, and keeps its distance to it.  Of the
     vertices that were cut away (caps, the lining of a cup), those next to their rim move as the extended surface does
     and those far off stay, as do those of the other skin of a part with a wall.  Between, the field is biharmonic, so
-    that it and its slope are continuous.
+    that it and its slope are continuous.  fixed: mask (n,) of vertices that must not move.
     """
     annulus = chart.annulus
     vertices = annulus.mesh.vertices
     change = Surface(after.control_points - before.control_points, before.periodic)
-    uv, _ = _feet(before, annulus.vertices, chart.uv)
+    uv = feet_of(before, annulus.vertices, chart.uv)
     distance, nearest = cKDTree(annulus.vertices).query(vertices)
     wound = distance == 0.0  # trimming copies the coordinates of the vertices that it keeps
     moved = np.zeros_like(vertices)
     moved[wound] = change.points(uv[nearest[wound]])
+    held = np.zeros_like(wound) if fixed is None else fixed
+    moved[held] = 0.0
     if not wound.all() and np.abs(moved).max() > 0:
         still = np.zeros_like(wound)
         still[[] if annulus.wall is None else annulus.wall.opposite] = True
+        still |= held
         still &= ~wound
         near, on = _next_to(annulus.mesh, before, wound | still, uv[nearest])
         moved[near] = _extended(change).points(on)
@@ -59,12 +60,12 @@ def displacement(chart: Chart, before: Surface, after: Surface) -> Floats:
     return moved
 
 
-def within(moves: Floats, bound: float | None) -> Floats:
-    """The moves (n, 3), with those longer than the bound shortened to it."""
+def within(moves: Floats, bound: float | Floats | None) -> Floats:
+    """The moves (n, 3), with those longer than the bound, of all or of each (n,), shortened to it."""
     if bound is None:
         return moves
     size = np.linalg.norm(moves, axis=1, keepdims=True)
-    return np.asarray(moves * np.minimum(1.0, bound / np.maximum(size, 1e-300)))
+    return np.asarray(moves * np.minimum(1.0, np.reshape(bound, (-1, 1)) / np.maximum(size, 1e-300)))
 
 
 def displaced(mesh: Mesh, moves: Floats) -> Mesh:
@@ -81,15 +82,6 @@ def turned_over(mesh: Mesh, moves: Floats) -> int:
     """Number of faces that the moves (n, 3) turn by more than a right angle."""
     old, new = area_vectors(mesh.vertices, mesh.faces), area_vectors(mesh.vertices + moves, mesh.faces)
     return int(((old * new).sum(axis=1) <= 0).sum())
-
-
-def _feet(surface: Surface, points: Floats, guess: Floats) -> tuple[Floats, Floats]:
-    """Parameters (k, 2) of the feet of points (k, 3), from a guess (k, 2), and their distances (k,)."""
-    middle = points.mean(axis=0)  # far from the origin the feet would lose digits
-    uv, frames = np.array(guess), np.empty((len(points), 6, 3))
-    spline = Spline(frozen(surface.net - middle), surface.periodic)
-    parallel_for(feet, len(points), 500, spline, points - middle, uv, frames)
-    return uv, np.asarray(np.linalg.norm(surface.points(uv) - points, axis=1))
 
 
 def _extended(surface: Surface) -> Surface:
@@ -117,7 +109,8 @@ def _next_to(mesh: Mesh, surface: Surface, wound: Bools, uv: Floats) -> tuple[In
     extended = _extended(surface)
     guess = np.array(uv[near])
     guess[:, 1] = (guess[:, 1] * spans + BEYOND) / (spans + 2 * BEYOND)
-    on, distance = _feet(extended, mesh.vertices[near], guess)
+    on = feet_of(extended, mesh.vertices[near], guess)
+    distance = np.linalg.norm(extended.points(on) - mesh.vertices[near], axis=1)
     past = np.maximum(-on[:, 1], on[:, 1] - 1.0) * (spans + 2 * BEYOND) + BEYOND  # spans beyond the rim
     found = (past > 0.0) & (past < BEYOND - 1e-6) & (distance < OFF * surface.size)
     return near[found], on[found]

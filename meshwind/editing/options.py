@@ -3,14 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import isfinite
-from numbers import Integral
+from numbers import Integral, Real
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from meshwind.core.errors import BadInputError
 from meshwind.core.option import option
-from meshwind.core.parsing import AUTO, several_turns
+from meshwind.core.parsing import AUTO, several_turns, shortened
 from meshwind.workflow.option_checks import FIELD, number
 from meshwind.workflow.options import FIBRES, IN_MESH_UNITS
 
@@ -22,23 +22,30 @@ EDIT = "The edit"
 class EditOptions:
     """Options of an edit; raises BadInputError for one that cannot be used, with its value and what it may be.
 
-    bound: largest displacement, None for any; frozen: what must not move (see `redesign`), as a mask (nu, nv) of
-    control points or a function from their positions (m, 3) to a mask (m,) where a surface is edited by itself;
-    symmetry: order of rotation about u that is kept; threshold: a gap up to this is none, None for the
-    surface's uncertainty; at_most: gap that may stay; keep_volume, only_outward, only_inward: what the change keeps, at
-    samples of the surface; rounds: largest number of them; fairness: wave length over the part's size at which a change
-    of the net costs as much by its bending as by its size, 0 for (6.12) alone; pressing: least normal curvature along
-    the fibres times the part's size.
+    bound: largest displacement, None for any, "field:NAME" for a scalar of the mesh file, or one for each vertex, of
+    each control point (m,) where a surface is edited by itself; frozen: what must not move (see `redesign`), there as a
+    mask (nu, nv) of control points or a function from their positions (m, 3) to a mask (m,); symmetry: order of
+    rotation about u that is kept; threshold: a gap up to this is none, None for the surface's uncertainty; at_most: gap
+    that may stay; keep_volume, only_outward, only_inward: what the change keeps, at samples of the surface; rounds:
+    largest number of them; fairness: wave length over the part's size at which a change of the net costs as much by its
+    bending as by its size, 0 for (6.12) alone; pressing: least normal curvature along the fibres times the part's size.
     """
 
-    bound: float | None = field(
+    bound: Any = field(
         default=None,
-        metadata=option("Largest displacement", EDIT, unit=IN_MESH_UNITS, otherwise="none"),
+        metadata=option(
+            f"Largest displacement, in the mesh's units, or {FIELD}NAME for a scalar of the mesh file",
+            EDIT,
+            metavar="LENGTH",
+            otherwise="none",
+            read=str,
+        ),
     )
     frozen: Any = field(
         default=None,
         metadata=option(
-            f'Region that must not move, as in "v<0.1, z>20", or {FIELD}NAME for a scalar of the mesh file',
+            'Region that must not move: ranges, as in "v<0.1, z>20", boxes, as in "x>0 & 2<z<5", faces, as in '
+            f'"faces:3-17" or "faces:FILE", or {FIELD}NAME for a scalar of the mesh file',
             EDIT,
             metavar="WHERE",
             read=str,
@@ -71,16 +78,30 @@ class EditOptions:
     def __post_init__(self) -> None:
         if isinstance(self.rounds, bool) or not isinstance(self.rounds, Integral) or self.rounds < 0:
             raise BadInputError(f"rounds is {self.rounds}; give a whole number from 0 up")
-        for name in ("bound", "threshold"):
-            value = getattr(self, name)
-            if value is not None and not (isfinite(value) and value > 0):
-                raise BadInputError(f"{name} is {value}; give a length above 0, or none at all")
+        object.__setattr__(self, "bound", _bound(self.bound))
+        if self.threshold is not None and not (isfinite(self.threshold) and self.threshold > 0):
+            raise BadInputError(f"threshold is {self.threshold}; give a length above 0, or none at all")
         if self.only_outward and self.only_inward:
             raise BadInputError("only_outward and only_inward leave nothing to move; give one of them")
         for name in ("fairness", "pressing", "at_most"):
             value = getattr(self, name)
             if not (isfinite(value) and value >= 0):
                 raise BadInputError(f"{name} is {value}; give a number from 0 up")
+
+
+def _bound(value: Any) -> Any:
+    """A bound: a length above 0, also as a text, the name of a field, or as it is if it is an array."""
+    if value is None or (isinstance(value, str) and value.startswith(FIELD) and value.removeprefix(FIELD).strip()):
+        return value
+    if not isinstance(value, str | Real):
+        return value
+    try:
+        length = float(value)
+    except ValueError as error:
+        raise BadInputError(f"bound is {shortened(repr(value))}; give a length, or {FIELD}NAME") from error
+    if not (isfinite(length) and length > 0):
+        raise BadInputError(f"bound is {value}; give a length above 0, or none at all")
+    return length
 
 
 @dataclass(frozen=True)

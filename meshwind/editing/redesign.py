@@ -5,17 +5,19 @@ from dataclasses import dataclass, replace
 from os import PathLike
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats
 from meshwind.core.cast import frozen as immutable
 from meshwind.core.defaults import PATHS
 from meshwind.core.progress import Progress
+from meshwind.editing.bound import bound_of
 from meshwind.editing.edited_mesh import displaced, turned_over, volume_change
 from meshwind.editing.freedom import Frozen
+from meshwind.editing.frozen_part import frozen_part
 from meshwind.editing.left import Left
 from meshwind.editing.options import EditOptions, WindingOptions
 from meshwind.editing.proof import Proof, prove_fitted
-from meshwind.editing.region import frozen_part
 from meshwind.editing.result import Outcome, Round
 from meshwind.editing.stages import Candidate, Run, edit_in_stages
 from meshwind.editing.windings import Course, courses
@@ -125,7 +127,7 @@ def redesign(  # noqa: PLR0913
     particles: int | None = Options.particles,
     rounds: int = EditOptions.rounds,
     frozen: Frozen | str = EditOptions.frozen,
-    bound: float | None = EditOptions.bound,
+    bound: float | str | ArrayLike | None = EditOptions.bound,
     symmetry: int = EditOptions.symmetry,
     fairness: float = EditOptions.fairness,
     pressing: float = EditOptions.pressing,
@@ -163,11 +165,12 @@ def redesign(  # noqa: PLR0913
     rounds : int, default 10
         Maximum number of rounds.
     frozen : str, ndarray of bool or callable, optional
-        What must not move: ranges such as "v<0.1, z>20" of u, v, x, y and z, or "field:NAME" for a scalar of the mesh
-        file, where it is above 0; a mask (nu, nv) of control points; or a function from their positions (m, 3) to a
-        mask (m,).
-    bound : float, optional
-        Largest displacement, in the mesh's units.  By default there is none.
+        What must not move: ranges such as "v<0.1, z>20" of u, v, x, y and z, those of a box by "&", "field:NAME" for a
+        scalar of the mesh file, where it is above 0, or "faces:3-17" for faces by their numbers; a mask (nu, nv) of
+        control points; or a function from their positions (m, 3) to a mask (m,).
+    bound : float, str or array_like of float, optional
+        Largest displacement, in the mesh's units: one number, "field:NAME" for a scalar of the mesh file, or one for
+        each vertex of the mesh; where it is 0 nothing moves.  By default there is none.
     symmetry : int, default 1
         Order of rotation about the part that is kept, a divisor of the number of control points around it.
     fairness : float, default 0.4
@@ -221,18 +224,19 @@ def redesign(  # noqa: PLR0913
     )  # fmt: skip
     Course.of(winding, 0.0)
     report = progress or _ignore
-    region = frozen_part(frozen, mesh)
     report("fit")
     source = read_source(mesh, winding)
+    region = frozen_part(frozen, mesh, source.mesh)
     part = fit_part(source, winding, Clock()).counting(threshold)
     region = region.on_skin(part.chart.annulus)
+    limit = bound_of(options.bound, mesh, source.mesh, part.chart.annulus)
     chosen = None
     if layers is None:
         chosen = chosen_revolutions(part.surface, winding, Clock(progress), further=False)
         winding = replace(winding, revolutions=winding.turns if chosen is None else chosen.choice)
     wanted = courses(part.surface, asked, winding, source.mesh.units)
     first = prove_fitted(part, wanted, at_most)
-    run = Run(source.mesh, winding, wanted, options, region, report, part.chart.annulus.wall)
+    run = Run(source.mesh, winding, wanted, options, region, limit, report, part.chart.annulus.wall)
     ended = edit_in_stages(run, Candidate(np.zeros_like(source.mesh.vertices), first))
     best = ended.best
     vertices, faces = source.mesh.vertices, source.mesh.faces

@@ -2,16 +2,15 @@
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from meshwind.core.cast import Floats
 from meshwind.core.progress import Progress
+from meshwind.editing.bound import Bound
 from meshwind.editing.edit import Edit, edit, is_better
 from meshwind.editing.edited_mesh import displaced, displacement, within
+from meshwind.editing.frozen_part import FrozenPart
 from meshwind.editing.left import Left
 from meshwind.editing.options import EditOptions
 from meshwind.editing.proof import Proof, prove
-from meshwind.editing.region import FrozenPart
 from meshwind.editing.result import Outcome, Round
 from meshwind.editing.wall_left import wall_left
 from meshwind.editing.windings import Course
@@ -28,8 +27,6 @@ FIRMER, TIGHTER, MORE_ROUNDS = 1.5, 0.1, 2
 On the sample cast the refit lifts fibres by 0.003 mm, within its fit error; one such stage moves the part by 1.2 mm
 more, and no fibre leaves it.
 """
-LEAST_LEFT = 0.02
-"""Of the bound: what a later stage may always move, as the sum is cut down to the bound afterwards."""
 
 
 @dataclass(frozen=True)
@@ -47,32 +44,34 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Run:
-    """What is the same in all stages: the mesh, windings, the options as given, what must not move, and the wall."""
+    """What is the same in all stages: the mesh, windings, the options as given, bounds, and the wall."""
 
     mesh: Mesh
     winding: Options
     courses: tuple[Course, ...]
     options: EditOptions
     frozen: FrozenPart
+    bound: Bound
     progress: Progress
     wall: Wall | None
 
     def stage(self, now: Candidate, number: int, rounds: int) -> Edit:
         """Edit the surface of a candidate; each stage after the first is tighter than the one before."""
         given = self.options
-        options = replace(given, rounds=rounds, frozen=self.frozen.on(now.proof.surface, now.proof.chart.uv),
-                          bound=_bound_left(given.bound, now.moves))  # fmt: skip
+        surface, chart = now.proof.surface, now.proof.chart
+        options = replace(given, rounds=rounds, frozen=self.frozen.on(surface, chart),
+                          bound=self.bound.left(now.moves).on(surface, chart))  # fmt: skip
         if number > 0:
             pressing, threshold = given.pressing * FIRMER**number, TIGHTER * now.proof.threshold
             options = replace(options, rounds=min(rounds, MORE_ROUNDS), pressing=pressing, threshold=threshold)
-        surface = now.proof.surface
-        return edit(surface, self.courses, options, self.progress, self.frozen.named(surface, now.proof.chart.uv))
+        return edit(surface, self.courses, options, self.progress, self.frozen.named(surface, chart))
 
     def after(self, now: Candidate, found: Edit) -> Candidate | None:
         """Move the vertices as the surface was moved, then fit and wind the mesh; None where that pierces its wall."""
         self.progress("fit")
-        more = displacement(now.proof.chart, now.proof.surface, found.surface)
-        moves = within(now.moves + more, self.options.bound)
+        surface, chart = now.proof.surface, now.proof.chart
+        more = displacement(chart, surface, found.surface, self.frozen.vertices(chart))
+        moves = within(now.moves + more, self.bound.each)
         if self.wall is not None and wall_left(self.mesh, self.wall, moves).pierced:
             return None
         return Candidate(
@@ -124,10 +123,3 @@ def edit_in_stages(run: Run, first: Candidate) -> Ended:
     elif outcome == Outcome.WINDABLE:
         outcome = Outcome.NOT_KEPT if left > 0 else Outcome.ROUNDS_SPENT
     return Ended(best, tuple(stages), outcome, () if best.proof.windable else bridges)
-
-
-def _bound_left(bound: float | None, moves: Floats) -> float | None:
-    """What is left of the bound after the moves (n, 3) so far."""
-    if bound is None:
-        return None
-    return max(bound - float(np.linalg.norm(moves, axis=1).max()), LEAST_LEFT * bound)
