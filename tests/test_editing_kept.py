@@ -32,7 +32,8 @@ def volume(surface: Surface) -> float:
 def test_free_it_moves_both_ways_and_asked_only_one() -> None:
     surface = hyperboloid()
     free, out, inward = (
-        edit(surface, WINDING, EditOptions(**kept)) for kept in ({}, dict(only_outward=True), dict(only_inward=True))
+        edit(surface, WINDING, EditOptions(only_outward=out, only_inward=inward))
+        for out, inward in ((False, False), (True, False), (False, True))
     )
     assert outward(surface, free.surface).min() < -0.05 and outward(surface, free.surface).max() > 0.05
     assert all(each.outcome is Outcome.WINDABLE for each in (free, out, inward))

@@ -12,6 +12,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.editing.feet import feet_of
 from meshwind.editing.region import lattice
 from meshwind.editing.stencil import weights
+from meshwind.editing.symmetry import Group
 from meshwind.mesh import Annulus, Mesh
 from meshwind.surface.surface import Surface
 from meshwind.workflow.option_checks import FIELD
@@ -28,6 +29,10 @@ class Bound:
     """Largest displacement: `each` is one for all vertices, one for each of them (n,), or None without any."""
 
     each: float | Floats | None
+
+    def kept(self, group: Group) -> "Bound":
+        """The same for all vertices that motions map to each other."""
+        return self if self.each is None or isinstance(self.each, float) else Bound(group.least_of(self.each))
 
     def left(self, moves: Floats) -> "Bound":
         """What is left of it after the moves (n, 3) so far."""

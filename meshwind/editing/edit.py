@@ -19,6 +19,7 @@ from meshwind.editing.result import Outcome, Round
 from meshwind.editing.shape_rows import FINE, Kept, nothing, one_way, same_volume, volume_gain
 from meshwind.editing.stencil import pitches
 from meshwind.editing.step import Demanded, Limits, Step, energy, step
+from meshwind.editing.symmetry import net_group, planes
 from meshwind.editing.windings import Course, marked_share
 from meshwind.path import Paths
 from meshwind.path.lengths import tolerated
@@ -199,13 +200,14 @@ def edit(
     options: EditOptions | None = None,
     progress: Progress | None = None,
     frozen: Mapping[str, Bools] | None = None,
+    middle: Floats | None = None,
 ) -> Edit:
     """Move the control points as little as possible until no path of any winding bridges.
 
     winding: numbers of paths, revolutions and particles, or several windings.  Between these paths others are wound, no
     further apart than the control points, so that the result does not depend on where the first path starts.
     progress: called with a line before each round.  frozen: masks (nu, nv) of what is frozen, by names, for what is
-    said of bridges left.
+    said of bridges left.  middle (3,): of the part, for mirror planes through it.
     """
     options = options or EditOptions()
     if options.threshold is not None:
@@ -214,7 +216,7 @@ def edit(
     mask, still = frozen_mask(surface, options.frozen), _bounds(surface, options) == 0.0
     names = _named(mask, frozen) | ({"a bound of 0": still} if still.any() else {})
     mask = mask | still.reshape(mask.shape)
-    moves = free_moves(surface, mask, options.symmetry)
+    moves = free_moves(surface, mask, net_group(surface, options.symmetry, planes(options.mirror), middle))
     if moves.shape[1] == 0:
         raise BadInputError("every control point is frozen; leave some free to move")
     cost = energy(surface, options.fairness)

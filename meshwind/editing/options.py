@@ -25,10 +25,11 @@ class EditOptions:
     bound: largest displacement, None for any, "field:NAME" for a scalar of the mesh file, or one for each vertex, of
     each control point (m,) where a surface is edited by itself; frozen: what must not move (see `redesign`), there as a
     mask (nu, nv) of control points or a function from their positions (m, 3) to a mask (m,); symmetry: order of
-    rotation about u that is kept; threshold: a gap up to this is none, None for the surface's uncertainty; at_most: gap
-    that may stay; keep_volume, only_outward, only_inward: what the change keeps, at samples of the surface; rounds:
-    largest number of them; fairness: wave length over the part's size at which a change of the net costs as much by its
-    bending as by its size, 0 for (6.12) alone; pressing: least normal curvature along the fibres times the part's size.
+    rotation about u that is kept; mirror: planes of reflection that are; threshold: a gap up to this is none, None for
+    the surface's uncertainty; at_most: gap that may stay; keep_volume, only_outward, only_inward: what the change
+    keeps, at samples of the surface; rounds: largest number of them; fairness: wave length over the part's size at
+    which a change of the net costs as much by its bending as by its size, 0 for (6.12) alone; pressing: least normal
+    curvature along the fibres times the part's size.
     """
 
     bound: Any = field(
@@ -53,6 +54,15 @@ class EditOptions:
         ),
     )
     symmetry: int = field(default=1, metadata=option("Order of the rotational symmetry that is kept", EDIT))
+    mirror: str | None = field(
+        default=None,
+        metadata=option(
+            'Mirror planes that are kept: x, y or z through the middle of the part, "x=12", or "a b c d" for '
+            "ax+by+cz=d, by commas",
+            EDIT,
+            metavar="PLANES",
+        ),
+    )
     threshold: float | None = field(
         default=None,
         metadata=option(

@@ -20,6 +20,7 @@ from meshwind.editing.options import EditOptions, WindingOptions
 from meshwind.editing.proof import Proof, prove_fitted
 from meshwind.editing.result import Outcome, Round
 from meshwind.editing.stages import Candidate, Run, edit_in_stages
+from meshwind.editing.symmetry import axis_of, mesh_group, planes
 from meshwind.editing.windings import Course, courses
 from meshwind.mesh import Mesh
 from meshwind.mesh.geometry.areas_and_volumes import volume
@@ -129,6 +130,7 @@ def redesign(  # noqa: PLR0913
     frozen: Frozen | str = EditOptions.frozen,
     bound: float | str | ArrayLike | None = EditOptions.bound,
     symmetry: int = EditOptions.symmetry,
+    mirror: str | None = EditOptions.mirror,
     fairness: float = EditOptions.fairness,
     pressing: float = EditOptions.pressing,
     threshold: float | None = EditOptions.threshold,
@@ -173,6 +175,9 @@ def redesign(  # noqa: PLR0913
         each vertex of the mesh; where it is 0 nothing moves.  By default there is none.
     symmetry : int, default 1
         Order of rotation about the part that is kept, a divisor of the number of control points around it.
+    mirror : str, optional
+        Mirror planes that are kept, by commas: "x", "y" or "z" for one through the middle of the part, "x=12" for one
+        at a place, or "a b c d" for ax+by+cz=d.
     fairness : float, default 0.4
         Wave length, over the size of the part, at which bending a change costs as much as the change itself.  0 for
         the objective of (6.12) alone.
@@ -215,7 +220,18 @@ def redesign(  # noqa: PLR0913
     'no fibre bridges any more'
     """
     options = EditOptions(
-        bound, frozen, symmetry, threshold, at_most, keep_volume, only_outward, only_inward, rounds, fairness, pressing
+        bound,
+        frozen,
+        symmetry,
+        mirror,
+        threshold,
+        at_most,
+        keep_volume,
+        only_outward,
+        only_inward,
+        rounds,
+        fairness,
+        pressing,
     )
     asked = WindingOptions(revolutions if isinstance(revolutions, str | float | int) else tuple(revolutions), layers)
     winding = Options(
@@ -230,13 +246,15 @@ def redesign(  # noqa: PLR0913
     part = fit_part(source, winding, Clock()).counting(threshold)
     region = region.on_skin(part.chart.annulus)
     limit = bound_of(options.bound, mesh, source.mesh, part.chart.annulus)
+    group = mesh_group(source.mesh.vertices, symmetry, planes(mirror), axis_of(part.surface))
+    limit = limit if group is None else limit.kept(group)
     chosen = None
     if layers is None:
         chosen = chosen_revolutions(part.surface, winding, Clock(progress), further=False)
         winding = replace(winding, revolutions=winding.turns if chosen is None else chosen.choice)
     wanted = courses(part.surface, asked, winding, source.mesh.units)
     first = prove_fitted(part, wanted, at_most)
-    run = Run(source.mesh, winding, wanted, options, region, limit, report, part.chart.annulus.wall)
+    run = Run(source.mesh, winding, wanted, options, region, limit, group, report, part.chart.annulus.wall)
     ended = edit_in_stages(run, Candidate(np.zeros_like(source.mesh.vertices), first))
     best = ended.best
     vertices, faces = source.mesh.vertices, source.mesh.faces

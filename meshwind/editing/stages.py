@@ -2,7 +2,10 @@
 
 from dataclasses import dataclass, replace
 
-from meshwind.core.cast import Floats
+import numpy as np
+
+from meshwind.chart import Chart
+from meshwind.core.cast import Floats, frozen
 from meshwind.core.progress import Progress
 from meshwind.editing.bound import Bound
 from meshwind.editing.edit import Edit, edit, is_better
@@ -12,10 +15,12 @@ from meshwind.editing.left import Left
 from meshwind.editing.options import EditOptions
 from meshwind.editing.proof import Proof, prove
 from meshwind.editing.result import Outcome, Round
+from meshwind.editing.symmetry import Group, planes, reflected
 from meshwind.editing.wall_left import wall_left
 from meshwind.editing.windings import Course
 from meshwind.mesh import Mesh
 from meshwind.mesh.geometry.mesh import Wall
+from meshwind.surface import Surface, fit
 from meshwind.workflow.options import Options
 
 STAGES = 3
@@ -44,7 +49,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Run:
-    """What is the same in all stages: the mesh, windings, the options as given, bounds, and the wall."""
+    """What is the same in all stages: the mesh, windings, the options as given, bounds, symmetry, wall."""
 
     mesh: Mesh
     winding: Options
@@ -52,26 +57,29 @@ class Run:
     options: EditOptions
     frozen: FrozenPart
     bound: Bound
+    group: Group | None
     progress: Progress
     wall: Wall | None
 
     def stage(self, now: Candidate, number: int, rounds: int) -> Edit:
         """Edit the surface of a candidate; each stage after the first is tighter than the one before."""
         given = self.options
-        surface, chart = now.proof.surface, now.proof.chart
+        surface, chart = self.ground(now.proof)
         options = replace(given, rounds=rounds, frozen=self.frozen.on(surface, chart),
                           bound=self.bound.left(now.moves).on(surface, chart))  # fmt: skip
         if number > 0:
             pressing, threshold = given.pressing * FIRMER**number, TIGHTER * now.proof.threshold
             options = replace(options, rounds=min(rounds, MORE_ROUNDS), pressing=pressing, threshold=threshold)
-        return edit(surface, self.courses, options, self.progress, self.frozen.named(surface, chart))
+        return edit(surface, self.courses, options, self.progress, self.frozen.named(surface, chart), self.middle)
 
     def after(self, now: Candidate, found: Edit) -> Candidate | None:
         """Move the vertices as the surface was moved, then fit and wind the mesh; None where that pierces its wall."""
         self.progress("fit")
-        surface, chart = now.proof.surface, now.proof.chart
-        more = displacement(chart, surface, found.surface, self.frozen.vertices(chart))
-        moves = within(now.moves + more, self.bound.each)
+        surface, chart = self.ground(now.proof)
+        still, group = self.frozen.vertices(chart), self.group
+        more = displacement(chart, surface, found.surface, still if group is None else group.any_of(still))
+        moves = now.moves + more if group is None else group.mean(now.moves + more)
+        moves = within(moves, self.bound.each)
         if self.wall is not None and wall_left(self.mesh, self.wall, moves).pierced:
             return None
         return Candidate(
@@ -80,6 +88,23 @@ class Run:
                 displaced(self.mesh, moves), self.winding, self.courses, self.options.threshold, self.options.at_most
             ),
         )
+
+    @property
+    def middle(self) -> Floats:
+        """The middle of the part, through which mirror planes go."""
+        return np.asarray(self.mesh.vertices.mean(axis=0))
+
+    def ground(self, proof: Proof) -> tuple[Surface, Chart]:
+        """The surface that is edited and its chart: those of a proof, or with mirrors others that begin at a plane."""
+        mirrors = planes(self.options.mirror)
+        found = [reflected(proof.surface, plane, self.middle) for plane in mirrors]
+        turn = next((each.turn for each in found if each.sign < 0), 0.0)
+        if turn == 0.0:
+            return proof.surface, proof.chart
+        by = np.array([0.5 * turn, 0.0])
+        chart = replace(proof.chart, uv=frozen(proof.chart.uv - by), corner_uv=frozen(proof.chart.corner_uv - by))
+        surface = replace(fit(chart, self.winding.tolerance), threshold=proof.surface.threshold)
+        return surface, chart
 
     def can_go_on(self, proof: Proof) -> bool:
         """Whether what must not move and the symmetry can be kept on the control net of another surface."""
