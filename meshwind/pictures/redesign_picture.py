@@ -30,6 +30,10 @@ def draw(window: Any, scene: RedesignScene, page: Page) -> Any:
         edges = round(left), round(top), round(left + width), round(top + height)
         image.paste(canvas.shot(window, page).crop(edges), edges[:2])
         pen.text(box[:2], name, canvas.INK, font=canvas.face(page, 25))
+    if len(scene.arrows):
+        words = "arrows: how it moves" if scene.longer == 1.0 else f"arrows: {scene.longer:g} times the displacement"
+        place = boxes[0][0] + page.unit * 110, boxes[0][1] + page.unit * 4
+        pen.text(place, words, canvas.INK, font=canvas.face(page, 20))
     canvas.scale_bar(image, pen, page, scene.scale)
     canvas.ruler(pen, page, scale, scene.frame.units)
     canvas.axes(pen, page, view)
@@ -55,3 +59,20 @@ def add(window: Any, scene: RedesignScene, after: bool) -> None:
         colours = colour_map(scene.scale.colours)
         look = {"scalars": "shares", "cmap": colours, "clim": [0.0, 1.0], "ambient": 0.55, "diffuse": 0.5}
     window.add_mesh(part, show_scalar_bar=False, render=False, **look)
+    if not after and len(scene.arrows):
+        _add_arrows(window, scene)
+
+
+def _add_arrows(window: Any, scene: RedesignScene) -> None:
+    """Add arrows on the part as it was: those outward begin on it, those inward end on it."""
+    at, moves = scene.before[scene.arrows], scene.longer * (scene.after - scene.before)[scene.arrows]
+    cloud = pv.PolyData(np.where(scene.outward[:, None], at, at - moves))
+    cloud.point_data["moves"] = moves
+    cloud.point_data["shares"] = np.asarray(scene.shares)[scene.arrows]
+    arrow = pv.Arrow(tip_length=0.35, tip_radius=0.13, shaft_radius=0.045, tip_resolution=12, shaft_resolution=8)
+    arrows = cloud.glyph(orient="moves", scale="moves", factor=1.0, geom=arrow)
+    colours = colour_map(scene.scale.colours)
+    window.add_mesh(
+        arrows, scalars="shares", cmap=colours, clim=[0.0, 1.0], show_scalar_bar=False, render=False, ambient=0.5,
+        diffuse=0.5,
+    )  # fmt: skip

@@ -6,7 +6,7 @@ from pathlib import Path
 import igl
 import numpy as np
 
-from meshwind.appearance.looks import DIVERGING, Look, both_ways
+from meshwind.appearance.looks import DIVERGING, Look, both_ways, round_below
 from meshwind.appearance.view import around, merit_view, named_view
 from meshwind.appearance.words import quantity
 from meshwind.core.cast import Floats, Ints, floats, ints
@@ -19,6 +19,9 @@ from meshwind.results.schema import LENGTHS
 
 _MOVES = Look("displacement", "moved outward\n(red) or\ninward (blue)", LENGTHS, DIVERGING, both_ways)
 _EYES = 240
+_LONGEST, _SHORTEST, _APART = 0.08, 0.08, 0.055
+"""Over the part's size the longest arrow, where displacements are smaller, and the distance of arrows; over the largest
+displacement that of the shortest arrow."""
 _MOVED = 0.01
 """Displacement over the largest above which a vertex counts as moved."""
 
@@ -105,4 +108,21 @@ def redesign_scene(
     title = f"{name}: before and after the redesign"
     subtitle = f"vertices move by up to {quantity(float(size.max()), units, 3)}; {changed:.0f} % of them move"
     frame = Frame(title, subtitle, units, view)
-    return RedesignScene(frame, scale, scale.shares(outward), vertices, after, corners)
+    longest = float(size.max())
+    longer = (
+        1.0 if longest == 0.0 else max(1.0, round_below(_LONGEST * float(np.ptp(vertices, axis=0).max()) / longest))
+    )
+    arrows = _spread(vertices, np.flatnonzero(size > _SHORTEST * longest), size)
+    return RedesignScene(
+        frame, scale, scale.shares(outward), vertices, after, corners, arrows, longer, outward[arrows] >= 0.0
+    )
+
+
+def _spread(points: Floats, some: Ints, size: Floats) -> Ints:
+    """Of some points (k,) the one with the largest size in each cell of a grid."""
+    if not len(some):
+        return some
+    cell = np.floor(points[some] / (_APART * float(np.ptp(points, axis=0).max()))).astype(np.int64)
+    order = np.lexsort((-size[some], *cell.T))
+    first = np.append(True, (np.diff(cell[order], axis=0) != 0).any(axis=1))
+    return np.asarray(some[order[first]])

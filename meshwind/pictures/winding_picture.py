@@ -27,7 +27,7 @@ def lettered(image: Any, scene: WindingScene, page: Page) -> Any:
     frame = scene.frame
     pen = canvas.titled(image, page, frame)
     canvas.legend(pen, page, families(scene.fibres))
-    if len(scene.bridges.points):
+    if scene.max_gap > 0.0:
         words = ["bridges:", f"gap in {frame.units}" if frame.units else "gap"]
         canvas.colour_bar(image, pen, page, GAPS, words, marks(scene.max_gap))
     canvas.ruler(pen, page, canvas.fitting(page, frame.view), frame.units)

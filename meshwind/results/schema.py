@@ -193,7 +193,7 @@ def program_movie(kind: str) -> File:
 
 
 FIT_PICTURE, REVOLUTIONS_PICTURE = picture("fit_error"), picture("revolutions")
-BEFORE, AFTER = picture("before"), picture("after")
+BEFORE, AFTER, SLICE, ROUNDS = picture("before"), picture("after"), picture("slice"), picture("rounds")
 
 # exports
 
@@ -298,7 +298,19 @@ EXPORTS = re.compile(
 
 RESULTS = frozenset(
     (PATHS, BRIDGES, FILAMENT, CROSSINGS, QUADS, QUADS_OBJ, SURFACE, SPLINE, CHART, EDITED, EDITED_PLY, REPORT)
-    + (CONFIG, VIEWER, FIT_PICTURE, REVOLUTIONS_PICTURE, BEFORE, AFTER, STATIONS, LAYER_FIBRES, LAYER_SURFACES)
+    + (
+        CONFIG,
+        VIEWER,
+        FIT_PICTURE,
+        REVOLUTIONS_PICTURE,
+        BEFORE,
+        AFTER,
+        SLICE,
+        ROUNDS,
+        STATIONS,
+        LAYER_FIBRES,
+        LAYER_SURFACES,
+    )
     + (LAMINATE,)
     + tuple(picture(name) for name in (*PICTURES, REDESIGN, SHEET))
     + tuple(movie(kind) for kind in MOVIES)

@@ -5,6 +5,7 @@ from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
+from meshwind.appearance.view import View
 from meshwind.core.version import version
 from meshwind.editing.notes import about_wall
 from meshwind.editing.redesign import Redesign
@@ -12,14 +13,16 @@ from meshwind.editing.report import redesign_report
 from meshwind.layup.layup import assess
 from meshwind.pictures import driver
 from meshwind.pictures.drawings import Drawing
+from meshwind.pictures.history_scenes import rounds_scene, slice_scene
 from meshwind.pictures.redesign_scene import redesign_scene
+from meshwind.pictures.scenes import RoundsScene, Scene
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.results import folder
 from meshwind.results.config_file import write_config
 from meshwind.results.redesign_report_types import RedesignReport
 from meshwind.results.report import write_report
-from meshwind.results.schema import AFTER, BEFORE, CONFIG, REDESIGN, REPORT, picture
+from meshwind.results.schema import AFTER, BEFORE, CONFIG, REDESIGN, REPORT, ROUNDS, SLICE, File, picture
 from meshwind.results.write import write_edited
 from meshwind.workflow.clock import Clock
 from meshwind.workflow.notes import Note, about_file, about_opening
@@ -39,8 +42,8 @@ def write_redesign(
     """Write the results of a redesign into a folder.
 
     The folder gets `edited.ply`, `edited.vtu`, `report.json`, with `options` also `meshwind.toml`, and with `render`
-    the pictures `before.png` and `after.png` of the windings and `redesign.png` of what was moved.  All files appear,
-    or none.
+    the pictures `before.png` and `after.png` of the windings, `redesign.png` of what was moved, `slice.png`, a cut along
+    the worst bridge, and `rounds.png`, how the rounds went.  All files appear, or none.
 
     Parameters
     ----------
@@ -100,12 +103,39 @@ def write_redesign(
 
 
 def _pictures(out: Path, edited: Redesign, units: str) -> dict[Path, Drawing]:
-    part, name, turns = edited.part, edited.part.name, edited.revolutions
-    before = subject(assess(edited.before.paths), f"{name}, as it was", units, turns)
-    after = subject(assess(edited.after.paths), f"{name}, edited", units, turns, before.view)
+    part, name = edited.part, edited.part.name
+    which = _shown(edited)
+    course, turns = edited.windings[which], edited.windings[which].revolutions
+    wound = "" if len(edited.windings) == 1 else f", {course.name}"
+    laid = edited.before.wound[which], edited.after.wound[which]
+    before = winding_scene(subject(assess(laid[0]), f"{name}, as it was{wound}", units, turns))
+    view = before.frame.view
+    after = winding_scene(subject(assess(laid[1]), f"{name}, edited{wound}", units, turns, view))
+    most = max(before.max_gap, after.max_gap)  # one scale for both
     moved = redesign_scene(part.vertices, edited.displacement, part.faces, name, units)
-    return {
-        out / BEFORE: Drawing(winding_scene(before)),
-        out / AFTER: Drawing(winding_scene(after)),
-        out / picture(REDESIGN): Drawing(moved),
-    }
+    cut = slice_scene(*laid, part.vertices, edited.displacement, part.faces, (name, units), view)
+    scenes: dict[File, Scene | None] = {
+        BEFORE: replace(before, max_gap=most), AFTER: replace(after, max_gap=most), picture(REDESIGN): moved,
+        SLICE: cut, ROUNDS: _rounds(edited, units, view),
+    }  # fmt: skip
+    return {out / file: Drawing(scene) for file, scene in scenes.items() if scene is not None}
+
+
+def _shown(edited: Redesign) -> int:
+    """The winding that pictures show: of those of two families the one with the largest gap before."""
+    helical = [k for k, course in enumerate(edited.windings) if not course.is_hoop] or [0]
+    return max(helical, key=lambda k: edited.before.gaps[k])
+
+
+def _rounds(edited: Redesign, units: str, view: View) -> RoundsScene | None:
+    """The history of the rounds; None without any."""
+    if not edited.rounds:
+        return None
+    first = edited.rounds[0]
+    names = [(stage, number) for stage, rounds in enumerate(edited.stages, 1) for number in range(1, len(rounds) + 1)]
+    return rounds_scene(
+        [first.gap_before, *(each.gap_after for each in edited.rounds)],
+        [first.bridged_before, *(each.bridged_after for each in edited.rounds)],
+        [0.0, *(each.change for each in edited.rounds)], [(1, 0), *names], first.threshold, edited.part.name, units,
+        view,
+    )  # fmt: skip
