@@ -21,9 +21,14 @@ _HEAD = 400
 MISSING = "STEP and IGES need OpenCASCADE; install it with: pip install 'meshwind[cad]'"
 
 
+def is_there() -> bool:
+    """Whether OpenCASCADE is installed and new enough."""
+    return find_spec("OCP") is not None and find_spec("OCP.collections") is not None
+
+
 def need(before: str = "") -> None:
     """Raise BadInputError, with words before it, if OpenCASCADE is not installed or too old."""
-    if find_spec("OCP") is None or find_spec("OCP.collections") is None:
+    if not is_there():
         raise BadInputError(before + MISSING)
 
 

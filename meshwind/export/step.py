@@ -39,6 +39,12 @@ def write_step(folder: Path, results: Results) -> list[str]:
     return notes
 
 
+def write_step_of(path: Path, surface: Surface, units: str) -> None:
+    """Write one surface as a face, in mm; raises BadInputError without OpenCASCADE."""
+    need()
+    _write(path, [("surface", face(surface, millimetres(units)))])
+
+
 def face(surface: Surface, scale: float = 1.0) -> Any:
     """The surface as a face of OpenCASCADE."""
     poles, knots_u, knots_v = clamped_surface(surface)

@@ -29,7 +29,9 @@ def draw(window: Any, scene: SliceScene, page: Page) -> Any:
     stretch, high, low = _stretched(scene, (to - x) * height / width)
     here.set_ylim(low, high)
     for lines, colour, name in ((scene.before, _BEFORE, "before"), (scene.after, _AFTER, "after")):
-        here.add_collection(LineCollection(list(lines), colors=colour, linewidths=3.0 * s, label=name, capstyle="round"))
+        here.add_collection(
+            LineCollection(list(lines), colors=colour, linewidths=3.0 * s, label=name, capstyle="round")
+        )
     here.plot(*scene.fibre.T, color=_FIBRE, linewidth=2.0 * s, label="fibre before")
     if len(scene.fibre_after):
         style = dict(color=_FIBRE, linewidth=2.0 * s, linestyle=(0, (4, 2)))

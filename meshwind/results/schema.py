@@ -197,6 +197,7 @@ BEFORE, AFTER, SLICE, ROUNDS = picture("before"), picture("after"), picture("sli
 
 # exports
 
+EDITED_STEP = File("edited.step")
 VIEWER = File("viewer.html")
 SHELL, SHELL_S4R = File("shell.inp"), File("shell_s4r.inp")
 STEP = File("surface.step")
@@ -298,20 +299,8 @@ EXPORTS = re.compile(
 
 RESULTS = frozenset(
     (PATHS, BRIDGES, FILAMENT, CROSSINGS, QUADS, QUADS_OBJ, SURFACE, SPLINE, CHART, EDITED, EDITED_PLY, REPORT)
-    + (
-        CONFIG,
-        VIEWER,
-        FIT_PICTURE,
-        REVOLUTIONS_PICTURE,
-        BEFORE,
-        AFTER,
-        SLICE,
-        ROUNDS,
-        STATIONS,
-        LAYER_FIBRES,
-        LAYER_SURFACES,
-    )
-    + (LAMINATE,)
+    + (CONFIG, VIEWER, FIT_PICTURE, REVOLUTIONS_PICTURE, BEFORE, AFTER, STATIONS, LAYER_FIBRES, LAYER_SURFACES)
+    + (LAMINATE, SLICE, ROUNDS, EDITED_STEP)
     + tuple(picture(name) for name in (*PICTURES, REDESIGN, SHEET))
     + tuple(movie(kind) for kind in MOVIES)
 )

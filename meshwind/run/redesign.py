@@ -6,10 +6,12 @@ from os import PathLike
 from pathlib import Path
 
 from meshwind.appearance.view import View
+from meshwind.core.opencascade import is_there
 from meshwind.core.version import version
 from meshwind.editing.notes import about_wall
 from meshwind.editing.redesign import Redesign
 from meshwind.editing.report import redesign_report
+from meshwind.export.step import write_step_of
 from meshwind.layup.layup import assess
 from meshwind.pictures import driver
 from meshwind.pictures.drawings import Drawing
@@ -22,7 +24,7 @@ from meshwind.results import folder
 from meshwind.results.config_file import write_config
 from meshwind.results.redesign_report_types import RedesignReport
 from meshwind.results.report import write_report
-from meshwind.results.schema import AFTER, BEFORE, CONFIG, REDESIGN, REPORT, ROUNDS, SLICE, File, picture
+from meshwind.results.schema import AFTER, BEFORE, CONFIG, EDITED_STEP, REDESIGN, REPORT, ROUNDS, SLICE, File, picture
 from meshwind.results.write import write_edited
 from meshwind.workflow.clock import Clock
 from meshwind.workflow.notes import Note, about_file, about_opening
@@ -42,8 +44,9 @@ def write_redesign(
     """Write the results of a redesign into a folder.
 
     The folder gets `edited.ply`, `edited.vtu`, `report.json`, with `options` also `meshwind.toml`, and with `render`
-    the pictures `before.png` and `after.png` of the windings, `redesign.png` of what was moved, `slice.png`, a cut along
-    the worst bridge, and `rounds.png`, how the rounds went.  All files appear, or none.
+    the pictures `before.png` and `after.png` of the windings, `redesign.png` of what was moved, `slice.png`, a cut
+    along the worst bridge, and `rounds.png`, how the rounds went; with meshwind[cad] also `edited.step`, the surface
+    fitted to the edited mesh.  All files appear, or none.
 
     Parameters
     ----------
@@ -90,6 +93,8 @@ def write_redesign(
     with folder.writing(Path(out), overwrite) as staging:
         with clock.stage("write"):
             write_edited(staging, edited.mesh, edited.displacement, units)
+            if is_there():
+                write_step_of(staging / EDITED_STEP, edited.after.surface, units)
         if render:
             with clock.stage("render"):
                 missing = driver.paint(_pictures(staging, edited, units))
