@@ -8,12 +8,15 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 import meshwind as mw
+from meshwind.mesh.geometry.facet_tree import FacetTree
 
 DATA = Path(__file__).parents[1] / "data"
 FILES = {"edited.ply", "edited.vtu", "report.json", "meshwind.toml"}
-PICTURES = {"before.png", "after.png", "redesign.png"}
+PICTURES = {"before.png", "after.png", "redesign.png", "slice.png", "rounds.png"}
+BY_CAD = {"edited.step"}
 
 
 def meshwind(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
@@ -32,7 +35,7 @@ def vase(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
 
 def test_the_folder_holds_the_edited_mesh_and_a_report(vase: tuple[Path, str]) -> None:
     folder, printed = vase
-    assert {path.name for path in folder.iterdir()} - PICTURES == FILES
+    assert {path.name for path in folder.iterdir()} - PICTURES - BY_CAD == FILES
     report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
     assert report["redesign"]["windable"] and report["redesign"]["bridged"]["after"] == 0.0
     assert report["redesign"]["bridged"]["before"] > 0.0
@@ -45,7 +48,7 @@ def test_the_folder_holds_the_edited_mesh_and_a_report(vase: tuple[Path, str]) -
 
 @pytest.mark.usefixtures("opengl")
 def test_the_folder_holds_pictures(vase: tuple[Path, str]) -> None:
-    assert {path.name for path in vase[0].iterdir()} - FILES == PICTURES
+    assert {path.name for path in vase[0].iterdir()} - FILES - BY_CAD == PICTURES
 
 
 def test_the_edited_mesh_is_the_one_that_was_read_moved(vase: tuple[Path, str]) -> None:
@@ -67,6 +70,18 @@ def test_the_edited_mesh_wound_from_its_file_does_not_bridge(vase: tuple[Path, s
     before, after = (mw.wind(mesh, paths=6, revolutions=0.8) for mesh in (DATA / "vase.stl", folder / "edited.ply"))
     assert before.paths.gap.max() > threshold
     assert after.settled and after.paths.gap.max() <= threshold
+
+
+def test_the_edited_surface_is_in_the_step_file(vase: tuple[Path, str]) -> None:
+    pytest.importorskip("OCP.collections")
+    folder, _ = vase
+    part, edited = mw.read(folder / "edited.step"), mw.read(folder / "edited.ply")
+    assert part.units == "mm"
+    far = cKDTree(part.vertices).query(edited.vertices[np.abs(edited.vertices[:, 2] - 100.0) < 60.0])[0]
+    assert far.max() < 0.05 * edited.diagonal  # its facets are coarse
+    # the surface itself: vertices of its facets lie on the facets of the edited mesh
+    tree = FacetTree.of(edited.vertices, edited.faces)
+    assert tree.distances(part.vertices).max() < 0.3
 
 
 @pytest.mark.usefixtures("opengl")

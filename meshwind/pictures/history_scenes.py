@@ -13,7 +13,7 @@ from meshwind.pictures.scenes import Frame, RoundsScene, SliceScene
 
 _BESIDE = 0.25
 """Of the length of a bridge: what is shown of the part beyond each of its ends."""
-_NEAR = 0.02
+_NEAR = 0.01
 """Of the same: a fibre further off the plane is not drawn in it."""
 
 

@@ -39,7 +39,7 @@ def draw(window: Any, scene: RoundsScene, page: Page) -> Any:
         made.append(here)
     made[0].set_yscale("log")
     made[0].axhline(scene.threshold, color=canvas.INK, linewidth=s)
-    made[0].text(count - 0.82, scene.threshold, "counts as none ", ha="right", va="bottom", fontsize=TICKS * s)
+    made[0].text(-0.18, scene.threshold, "counts as none", ha="left", va="bottom", fontsize=TICKS * s)
     for here in made[1:]:
         here.set_ylim(0.0, None)
     made[2].set_xlabel("stage and round", fontsize=LABEL * s)
