@@ -13,19 +13,9 @@ _LEAP = 2.0
 """Factor by which one trial's revolutions may differ from those of the one before."""
 _HALVED = 3
 """Every so many trials between two bounds the middle is taken, so that the bracket closes whatever the curve."""
-_LOWER, _DOWN = 0.9, 40
-"""Steps that lower revolutions until all paths are held, as there may be several ranges where they are, ..."""
-_HALVINGS = 4
-"""... and halvings of the last one: to 0.6 % of the revolutions."""
-_BACK = 0.02
-"""Share of the revolutions that is given up at a brink, as more particles slide off sooner; it doubles by trial."""
-_BACKWARDS = 7
-"""Trials on the way back: up to most of the revolutions."""
-
-
-_SPREAD = 25
-"""Trials all over the revolutions, about a quarter apart, ..."""
-_NARROWED, _WITHIN = 4, 3
+_APART, _FEW = 1.3, 9
+"""Factor between trials all over the revolutions, and how many there are at the least, ..."""
+_NARROWED, _WITHIN = 3, 3
 """... and rounds of trials between two of them, and trials of a round: the way becomes a quarter each time."""
 
 
@@ -82,7 +72,8 @@ def survey(
 
     On bent parts the angle does not grow with every turn: it has lows, and ranges where no path comes to rest.
     """
-    turns = np.geomspace(*span, _SPREAD)
+    low, high = span
+    turns = np.geomspace(low, high, max(_FEW, 1 + int(np.ceil(np.log(high / low) / np.log(_APART)))))
     angles = [measure(float(each)) for each in turns]
     off = np.array([np.nan if each is None else each - wanted for each in angles])
     if np.isnan(off).all():
@@ -110,30 +101,3 @@ def survey(
             low, high = known[max(least - 1, 0)][0], known[min(least + 1, len(known) - 1)][0]
     at, least_off = min((each for each in tried if np.isfinite(each[1])), key=lambda each: abs(each[1]))
     return Hunt(at, wanted + least_off, best.lost, best.within or len(across) > 0)
-
-
-def last_held(held: Callable[[float], bool], high: float) -> tuple[float, float]:
-    """About the most revolutions up to `high` at which all paths are held, 0 if there are none, and the least without.
-
-    The latter is infinite where all are held.
-    """
-    low, lost = high, np.inf
-    for _ in range(_DOWN):
-        if held(low):
-            break
-        low, lost = _LOWER * low, low
-    else:
-        return 0.0, lost
-    for _ in range(_HALVINGS if np.isfinite(lost) else 0):
-        middle = 0.5 * (low + lost)
-        low, lost = (middle, lost) if held(middle) else (low, middle)
-    return low, lost
-
-
-def back_to_held(held: Callable[[float], bool], high: float) -> float:
-    """Revolutions a little below `high` at which all paths are held, in growing steps down; 0 if there are none."""
-    for trial in range(_BACKWARDS):
-        turns = (1.0 - _BACK * 2**trial) * high
-        if held(turns):
-            return turns
-    return 0.0

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from meshwind.core.cast import Bools
+from meshwind.core.cast import Bools, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.core.progress import Progress, silent
 from meshwind.filament.ends import Wish
@@ -16,13 +16,18 @@ from meshwind.path import Paths, Status, solve
 from meshwind.path.friction import Friction
 from meshwind.planning.families import families
 from meshwind.surface import Surface
-from meshwind.workflow.angle_search import back_to_held, hunt, last_held, survey
+from meshwind.workflow.angle_search import hunt, survey
 from meshwind.workflow.notes import Note
 
-_TRIAL_PATHS, _TRIAL_PARTICLES = 24, 101
-"""Paths a family at most, and their particles, with which revolutions and the number of paths are found, ..."""
-_ROUGH_PATHS, _ROUGH_PARTICLES = 8, 51
-"""... and those that the search begins with, at about a tenth of the work."""
+_PARTICLES = 401
+"""Particles of a trial's path: fewer do not come to rest round the edges of a flat part, and take longer to say so."""
+_TRIAL_PATHS, _ROUGH_PATHS = 24, 8
+"""Paths a family at most with which revolutions and the number of paths are found, and those that a search begins with.
+"""
+_MOST = 0.75
+"""Share of the paths that are to come to rest for their angle to count: a layer is not wound with a few of them."""
+_FIRST = (0.0, 0.2, 0.6, 0.9)
+"""Places in the order of a trial's paths of those that go first: where one at most comes to rest, most will not."""
 _COUNTED_PATHS = 96
 """Paths a family with which those that cover are counted: on the sample parts within 0.03 % of as many as one likes."""
 _FURTHEST = 4.0
@@ -30,12 +35,18 @@ _FURTHEST = 4.0
 
 A fibre that needs more winds on and on at a narrow place, and hardly gets steeper at the widest.
 """
+_PAST = 2.0
+"""Factor over the least revolutions at which paths do not come to rest, beyond which they are not tried again."""
 _FEWEST = 1 / 200
 """Share of these that is tried at the least where the angle is not met: nearly none, along the part."""
 _ABOUT = 1.3
 """Factor about the revolutions of a few paths within which those of more paths are looked for."""
 _AS_WIDE = 1e-6
 """Share by which level lines may be shorter than the longest and still count as the widest place."""
+_BACK = (0.02, 0.04, 0.08, 0.15, 0.3)
+"""Shares of the revolutions that are given up at a brink, as more paths and particles slide off sooner, ..."""
+_FOR_ALL = 0.05
+"""... and the largest share that the last path which slides off is worth."""
 _NEAR, _ROUGHLY = np.radians(0.05), np.radians(0.2)
 """How near an angle is to be met in the end and by the search's beginning, ..."""
 _ENOUGH = np.radians(0.5)
@@ -74,7 +85,7 @@ class Turned:
         if self.reached > self.asked:
             why = "neither fewer revolutions nor more bring it nearer"
         elif np.isfinite(self.lost):
-            why = f"at {self.lost:.4g} paths slide off or are unstable"
+            why = f"at {self.lost:.4g} paths slide off or are unstable, more than {1.0 - _MOST:.0%} of them"
         else:
             why = f"up to {_FURTHEST:g} times the revolutions of a tube were tried"
         return (
@@ -119,23 +130,27 @@ class Helices:
     paths: int = _COUNTED_PATHS
     say: Progress = silent
 
-    def laid(self, paths: int, revolutions: float, particles: int | None) -> Paths:
-        """Lay both families."""
+    def laid(self, paths: int, revolutions: float, particles: int | None, which: Ints | None = None) -> Paths:
+        """Lay both families, or some of their paths."""
         ends = families(self.surface, paths, revolutions, between=self.between)
-        return solve(
-            self.surface, ends.start, ends.end, family=ends.family, particles=particles, friction=self.friction
-        )
+        some = np.arange(len(ends.family)) if which is None else which
+        start, end, family = ends.start[some], ends.end[some], ends.family[some]
+        return solve(self.surface, start, end, family=family, particles=particles, friction=self.friction)
 
-    def tried(self, revolutions: float, paths: int, particles: int = _TRIAL_PARTICLES) -> Paths | None:
-        """Trial paths, so many a family, or None where none of them comes to rest."""
-        laid = self._on_trial(paths, revolutions, particles)
-        held = laid.status == Status.CONVERGED
-        return laid.subset(held) if held.any() else None
-
-    def _on_trial(self, paths: int, revolutions: float, particles: int) -> Paths:
-        """Lay both families with so many particles, or some a turn."""
+    def tried(self, revolutions: float, paths: int, most: float = 0.0) -> Paths | None:
+        """Trial paths, so many a family, that come to rest; None where none does, or not a share `most` of them."""
         self.say(f"{revolutions:.4g} revolutions")
-        return self.laid(paths, revolutions, max(particles, int(np.ceil(SCOUTS_PER_TURN * revolutions))))
+        if most > 0.0:
+            first = self._on_trial(paths, revolutions, (np.array(_FIRST) * 2 * paths).astype(np.int64))
+            if np.count_nonzero(first.status == Status.CONVERGED) <= 1:
+                return None
+        laid = self._on_trial(paths, revolutions)
+        held = laid.status == Status.CONVERGED
+        return laid.subset(held) if held.any() and held.mean() >= most else None
+
+    def _on_trial(self, paths: int, revolutions: float, which: Ints | None = None) -> Paths:
+        """Lay both families, or some of their paths, with enough particles a turn."""
+        return self.laid(paths, revolutions, max(_PARTICLES, int(np.ceil(SCOUTS_PER_TURN * revolutions))), which)
 
     def settled(
         self, angle: float | None, revolutions: float | str | None, paths: int | str, width: float
@@ -157,27 +172,28 @@ class Helices:
     def turned_to(self, angle: float, place: str | None = None) -> Turned:
         """Revolutions at which the median winding angle is as wanted, in radians, or as near as the part allows.
 
-        place: where, as `station` reads it, or the widest place of the layer.  A few paths of few particles come first,
-        and then those that tell the angle, most often once or twice.
+        place: where, as `station` reads it, or the widest place of the layer.  A few paths come first, and then those
+        that tell the angle, most often once or twice.
         Raises BadInputError where no path comes to rest at all.
         """
         v = self._widest if place is None else station(place, self.lines)
         tube = self._on_a_tube(angle)
         most = _FURTHEST * tube
 
-        def measured(turns: float, paths: int, particles: int) -> float | None:
-            trial = self.tried(turns, min(self.paths, paths), particles)
+        def measured(turns: float, paths: int) -> float | None:
+            trial = self.tried(turns, min(self.paths, paths), _MOST)
             return None if trial is None else median_angle(trial, v, self.paths)
 
         def rough(turns: float) -> float | None:
-            return measured(turns, _ROUGH_PATHS, _ROUGH_PARTICLES)
+            return measured(turns, _ROUGH_PATHS)
 
         def fine(turns: float) -> float | None:
-            return measured(turns, _TRIAL_PATHS, _TRIAL_PARTICLES)
+            return measured(turns, _TRIAL_PATHS)
 
         found = hunt(rough, angle, tube, _ROUGHLY, most)
-        if not abs(found.reached - angle) <= _ENOUGH:
-            found = survey(rough, angle, _ROUGHLY, (_FEWEST * most, most), found)
+        at_a_brink = np.isfinite(found.lost) and found.reached < angle
+        if not abs(found.reached - angle) <= _ENOUGH and not at_a_brink:
+            found = survey(rough, angle, _ROUGHLY, (_FEWEST * most, min(most, _PAST * found.lost)), found)
         if found.within or found.reached > angle:
             start = found.revolutions
             found = hunt(fine, angle, start, _NEAR, most)
@@ -208,22 +224,18 @@ class Helices:
         return float(np.tan(angle) * (high - low) / self.lines.length[self._inside].mean())
 
     def _steepest(self, found: Turned) -> Turned:
-        """About the most revolutions up to those found at which every path is at rest; those found if there are none.
+        """A little less than the revolutions found, at which every path is at rest, or else most are.
 
         An angle that is out of reach is not worth paths that slide off.
         """
-        sure: list[Paths] = []
-
-        def held(turns: float, paths: int, particles: int) -> bool:
-            laid = self._on_trial(min(self.paths, paths), turns, particles)
-            sure[:] = [laid]
-            return bool((laid.status == Status.CONVERGED).all())
-
-        if not np.isfinite(found.lost) and held(found.revolutions, _TRIAL_PATHS, _TRIAL_PARTICLES):
-            return found
-        most, lost = last_held(lambda turns: held(turns, _ROUGH_PATHS, _ROUGH_PARTICLES), found.revolutions)
-        turns = back_to_held(lambda turns: held(turns, _TRIAL_PATHS, _TRIAL_PARTICLES), most)
-        if not turns > 0.0:
-            return found
-        reached = median_angle(sure[0], found.v, self.paths)
-        return replace(found, revolutions=turns, reached=reached, lost=min(found.lost, lost))
+        best, most = found, 0.0
+        at_a_brink = np.isfinite(found.lost) and found.reached < found.asked
+        for share in _BACK if at_a_brink else (0.0,):
+            turns = (1.0 - share) * found.revolutions
+            trial = self.tried(turns, min(self.paths, _TRIAL_PATHS), _MOST)
+            if trial is not None and len(trial) > most:
+                reached = median_angle(trial, found.v, self.paths)
+                best, most = replace(found, revolutions=turns, reached=reached), len(trial)
+            if most == 2 * min(self.paths, _TRIAL_PATHS) or (most and share > _FOR_ALL):
+                break
+        return best
