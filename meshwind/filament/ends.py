@@ -13,7 +13,7 @@ from meshwind.core.parsing import AUTO
 from meshwind.filament.collar_turn import Collar
 from meshwind.filament.edge import Edge, Legs, edge
 from meshwind.filament.joining import Surplus
-from meshwind.filament.lift import legs_of_all
+from meshwind.filament.lift import legs_of_all, lifts
 from meshwind.filament.part_edge import part_edge
 from meshwind.filament.part_turn import Bend
 from meshwind.filament.pin_turn import Pins, Shaft
@@ -187,7 +187,7 @@ def choose_end(surface: Surface, end: int, plan: LayerPlan, word: str, scouts: P
     friction = float(held.table[:, -end].min())
     pitch = on.hull.perimeter / plan.paths
     pins = Pins(on, _PIN_HIGH * pitch, _PIN_WIDE * pitch, pitch)
-    if any(legs.lift is not None for legs in legs_of_all(pins, scouts)):
+    if lifts(on, scouts):
         pins = replace(pins, height=_PIN_HIGHER * pitch)
     if word == "pins":
         return End(surface, v, on, pins)

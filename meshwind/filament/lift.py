@@ -46,8 +46,7 @@ def legs_of_all(turn: Turnaround, paths: Paths, families: tuple[int, ...] = (1, 
     rows = np.concatenate([np.flatnonzero(paths.family == family) for family in families])
     around, height = (np.concatenate([getattr(each, name) for each in crossing]) for name in ("around", "height"))
     rays = Rays.of(on, paths, rows)
-    _, ahead = rays.at(np.zeros(len(rows)))
-    which = np.flatnonzero((ahead * on.normals(around, height)).sum(axis=1) < -_FLUSH)
+    which = _coming_in(on, rays, around, height)
     if not len(which):
         return crossing
     rays = rays.chosen(which)
@@ -65,6 +64,18 @@ def legs_of_all(turn: Turnaround, paths: Paths, families: tuple[int, ...] = (1, 
             one = replace(one, height=frozen(up))
         made.append(one)
     return made
+
+
+def lifts(on: Edge, paths: Paths) -> bool:
+    """Whether any fibre comes in to the prism of an edge, so that it leaves the part before the rim."""
+    around, height = on.around(paths.uv[:, -on.end, 0]), (paths.points[:, -on.end] - on.origin) @ on.axis
+    return len(_coming_in(on, Rays.of(on, paths, np.arange(len(paths))), around, height)) > 0
+
+
+def _coming_in(on: Edge, rays: Rays, around: Floats, height: Floats) -> Ints:
+    """Which rays meet the prism as they cross the rim, at lengths (n,) along the hull and heights (n,)."""
+    _, ahead = rays.at(np.zeros(len(around)))
+    return np.flatnonzero((ahead * on.normals(around, height)).sum(axis=1) < -_FLUSH)
 
 
 def leaning(turn: Turnaround, paths: Paths, family: int) -> float:

@@ -17,8 +17,9 @@ from meshwind.surface.surface import Surface
 
 _SCOUTS, _ANGLED = 12, 24
 """Paths per family that turnarounds and dwells are planned with, and those from which an angle is told as well."""
-_PARTICLES = 101
-"""Their particles: dwells of pins are then right to 1e-4 turns."""
+_PARTICLES = 401
+"""Their particles: dwells of pins are then right to 1e-5 turns, and paths with friction or round sharp edges come to
+rest sooner than with fewer."""
 SCOUTS_PER_TURN = 40
 """Particles per turn that they have at least: with 20 paths round the edges of a flat spar do not come to rest."""
 _SETTLED_IN = 8
