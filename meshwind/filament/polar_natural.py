@@ -8,6 +8,7 @@ coordinate of their geodesics.  With other turns a circuit than the natural ones
 """
 
 from dataclasses import dataclass
+from typing import NoReturn
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -18,6 +19,10 @@ from meshwind.filament.polar_legs import End
 
 _AROUND = 128
 """Touch points around an opening from which half-legs are tabulated: the table is a start, exact legs follow it."""
+_SPARSE = 4
+"""One of so many of them comes first, and these are enough where their waves have come to an end, ..."""
+_ENDED = 1e-6
+"""... the last quarter of them being no larger than this, in turns and radians."""
 _STEERED = 4
 """Touch points for each of those from which half-legs with slip are tabulated as well, at first."""
 _ROUGH = 1e-9
@@ -110,28 +115,46 @@ def tables(ends: tuple[End, End], reach: float = _REACH, steered: int = _STEERED
 
 
 def _table(end: End, leaving: bool, reach: float, steered: int) -> Table:
-    u = np.arange(_AROUND) / _AROUND
+    free = _free(end, leaving)
     # how a half-leg answers to slip is nearly linear, and need be known less well than where it leads without
+    u = np.arange(len(free)) / len(free)
     few = u[::steered]
-    around = np.concatenate([u, few, few])
-    side = np.repeat([0.0, 1.0, -1.0], [len(u), len(few), len(few)])
     while True:
-        legs = end.march(around, reach * side, leaving, _ROUGH)
+        legs = end.march(np.tile(few, 2), np.repeat([reach, -reach], len(few)), leaving, _ROUGH)
         if legs.arrived.all():
             break
         reach *= 0.5
-        if reach < _SMALLEST or not legs.arrived[: len(u)].all():
-            lost = around[np.argmin(legs.arrived)]
-            raise BadInputError(
-                f"a fibre that touches the opening at the {end.name} does not get from there to the middle of the part,"
-                f" at u={lost:.3f}: that end is no dome, as at a neck; let it turn by --turn-{end.name} pins, collar "
-                "or shaft, or give another --opening"
-            )
-    free, left, right = np.split(np.stack([legs.u - around, legs.angle], axis=1), [len(u), len(u) + len(few)])
+        if reach < _SMALLEST:
+            _stays(end, few[np.argmin(legs.arrived) % len(few)])
+    left, right = np.split(np.stack([legs.u - np.tile(few, 2), legs.angle], axis=1), 2)
     odd, even = 0.5 * (left - right), 0.5 * (left + right) - free[::steered]
     powers = np.stack([_finer(each) for each in (free, odd, even)], axis=1)
     closed = np.concatenate([powers, powers[:1]])
     return Table(CubicSpline(np.linspace(0.0, 1.0, len(closed)), closed, bc_type="periodic"), reach)
+
+
+def _free(end: End, leaving: bool) -> Floats:
+    """The way in u and the angle (n, 2) of half-legs without slip: from a few touch points, or from many."""
+    u, found = np.arange(_AROUND) / _AROUND, np.empty((_AROUND, 2))
+    first = np.arange(_AROUND) % _SPARSE == 0
+    for these in (first, ~first):
+        legs = end.march(u[these], np.zeros(np.count_nonzero(these)), leaving, _ROUGH)
+        if not legs.arrived.all():
+            _stays(end, u[these][np.argmin(legs.arrived)])
+        found[these] = np.stack([legs.u - u[these], legs.angle], axis=1)
+        waves = np.abs(np.fft.rfft(found[first], axis=0)) / np.count_nonzero(first)
+        if waves[3 * len(waves) // 4 :].max() < _ENDED:
+            return found[first]
+    return found
+
+
+def _stays(end: End, u: float) -> NoReturn:
+    """Say that a fibre does not get away from its opening."""
+    raise BadInputError(
+        f"a fibre that touches the opening at the {end.name} does not get from there to the middle of the part, at "
+        f"u={u:.3f}: that end is no dome, as at a neck; let it turn by --turn-{end.name} pins, collar or shaft, or "
+        "give another --opening"
+    )
 
 
 def _finer(values: Floats) -> Floats:

@@ -16,7 +16,7 @@ from meshwind.path import Paths, Status, solve
 from meshwind.path.friction import Friction
 from meshwind.planning.families import families
 from meshwind.surface import Surface
-from meshwind.workflow.angle_search import hunt, survey
+from meshwind.workflow.angle_search import Hunt, hunt, survey
 from meshwind.workflow.notes import Note
 
 _PARTICLES = 401
@@ -180,25 +180,21 @@ class Helices:
         tube = self._on_a_tube(angle)
         most = _FURTHEST * tube
 
-        def measured(turns: float, paths: int) -> float | None:
-            trial = self.tried(turns, min(self.paths, paths), _MOST)
-            return None if trial is None else median_angle(trial, v, self.paths)
+        def found_with(paths: int, start: float, near: float, span: tuple[float, float]) -> Hunt:
+            def measure(turns: float) -> float | None:
+                trial = self.tried(turns, min(self.paths, paths), _MOST)
+                return None if trial is None else median_angle(trial, v, self.paths)
 
-        def rough(turns: float) -> float | None:
-            return measured(turns, _ROUGH_PATHS)
+            best = hunt(measure, angle, start, near, most)
+            at_a_brink = np.isfinite(best.lost) and best.reached < angle
+            if abs(best.reached - angle) <= _ENOUGH or at_a_brink:
+                return best
+            return survey(measure, angle, near, (span[0], max(min(span[1], _PAST * best.lost), 2.0 * span[0])), best)
 
-        def fine(turns: float) -> float | None:
-            return measured(turns, _TRIAL_PATHS)
-
-        found = hunt(rough, angle, tube, _ROUGHLY, most)
-        at_a_brink = np.isfinite(found.lost) and found.reached < angle
-        if not abs(found.reached - angle) <= _ENOUGH and not at_a_brink:
-            found = survey(rough, angle, _ROUGHLY, (_FEWEST * most, min(most, _PAST * found.lost)), found)
+        found = found_with(_ROUGH_PATHS, tube, _ROUGHLY, (_FEWEST * most, most))
         if found.within or found.reached > angle:
             start = found.revolutions
-            found = hunt(fine, angle, start, _NEAR, most)
-            if not abs(found.reached - angle) <= _ENOUGH:
-                found = survey(fine, angle, _NEAR, (start / _ABOUT, start * _ABOUT), found)
+            found = found_with(_TRIAL_PATHS, start, _NEAR, (start / _ABOUT, start * _ABOUT))
         if not np.isfinite(found.reached):
             raise BadInputError(f"no path comes to rest at {found.lost:.4g} revolutions and below; give more friction")
         turned = Turned(found.revolutions, v, angle, found.reached, found.lost)
