@@ -7,8 +7,10 @@ import numpy as np
 
 from meshwind.core.cast import Bools, Ints
 from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import AUTO
 from meshwind.core.progress import Progress, silent
-from meshwind.filament.ends import Wish
+from meshwind.filament.cap_turn import passes_on_caps
+from meshwind.filament.ends import CAP, LayerPlan, Wish
 from meshwind.filament.levels import Levels, station
 from meshwind.filament.settling import SCOUTS_PER_TURN
 from meshwind.filament.stations import angles_at, circuits_to_cover, median_angle
@@ -28,6 +30,8 @@ _MOST = 0.75
 """Share of the paths that are to come to rest for their angle to count: a layer is not wound with a few of them."""
 _FIRST = (0.0, 0.2, 0.6, 0.9)
 """Places in the order of a trial's paths of those that go first: where one at most comes to rest, most will not."""
+_ON_CAPS = 23
+"""Circuits over caps with which those that cover are counted: a prime, next to which many turns close."""
 _COUNTED_PATHS = 96
 """Paths a family with which those that cover are counted: on the sample parts within 0.03 % of as many as one likes."""
 _FURTHEST = 4.0
@@ -153,17 +157,28 @@ class Helices:
         return self.laid(paths, revolutions, max(_PARTICLES, int(np.ceil(SCOUTS_PER_TURN * revolutions))), which)
 
     def settled(
-        self, angle: float | None, revolutions: float | str | None, paths: int | str, width: float
+        self,
+        angle: float | None,
+        revolutions: float | str | None,
+        paths: int | str,
+        width: float,
+        turns: tuple[str, str] = (AUTO, AUTO),
     ) -> "Settled":
-        """Paths a family and revolutions for an angle in degrees or for revolutions, with a band of this width."""
-        turned = None if angle is None else self.turned_to(np.radians(angle))
-        turns = revolutions if turned is None else turned.revolutions
-        assert isinstance(turns, float)
-        count = self.circuits(turns, width) if isinstance(paths, str) else paths
-        return Settled(count, turns, *(("", None) if turned is None else (turned.shortfall, turned.wish)))
+        """Paths a family and revolutions for an angle in degrees or for revolutions, with a band of this width.
 
-    def circuits(self, revolutions: float, width: float) -> int:
-        """Paths a family that cover the part with a band of this width."""
+        turns: the turnarounds of a filament at the start and the end.
+        """
+        turned = None if angle is None else self.turned_to(np.radians(angle))
+        number = revolutions if turned is None else turned.revolutions
+        assert isinstance(number, float)
+        count = self.circuits(number, width, turns) if isinstance(paths, str) else paths
+        return Settled(count, number, *(("", None) if turned is None else (turned.shortfall, turned.wish)))
+
+    def circuits(self, revolutions: float, width: float, turns: tuple[str, str] = (AUTO, AUTO)) -> int:
+        """Paths a family that cover the part with a band of this width; over caps they have an angle of their own."""
+        if CAP in turns:
+            few = LayerPlan(_ON_CAPS, revolutions, self.friction, turns=turns, clearance=0.5 * width)
+            return circuits_to_cover(passes_on_caps(self.surface, few).paths, self.lines, width)
         trial = self.tried(revolutions, _COUNTED_PATHS)
         if trial is None:
             raise BadInputError(f"no path comes to rest at {revolutions:.4g} revolutions; give fewer, or more friction")
@@ -227,11 +242,13 @@ class Helices:
         best, most = found, 0.0
         at_a_brink = np.isfinite(found.lost) and found.reached < found.asked
         for share in _BACK if at_a_brink else (0.0,):
+            if most and share > _FOR_ALL:
+                break
             turns = (1.0 - share) * found.revolutions
             trial = self.tried(turns, min(self.paths, _TRIAL_PATHS), _MOST)
             if trial is not None and len(trial) > most:
                 reached = median_angle(trial, found.v, self.paths)
                 best, most = replace(found, revolutions=turns, reached=reached), len(trial)
-            if most == 2 * min(self.paths, _TRIAL_PATHS) or (most and share > _FOR_ALL):
+            if most == 2 * min(self.paths, _TRIAL_PATHS):
                 break
         return best

@@ -143,10 +143,11 @@ def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options, say: Progre
     helices = Helices(surface, between, ply.friction, lines, say=say)
     if isinstance(plan.paths, int):
         helices = replace(helices, paths=plan.paths)
-    settled = helices.settled(plan.angle, plan.revolutions, plan.paths, ply.laying.width)
+    turns = plan.turns(options) if options.continuous else (AUTO, AUTO)
+    settled = helices.settled(plan.angle, plan.revolutions, plan.paths, ply.laying.width, turns)
     if options.continuous:
         closing = ClosingPlan(
-            settled.paths, settled.revolutions, ply.friction, options.particles, plan.turns(options),
+            settled.paths, settled.revolutions, ply.friction, options.particles, turns,
             0.5 * ply.laying.width, between, plan.paths == AUTO, settled.wish,
         )  # fmt: skip
     else:
@@ -180,7 +181,7 @@ def first_helical(plans: tuple[LayerPlan, ...], layered: Layered, surface: Surfa
     ply, settled, lines = plan.ply(options, units), layered.first, levels(surface)
     if settled is None or (station(plan.start, lines), station(plan.end, lines)) != (0.0, 1.0):
         settled = Helices(surface, (0.0, 1.0), ply.friction, lines).settled(
-            plan.angle, plan.revolutions, plan.paths, ply.laying.width
+            plan.angle, plan.revolutions, plan.paths, ply.laying.width, plan.turns(options)
         )
     return replace(
         options, paths=settled.paths, revolutions=settled.revolutions, friction=ply.friction,

@@ -179,7 +179,8 @@ def _planned(
     paths = options.paths
     if paths is None:
         assert options.band_width is not None
-        paths = helices.circuits(revolutions, options.band_width)
+        turns = (options.turn_start, options.turn_end) if options.continuous else (AUTO, AUTO)
+        paths = helices.circuits(revolutions, options.band_width, turns)
     options = replace(options, paths=paths, revolutions=revolutions, angle=None, angle_at=None)
     return options, turned, tuple(notes)
 
