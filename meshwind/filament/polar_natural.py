@@ -37,8 +37,10 @@ _SMALLEST = 0.01
 """Slip up to which half-legs must get away from their opening at the least."""
 _WAVES = 24
 """Waves around an opening in the maps from theta: smooth enough to pass over resonances, which would bunch circuits."""
-_SAMPLES = 128
-"""Values of theta at which slips are summed: more than twice the waves."""
+_FEWER = 8
+"""Those that are enough where half-legs are smooth enough to be tabulated from a few touch points."""
+_SAMPLES = 5
+"""Values of theta at which slips are summed, for each of these waves: more than twice as many."""
 _DAMPING = 1e-4
 """Share of the answer to a step, squared, by which the step is damped at first."""
 _GAIN = 1e-3
@@ -57,6 +59,7 @@ class Table:
 
     spline: CubicSpline
     reach: float
+    touches: int
 
     def at(self, u: Floats, slip: Floats) -> tuple[Floats, Floats, Floats]:
         """u and angle (n, 2) at touch points u (n,) and slips (n,), and their derivatives by both."""
@@ -81,6 +84,11 @@ class Tables:
     def reach(self) -> float:
         """Slip up to which all are tabulated."""
         return min(table.reach for table in self.kinds)
+
+    @property
+    def waves(self) -> int:
+        """Waves in maps that suit them."""
+        return _WAVES if max(table.touches for table in self.kinds) == _AROUND else _FEWER
 
     def mismatch(self, touch: Floats, slip: Floats) -> tuple[Floats, Floats, Floats]:
         """How far the two half-legs of each pass miss each other, in u and angle, and derivatives.
@@ -130,7 +138,7 @@ def _table(end: End, leaving: bool, reach: float, steered: int) -> Table:
     odd, even = 0.5 * (left - right), 0.5 * (left + right) - free[::steered]
     powers = np.stack([_finer(each) for each in (free, odd, even)], axis=1)
     closed = np.concatenate([powers, powers[:1]])
-    return Table(CubicSpline(np.linspace(0.0, 1.0, len(closed)), closed, bc_type="periodic"), reach)
+    return Table(CubicSpline(np.linspace(0.0, 1.0, len(closed)), closed, bc_type="periodic"), reach, len(free))
 
 
 def _free(end: End, leaving: bool) -> Floats:
@@ -176,22 +184,25 @@ class Natural:
     slip: Floats
 
     @property
+    def many(self) -> int:
+        """Number of waves m."""
+        return self.waves.shape[1] // 2
+
+    @property
     def worst(self) -> float:
         """Largest slip."""
         return float(np.abs(self.slip).max())
 
     def touches(self, theta: Floats) -> Floats:
         """Touch points (n, 3) of circuits that begin at theta (n,): at the start, the end, and the start again."""
-        a, b, after = (
-            theta + _waves_at(theta) @ self.waves[0],
-            theta + _waves_at(theta) @ self.waves[1],
-            theta + self.turns + _waves_at(theta + self.turns) @ self.waves[0],
-        )
+        here, after = _waves_at(theta, self.many), _waves_at(theta + self.turns, self.many)
+        a, b = theta + here @ self.waves[0], theta + here @ self.waves[1]
+        after = theta + self.turns + after @ self.waves[0]
         return np.stack([a, b, after], axis=1)
 
 
-def _waves_at(theta: Floats) -> Floats:
-    angle = 2.0 * np.pi * np.outer(theta, np.arange(1, _WAVES + 1))
+def _waves_at(theta: Floats, many: int) -> Floats:
+    angle = 2.0 * np.pi * np.outer(theta, np.arange(1, many + 1))
     return np.concatenate([np.ones((len(theta), 1)), np.cos(angle), np.sin(angle)], axis=1)
 
 
@@ -200,14 +211,15 @@ def natural(legs: Tables, turns: float | None = None, near: Natural | None = Non
 
     By the method of Levenberg and Marquardt, in which changes of a and b weigh more the more waves they have.
     """
-    theta = np.arange(_SAMPLES) / _SAMPLES
+    samples = _SAMPLES * legs.waves if near is None else len(near.slip)
+    theta = np.arange(samples) / samples
     first = near if near is not None else _guess(legs, theta)
     first = Natural(first.waves, first.turns if turns is None else turns, first.slip)
     now = _with_slips(legs, first, theta)
     damping = _DAMPING
     for _ in range(_STEPS):
         answer = _answer(legs, now, theta, turns is None)
-        weight = _weights(turns is None) * np.linalg.norm(answer) / np.sqrt(answer.shape[1])
+        weight = _weights(now.many, turns is None) * np.linalg.norm(answer) / np.sqrt(answer.shape[1])
         square = answer.T @ answer
         while True:
             step = np.asarray(-np.linalg.solve(square + np.diag(damping * weight**2), answer.T @ now.slip.ravel()))
@@ -244,33 +256,33 @@ def _with_slips(legs: Tables, maps: Natural, theta: Floats) -> Natural:
 
 def _moved(maps: Natural, step: Floats) -> Natural:
     """The maps with the waves of a (without its mean, which is where theta begins), those of b, and the turns moved."""
-    waves, many = maps.waves.copy(), 2 * _WAVES
+    waves, many = maps.waves.copy(), 2 * maps.many
     waves[0, 1:] += step[:many]
     waves[1] += step[many : 2 * many + 1]
     return Natural(waves, maps.turns + float(step[2 * many + 1 :].sum()), maps.slip)
 
 
-def _weights(free: bool) -> Floats:
-    rank = np.tile(np.arange(1.0, _WAVES + 1), 2)
+def _weights(many: int, free: bool) -> Floats:
+    rank = np.tile(np.arange(1.0, many + 1), 2)
     return np.concatenate([rank, [1.0], rank, [1.0] * free])
 
 
 def _answer(legs: Tables, maps: Natural, theta: Floats, free: bool) -> Floats:
     """How the slips answer to a step: (4 n, steps)."""
-    many, after = 2 * _WAVES, theta + maps.turns
+    many, after, here = 2 * maps.many, theta + maps.turns, _waves_at(theta, maps.many)
     move = np.zeros((len(theta), 3, 2 * many + 2))
-    move[:, 0, :many], move[:, 1, many : 2 * many + 1] = _waves_at(theta)[:, 1:], _waves_at(theta)
-    move[:, 2, :many] = _waves_at(after)[:, 1:]
-    move[:, 2, 2 * many + 1] = 1.0 + _slope(after) @ maps.waves[0]
+    move[:, 0, :many], move[:, 1, many : 2 * many + 1] = here[:, 1:], here
+    move[:, 2, :many] = _waves_at(after, maps.many)[:, 1:]
+    move[:, 2, 2 * many + 1] = 1.0 + _slope(after, maps.many) @ maps.waves[0]
     _, by_touch, by_slip = legs.mismatch(maps.touches(theta), maps.slip)
     found = -np.einsum("npij,npjt,ntk->npik", np.linalg.inv(by_slip), by_touch, move)
     found = found.reshape(-1, 2 * many + 2)
     return np.asarray(found if free else found[:, :-1])
 
 
-def _slope(theta: Floats) -> Floats:
+def _slope(theta: Floats, many: int) -> Floats:
     """Derivatives of the waves by theta."""
-    rank = 2.0 * np.pi * np.arange(1, _WAVES + 1)
+    rank = 2.0 * np.pi * np.arange(1, many + 1)
     angle = np.outer(theta, rank)
     return np.concatenate([np.zeros((len(theta), 1)), -rank * np.sin(angle), rank * np.cos(angle)], axis=1)
 
@@ -300,7 +312,7 @@ def _guess(legs: Tables, theta: Floats) -> Natural:
     a_of_theta = np.interp(theta, natural_of_a / natural_of_a[-1], a)
     b_of_a = CubicSpline(a, _closed(b - a), bc_type="periodic")
     touch = np.stack([a_of_theta, a_of_theta + b_of_a(a_of_theta)])
-    waves = np.asarray(np.linalg.lstsq(_waves_at(theta), (touch - theta).T, rcond=None)[0].T)
+    waves = np.asarray(np.linalg.lstsq(_waves_at(theta, legs.waves), (touch - theta).T, rcond=None)[0].T)
     return Natural(waves, turns, np.zeros((len(theta), 4)))
 
 
