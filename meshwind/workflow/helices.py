@@ -47,7 +47,7 @@ _ABOUT = 1.3
 """Factor about the revolutions of a few paths within which those of more paths are looked for."""
 _AS_WIDE = 1e-6
 """Share by which level lines may be shorter than the longest and still count as the widest place."""
-_BACK = (0.02, 0.04, 0.08, 0.15, 0.3)
+_BACK = (0.02, 0.04, 0.07, 0.1, 0.13, 0.17, 0.22, 0.3)
 """Shares of the revolutions that are given up at a brink, as more paths and particles slide off sooner, ..."""
 _FOR_ALL = 0.05
 """... and the largest share that the last path which slides off is worth."""
