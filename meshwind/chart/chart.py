@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats, Ints, PicklableRecord, frozen
+from meshwind.core.kernel import njit
 from meshwind.mesh.geometry.mesh import Annulus
 
 

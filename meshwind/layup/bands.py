@@ -5,9 +5,9 @@ from math import ceil, floor
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.paths import Paths
 from meshwind.surface.evaluate import SU, SV, S

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from math import floor
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.paths import Paths
 from meshwind.surface.forms import area_elements

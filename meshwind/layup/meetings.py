@@ -4,9 +4,9 @@ from math import ceil, floor
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.core.kernel import njit
 from meshwind.path.paths import Paths
 
 REACH = 1e-9

@@ -5,9 +5,9 @@ geodesic sideways by its geodesic curvature kg; with constant slip kg = slip * k
 """
 
 import numpy as np
-from numba import njit
 from scipy.integrate import DOP853
 
+from meshwind.core.kernel import njit
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, frame, unit_normal
 
 STAGES = DOP853.n_stages

@@ -8,9 +8,9 @@ Steps therefore end on knot lines.  The source's RK4 takes its fixed steps over 
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.kernel import njit
 from meshwind.march.geodesic_equation import STAGES, local_error, rates
 from meshwind.march.step_events import (
     EDGE,

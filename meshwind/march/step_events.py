@@ -7,9 +7,9 @@ it, so that it is as accurate as the method.  Coordinates are those of a window,
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats
+from meshwind.core.kernel import njit
 from meshwind.march.geodesic_equation import dormand_prince_8, rates, runge_kutta_4
 from meshwind.surface.evaluate import Spline
 

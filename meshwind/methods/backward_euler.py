@@ -7,9 +7,9 @@ is O(n); with lifted particles its rows are those of (5.2).
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.kernel import njit
 from meshwind.methods.chain import SOLVES
 from meshwind.path.kernels.block_tridiagonal import SymmetricSystem, solve
 from meshwind.surface.evaluate import SU

@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats
+from meshwind.core.kernel import njit
 
 XX, XY, XZ, YY, YZ, ZZ = range(6)
 """Entries of a symmetric block."""

@@ -7,9 +7,9 @@ there, which makes whole runs up to 45 % slower.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.core.kernel import njit
 from meshwind.path.kernels.contact import held
 from meshwind.surface.evaluate import SU, SV, S, frame, tangents, unit_normal
 

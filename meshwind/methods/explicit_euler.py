@@ -4,8 +4,7 @@ Undamped (4.10) has no stable step at all: each mode grows by sqrt(1 + (h omega)
 saw it explode.  Using the new velocity costs nothing and is stable below h = 2 / omega_max.
 """
 
-from numba import njit
-
+from meshwind.core.kernel import njit
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV
 
 

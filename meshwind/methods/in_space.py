@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Bools, Floats
+from meshwind.core.kernel import njit
 from meshwind.methods import kkt, penalty
 from meshwind.methods.blocks import ChainMatrix, chain_matrix
 from meshwind.methods.chain import (

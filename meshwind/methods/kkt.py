@@ -4,8 +4,7 @@
 in O(n) on the constraints' null space: P M P v = P f with P = I - n n' at each contact, a block tridiagonal system.
 """
 
-from numba import njit
-
+from meshwind.core.kernel import njit
 from meshwind.methods.blocks import XX, YY, ZZ, solve, solve_free
 from meshwind.methods.chain import SOLVES
 from meshwind.methods.strand import spring_forces

@@ -1,8 +1,8 @@
 """Lifting from the surface and landing on it as the source has them (chapter 5, Algorithms 1 and 2)."""
 
 import numpy as np
-from numba import njit
 
+from meshwind.core.kernel import njit
 from meshwind.methods.chain import EVALUATIONS, FEET, link
 from meshwind.surface.evaluate import S, unit_normal
 from meshwind.surface.foot import foot

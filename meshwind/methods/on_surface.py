@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Bools, Floats
+from meshwind.core.kernel import njit
 from meshwind.methods import backward_euler, explicit_euler, runge_kutta
 from meshwind.methods.backward_euler import System, system_for
 from meshwind.methods.chain import (

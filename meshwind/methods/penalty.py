@@ -3,8 +3,7 @@
 Linearly implicit like (7.2), the penalty force's slope included, so that its stiffness does not bound the step.
 """
 
-from numba import njit
-
+from meshwind.core.kernel import njit
 from meshwind.methods.blocks import XX, XY, XZ, YY, YZ, ZZ, solve
 from meshwind.methods.chain import SOLVES
 from meshwind.methods.strand import spring_forces

@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats
+from meshwind.core.kernel import njit
 from meshwind.methods.chain import EVALUATIONS, Forces, forces_for, gather, put_on_surface
 from meshwind.methods.explicit_euler import accelerate
 

@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Bools, Floats
+from meshwind.core.kernel import njit
 from meshwind.methods.chain import EVALUATIONS, FEET
 from meshwind.surface.evaluate import S, unit_normal
 from meshwind.surface.foot import foot

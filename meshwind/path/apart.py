@@ -6,9 +6,9 @@ where that is as short as the geodesic, and otherwise by the geodesic itself, on
 """
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.kernel import njit
 from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.glide import MAX_STEPS, Factors, glide

@@ -10,9 +10,9 @@ out of it is the error.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Bools, Floats, frozen
+from meshwind.core.kernel import njit
 from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.geometry import dot, minus, row

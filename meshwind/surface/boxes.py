@@ -5,7 +5,8 @@ half extents along u, across and along the normal, all 16 at once so that the co
 """
 
 import numpy as np
-from numba import njit
+
+from meshwind.core.kernel import njit
 
 WIDE = 4
 """Children of a node in either direction."""

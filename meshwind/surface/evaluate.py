@@ -8,9 +8,9 @@ from math import floor
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats
+from meshwind.core.kernel import njit
 
 DEGREE = 3
 """Degree of the polynomials in both directions."""

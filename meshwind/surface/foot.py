@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from meshwind.core.kernel import njit
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, S, basis, bend, frame, locate, position, slope, spans_of
 
 MAX_STEPS = 40

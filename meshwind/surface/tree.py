@@ -10,9 +10,9 @@ the ball around the point.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.surface.boxes import ALONG, CENTRE, EXTENT, FAR, NORMAL, WIDE, bezier, enclose, enclose_children, to_boxes
 from meshwind.surface.evaluate import Spline, position, spans_of

@@ -1,9 +1,9 @@
 """Areas and edge lengths of faces, the volume that they enclose, and lengths, areas and centroids of loops."""
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.kernel import njit
 from meshwind.mesh.geometry.topology import boundary, components
 
 

@@ -7,9 +7,9 @@ libigl's tree takes twice the time on each thread and uses only one, and its ray
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.kernel import njit
 from meshwind.core.threads import parallel_for
 
 LEAF = 2

@@ -5,9 +5,9 @@ step of the repair needs the edges.
 """
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Ints
+from meshwind.core.kernel import njit
 
 
 @njit(nogil=True, cache=True)

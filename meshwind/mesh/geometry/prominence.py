@@ -1,9 +1,9 @@
 """How far the peaks of a field on a mesh rise over the saddle to a higher one: a compiled loop over its vertices."""
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Ints
+from meshwind.core.kernel import njit
 from meshwind.mesh.geometry.halfedges import root
 
 

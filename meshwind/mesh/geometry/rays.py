@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.kernel import njit
 from meshwind.core.threads import parallel_for
 from meshwind.mesh.geometry.facet_tree import LEAF, FacetTree, meets
 

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from scipy import sparse
 from scipy.sparse import csgraph
 
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.kernel import njit
 from meshwind.mesh.geometry.topology import Edges, edges, loops
 
 _BITS = 62

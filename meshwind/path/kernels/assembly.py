@@ -1,8 +1,8 @@
 """Newton's linear system for the touching particles of a frictionless path, in the parametric plane."""
 
 import numpy as np
-from numba import njit
 
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.contact import held, spring_pull
 from meshwind.path.kernels.geometry import derivative, dot, minus, row, times, to_parameters

@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats
+from meshwind.core.kernel import njit
 
 DEFINITE = 1e-11
 """A pivot whose determinant is below this share of its block's diagonal product counts as singular."""

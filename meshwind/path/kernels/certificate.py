@@ -1,8 +1,8 @@
 """What an answer is worth: true gaps, the friction that it needs, and whether its particles resolve the surface."""
 
 import numpy as np
-from numba import njit
 
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.landing import measure_gap
 from meshwind.path.kernels.state import distance, energy

@@ -1,7 +1,6 @@
 """Which particles touch the surface: lifting (5.1), the springs that skip lifted particles (5.2), and the rims."""
 
-from numba import njit
-
+from meshwind.core.kernel import njit
 from meshwind.path.kernels.geometry import combine, dot, minus, row
 
 DEEP, SHALLOW, NOTHING = range(3)

@@ -15,9 +15,9 @@ difference counts as one more force, held while a step is judged.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.contact import pull
 from meshwind.path.kernels.geometry import (

@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Bools
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.block_tridiagonal import GeneralSystem, general_system, solve_general
 from meshwind.path.kernels.certificate import largest_leap

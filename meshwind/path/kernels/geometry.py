@@ -5,8 +5,7 @@ Tuples live in registers: a row of an array costs a reference count, which in lo
 
 from typing import TypeAlias
 
-from numba import njit
-
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 
 Vector: TypeAlias = tuple[float, float, float]

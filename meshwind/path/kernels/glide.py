@@ -9,9 +9,9 @@ saddle, a pull off the surface in equilibrium) is left to `relax`.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.block_tridiagonal import DEFINITE
 from meshwind.path.kernels.state import EVALUATIONS, ITERATIONS, SOLVES, distance

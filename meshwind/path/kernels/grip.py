@@ -1,8 +1,8 @@
 """The grip of a fibre on its starting curve: where each particle belongs on it, and how far it has slipped from it."""
 
 import numpy as np
-from numba import njit
 
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.coulomb import HELD, STUCK, slipping
 from meshwind.path.kernels.geometry import derivative

@@ -3,8 +3,8 @@
 from math import asin, sqrt
 
 import numpy as np
-from numba import njit
 
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.surface.evaluate import SU, SV, tangents
 

@@ -6,8 +6,8 @@ The unknowns of a particle are its moves along t and b; a stuck or held one move
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.coulomb import HELD, STUCK, coefficient, fixed, slips
 from meshwind.path.kernels.geometry import (

@@ -1,8 +1,8 @@
 """Lifted particles: carried along by the touching ones, and landed where they meet the body (section 5.3)."""
 
 import numpy as np
-from numba import njit
 
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.state import EVALUATIONS, FEET, copy_lifted
 from meshwind.surface.evaluate import S, unit_normal

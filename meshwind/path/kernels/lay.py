@@ -5,8 +5,8 @@ few particles first and then, from their answer, on more.
 """
 
 import numpy as np
-from numba import njit
 
+from meshwind.core.kernel import njit
 from meshwind.path.kernels.certificate import DEEPEST, leaps, required_friction
 from meshwind.path.kernels.glide import FEW, MAX_LAST_STEPS, MAX_STEPS, Factors, glide, resample, spread_along
 from meshwind.path.kernels.mend import NOTICED, any_wanting

@@ -6,8 +6,8 @@ are given natural lengths as the fibre then lies, so that they pull alike all al
 """
 
 import numpy as np
-from numba import njit
 
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.contact import lift, link
 from meshwind.path.kernels.geometry import combine, derivative, dot, minus, row, second_form, times, to_parameters

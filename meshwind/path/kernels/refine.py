@@ -1,8 +1,8 @@
 """From few particles to many: the coarse answer, resampled, is where the fine solve starts."""
 
 import numpy as np
-from numba import njit
 
+from meshwind.core.kernel import njit
 from meshwind.path.kernels.coulomb import STUCK
 from meshwind.path.kernels.state import state_of
 

@@ -11,9 +11,9 @@ chatter.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Bools
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.assembly import assemble
 from meshwind.path.kernels.block_tridiagonal import SymmetricSystem, solve, symmetric_system

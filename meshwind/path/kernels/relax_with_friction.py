@@ -8,8 +8,8 @@ holds only where the surface presses.
 """
 
 import numpy as np
-from numba import njit
 
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.certificate import HALF_TURN, certify, largest_leap
 from meshwind.path.kernels.contact import DEEP, NOTHING, lift, release

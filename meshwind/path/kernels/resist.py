@@ -7,9 +7,9 @@ E + sum mu N |d| + pace d^2 / 2 with N held, so that each of its steps can be ju
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.block_tridiagonal import solve
 from meshwind.path.kernels.contact import link, spring_pull

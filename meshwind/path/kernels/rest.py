@@ -1,8 +1,8 @@
 """Frictionless paths with their certificates: relaxed, and given particles where the body needs them."""
 
 import numpy as np
-from numba import njit
 
+from meshwind.core.kernel import njit
 from meshwind.path.kernels.certificate import DEEPEST, certify, leaps
 from meshwind.path.kernels.coulomb import RoughBody
 from meshwind.path.kernels.glide import spread_along

@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.geometry import dot, minus, over, plus, row, times, to_parameters
 from meshwind.path.kernels.state import EVALUATIONS, FEET

@@ -7,8 +7,8 @@ how it got there: a particle that has slid one way may be drawn back later, or b
 """
 
 import numpy as np
-from numba import njit
 
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.contact import pull
 from meshwind.path.kernels.coulomb import Fibre, Grip

@@ -1,8 +1,8 @@
 """Paths whose particles stay where they are along the fibre: few of a finer answer, most of them where it bends."""
 
 import numpy as np
-from numba import njit
 
+from meshwind.core.kernel import njit
 from meshwind.path.kernels.certificate import unresolved
 from meshwind.path.kernels.coulomb import STUCK, Fibre, Grip
 from meshwind.path.kernels.grip import hold_where_it_lies

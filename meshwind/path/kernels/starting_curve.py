@@ -1,8 +1,8 @@
 """The starting curve in the parametric plane, to which friction holds: its points and the nearest of them."""
 
 import numpy as np
-from numba import njit
 
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.geometry import combine, dot
 

@@ -6,9 +6,9 @@ Records are passed on whole.  Copies run in plain loops: they compile ten times 
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.core.kernel import njit
 from meshwind.path.kernels.status import Status
 from meshwind.surface.evaluate import S, frame, unit_normal
 

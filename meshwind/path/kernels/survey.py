@@ -9,9 +9,9 @@ followed from gap to gap, unless the gaps at its ends cover it.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats
+from meshwind.core.kernel import njit
 from meshwind.path.kernels.geometry import derivative, dot, minus, row, times
 from meshwind.path.kernels.segment import SHORTEST_STEP, followed, meets, segment_of
 from meshwind.path.kernels.state import EVALUATIONS, distance

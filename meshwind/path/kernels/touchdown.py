@@ -5,9 +5,9 @@ the surface where it truly leaves; one Newton step on that condition along the f
 """
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.geometry import dot, minus, over, row, second_form, times, to_parameters
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, S, frame, unit_normal

@@ -10,9 +10,9 @@ meets the surface further on, the fibre lands there, and what lies between is a 
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.mesh.geometry.rays import DEEPEST, first_met
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, S, frame, unit_normal

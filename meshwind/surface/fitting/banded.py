@@ -1,10 +1,10 @@
 """Direct solution of a net's normal equations, by one banded Cholesky factorisation."""
 
 import numpy as np
-from numba import njit
 from scipy.linalg import solveh_banded
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.kernel import njit
 from meshwind.surface.fitting.normal_equations import REACH
 
 

@@ -1,9 +1,9 @@
 """The error of a fit: distances both ways between the surface and the mesh."""
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats
+from meshwind.core.kernel import njit
 from meshwind.core.threads import parallel_for
 from meshwind.surface.evaluate import Spline, position
 from meshwind.surface.fitting.samples import Samples

@@ -6,10 +6,10 @@ whatever the size of the net, so that the cost is linear in the control points.
 """
 
 import numpy as np
-from numba import njit
 from scipy.linalg import cho_solve_banded, cholesky_banded
 
 from meshwind.core.cast import Floats
+from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.surface.fitting.normal_equations import REACH, gram_bands
 

@@ -6,11 +6,11 @@ from typing import Any
 
 import igl
 import numpy as np
-from numba import njit
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.core.kernel import njit
 from meshwind.core.threads import parallel_for
 from meshwind.mesh.geometry.mesh import Annulus
 from meshwind.surface.grid import Grid, grid

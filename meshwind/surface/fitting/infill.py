@@ -8,10 +8,10 @@ from typing import TypeAlias
 
 import igl
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.kernel import njit
 from meshwind.surface.fitting import point_normal
 
 Int8s: TypeAlias = NDArray[np.int8]

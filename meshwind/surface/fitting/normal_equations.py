@@ -3,9 +3,9 @@
 from math import floor
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats
+from meshwind.core.kernel import njit
 from meshwind.core.threads import parallel_for
 from meshwind.surface.evaluate import basis
 

@@ -4,9 +4,9 @@ Through the vertices of a smooth part they follow it one or two orders closer th
 """
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.core.kernel import njit
 from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import TINY
 

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.kernel import njit
 from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import TINY
 from meshwind.surface.evaluate import SU, SV, S, frame

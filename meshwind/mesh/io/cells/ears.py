@@ -1,7 +1,8 @@
 """Polygons cut by ears: corner after corner is taken off, the best shaped triangle first."""
 
 import numpy as np
-from numba import njit
+
+from meshwind.core.kernel import njit
 
 _THIN = 1e-9
 """Shape of a triangle, twice its area by the sum of its squared sides, up to which it has no area."""
