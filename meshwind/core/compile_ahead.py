@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
+from tempfile import TemporaryFile
 from threading import Condition, Thread
 from typing import Any
 
@@ -25,6 +26,10 @@ JOBS = ("wind", "friction", "continuous", "program", "redesign")
 """What kernels are for, each with those before it."""
 MAX_PROCESSES = 8
 """More do not help: kernels wait for those that they call."""
+WORTH = 3.0
+"""Seconds of compiling below which no processes are started: each needs one to import Numba."""
+UNKEPT = "unkept"
+"""Answer of a process that cannot keep what it compiles."""
 SAY = "compiling kernels for this machine once"
 
 
@@ -58,17 +63,43 @@ def table() -> tuple[Kernel, ...]:
 
 
 def compile_ahead(jobs: Iterable[str] = JOBS, progress: Progress = silent, processes: int | None = None) -> int:
-    """Compile the kernels of some jobs that are not kept yet; returns how many that were.
+    """Compile the kernels of some jobs that are not kept yet; returns how many these are.
 
     processes: how many at a time, by default one for each core.  A process that is killed leaves its kernel to the
-    first call of it.
+    first call of it, and so does a folder that takes no more.
     """
     missing = _missing(frozenset(jobs))
-    if missing:
-        count = processes or min(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1,
-                                 MAX_PROCESSES)
-        _Pool(missing, progress).run(min(count, len(missing)))
+    if sum(table()[number].seconds for number in missing) > WORTH and where() is not None:
+        _Pool(missing, progress).run(min(processes or _cores(), MAX_PROCESSES, len(missing)))
     return len(missing)
+
+
+def left_out(jobs: Iterable[str] = JOBS) -> int:
+    """Number of kernels of some jobs that are not kept."""
+    return len(_missing(frozenset(jobs)))
+
+
+def where() -> Path | None:
+    """The folder that kernels are kept in or below; None where no folder for them can be written."""
+    from numba.core import config
+
+    from meshwind.core.kernel import folders
+
+    package = Path(__file__).parents[1]
+    for folder in folders(__file__):
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            TemporaryFile(dir=folder).close()
+        except OSError:
+            continue
+        if config.CACHE_DIR:
+            return Path(config.CACHE_DIR)
+        return package if package in folder.parents else folder.parent
+    return None
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def compile_one(number: int) -> None:
@@ -181,7 +212,7 @@ class _Worker:
         with suppress(OSError, ValueError):
             stdin.write(f"{number}\n".encode())
             stdin.flush()
-            return bool(stdout.readline())
+            return stdout.readline().strip() not in (b"", UNKEPT.encode())
         return False
 
     def close(self) -> None:
@@ -201,9 +232,11 @@ def work() -> None:
 
     from numba.core.errors import NumbaError
 
+    from meshwind.core.kernel import is_kept
+
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process that started it ends it
     gc.disable()  # the compiler makes hundreds of thousands of objects that stay
     for line in sys.stdin:
         with suppress(NumbaError, AttributeError, ImportError):  # what does not fit is compiled when it is called
             compile_one(int(line))
-        print(line.strip(), flush=True)  # noqa: T201
+        print(line.strip() if is_kept() else UNKEPT, flush=True)  # noqa: T201

@@ -129,6 +129,11 @@ class KernelFiles(FunctionCache):  # type: ignore[misc]
         return data if hashlib.sha256(data).digest() == digest else None
 
 
+def is_kept() -> bool:
+    """Whether all that this process compiled could be written."""
+    return not _told
+
+
 @lru_cache
 def folders(source: str) -> list[Path]:
     """Folders for the kernels of a source file, the first one first: all are read, the first possible is written.

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats
 from meshwind.core.cast import frozen as immutable
+from meshwind.core.compile_ahead import compile_ahead
 from meshwind.core.defaults import PATHS
 from meshwind.core.progress import Progress
 from meshwind.editing.bound import bound_of
@@ -240,6 +241,7 @@ def redesign(  # noqa: PLR0913
     )  # fmt: skip
     Course.of(winding, 0.0)
     report = progress or _ignore
+    compile_ahead(("wind", "redesign"), report)
     report("fit")
     source = read_source(mesh, winding)
     region = frozen_part(frozen, mesh, source.mesh)

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from meshwind.core.compile_ahead import compile_ahead
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import nearest
 from meshwind.core.units import UNKNOWN, millimetres
@@ -77,6 +78,8 @@ def write_program(
     used = read_machine(machine)
     results = read_results(folder)
     work = Work.of(results)
+    if again:
+        compile_ahead(("program",), say)
     say("program")
     made = program(work, used, tension)
     if again:

@@ -10,6 +10,7 @@ from meshwind.results import folder
 from meshwind.run.result import Result, write_result
 from meshwind.workflow.band_plan import check_band
 from meshwind.workflow.clock import Clock
+from meshwind.workflow.compiling import compile_for
 from meshwind.workflow.layer_plans import read_layers
 from meshwind.workflow.options import Options
 from meshwind.workflow.part import MeshLike, fit_part, read_source
@@ -177,6 +178,7 @@ def wind(  # noqa: PLR0913
         folder.prepare(target, overwrite)
         if render:
             driver.start_probe()
+    compile_for([options], progress, laminate=plans is not None)
     with clock.stage("read"):
         source = read_source(mesh, options)
     result = Result.of(wind_part(fit_part(source, options, clock), options, command, clock, plans))

@@ -78,7 +78,10 @@ def _run(store: Store, processes: int | None, scheduler: str | None) -> Iterator
 
         return run_cluster(groups, scheduler)
     from meshwind.sweep.local import run_local
+    from meshwind.workflow.compiling import compile_for
 
+    if store.open:
+        compile_for(case.options for case in store.open.values())  # once, and not in every process
     return run_local(groups, min(processes or _cores(), max(len(store.open), 1)))
 
 

@@ -1,0 +1,156 @@
+"""Kernels are kept in files that survive whatever happens to the processes that write them."""
+
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from random import Random
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+SOURCE = """
+from meshwind.core.kernel import njit
+from meshwind.tried.inner import grown
+
+
+@njit(cache=True)
+def twice(x):
+    return grown(x) + x
+"""
+INNER = """
+from meshwind.core.kernel import njit
+
+
+@njit(cache=True)
+def grown(x):
+    return x + 1
+"""
+CALL = """
+import sys, meshwind
+meshwind.__path__.append(sys.argv[1])
+from numba.core import event
+compiled = []
+class Seen(event.Listener):
+    def on_start(self, event): compiled.append(event.data["dispatcher"].py_func.__name__)
+    def on_end(self, event): pass
+event.register("numba:compile", Seen())
+from meshwind.tried.outer import twice
+print(twice(2), twice(2.5), len(compiled))
+"""
+
+
+@pytest.fixture
+def tried(tmp_path: Path) -> Path:
+    """A folder with a package `tried` of two kernels, of which one calls the other."""
+    package = tmp_path / "tried"
+    package.mkdir()
+    for name, text in (("__init__", ""), ("outer", SOURCE), ("inner", INNER)):
+        (package / f"{name}.py").write_text(text)
+    return tmp_path
+
+
+def start(tried: Path, kept: Path | None, **options: object) -> "subprocess.Popen[str]":
+    environment = dict(os.environ, PYTHONPATH=str(ROOT), XDG_CACHE_HOME=str(tried / "user"), PYTHONDONTWRITEBYTECODE="1")
+    environment.pop("NUMBA_CACHE_DIR", None)
+    if kept is not None:
+        environment["NUMBA_CACHE_DIR"] = str(kept)
+    return subprocess.Popen(
+        [sys.executable, "-c", CALL, str(tried)],
+        env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options,  # type: ignore[call-overload]
+    )  # fmt: skip
+
+
+def call(tried: Path, kept: Path | None, **options: object) -> tuple[str, str]:
+    """What a process that calls the kernels prints: two results, the number of kernels that it compiled; and warnings."""
+    out, err = start(tried, kept, **options).communicate(timeout=300)
+    return out.strip(), err
+
+
+def files(kept: Path) -> list[Path]:
+    return sorted(kept.rglob("*.nbc"))
+
+
+def test_kernels_are_kept_and_compiled_anew_when_they_or_what_they_call_change(tried: Path) -> None:
+    kept = tried / "kept"
+    assert call(tried, kept) == ("5 6.0 4", "")
+    assert len(files(kept)) == 4
+    assert call(tried, kept) == ("5 6.0 0", "")
+    inner = tried / "tried" / "inner.py"
+    stamp = inner.stat().st_mtime_ns
+    inner.write_text(INNER.replace("+ 1", "+ 3"))  # same size, same time
+    os.utime(inner, ns=(stamp, stamp))
+    assert call(tried, kept) == ("7 8.0 4", "")
+    assert len(files(kept)) == 4
+
+
+def test_a_damaged_file_is_compiled_anew(tried: Path) -> None:
+    kept = tried / "kept"
+    call(tried, kept)
+    rng = Random(1)
+    for file in files(kept):
+        whole = bytearray(file.read_bytes())
+        if rng.random() < 0.5:
+            whole = whole[: rng.randrange(len(whole))]
+        else:
+            whole[rng.randrange(len(whole))] ^= 0xFF
+        file.write_bytes(whole)
+    assert call(tried, kept) == ("5 6.0 4", "")
+    assert call(tried, kept) == ("5 6.0 0", "")
+
+
+def test_many_at_a_time_and_killed_at_any_moment(tried: Path) -> None:
+    kept, rng = tried / "kept", Random(2)
+    for _ in range(4):
+        together = [start(tried, kept) for _ in range(2)]
+        # once the first file appears, the others follow within fractions of a second
+        end = time.monotonic() + 60.0
+        while not files(kept) and time.monotonic() < end and together[0].poll() is None:
+            time.sleep(0.005)
+        time.sleep(rng.uniform(0.0, 0.2))
+        together[0].send_signal(signal.SIGKILL)
+        assert together[1].communicate(timeout=300)[0].startswith("5 6.0 ")
+        together[0].communicate()
+        assert call(tried, kept) == ("5 6.0 0", "")
+        for file in files(kept):
+            file.unlink()
+
+
+def test_a_folder_that_takes_nothing_is_told_once_and_not_fatal(tried: Path) -> None:
+    barred = tried / "barred"
+    barred.write_text("a file where the folder should be")
+    out, err = call(tried, barred)
+    assert out == "5 6.0 4"
+    assert err.count("cannot be kept") == 1 and "NUMBA_CACHE_DIR" in err
+
+
+def test_a_full_disk_is_told_once_and_not_fatal(tried: Path) -> None:
+    def full() -> None:
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+
+    kept = tried / "kept"
+    out, err = call(tried, kept, preexec_fn=full)
+    assert out == "5 6.0 4"
+    assert err.count("cannot be kept") == 1
+    assert files(kept) == []
+    assert call(tried, kept) == ("5 6.0 4", "")
+
+
+def test_kernels_beside_the_sources_are_used_where_they_cannot_be_written(tried: Path) -> None:
+    """As in an image whose kernels were compiled by another user."""
+    assert call(tried, None) == ("5 6.0 4", "")
+    beside = tried / "tried" / "__pycache__"
+    assert len(files(beside)) == 4
+    held = beside.rename(tried / "tried" / "held")
+    beside.write_text("")  # root may write to any folder, but not into a file
+    assert call(tried, None) == ("5 6.0 4", "")
+    assert len(files(tried / "user")) == 4
+    beside.unlink()
+    held.rename(beside)
+    for file in files(tried / "user"):
+        file.unlink()
+    assert call(tried, None) == ("5 6.0 0", "")
