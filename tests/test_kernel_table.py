@@ -1,0 +1,87 @@
+"""The table of kernels that are compiled ahead fits the kernels that there are."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from numba.core.dispatcher import Dispatcher
+
+from meshwind.core import compile_ahead
+from meshwind.core.compile_ahead import JOBS, table
+from meshwind.core.kernel_types import from_text, to_text
+
+ROOT = Path(__file__).parents[1]
+RECORD = "run NUMBA_CACHE_DIR=$(mktemp -d) python examples/record_kernels.py"
+LOADED = """
+import json, sys
+from meshwind.core import kernel
+from meshwind.core.kernel_types import to_text
+used = []
+load = kernel.KernelFiles.load_overload
+def seen(self, sig, context):
+    f = self._py_func
+    used.append([f.__module__, f.__qualname__, [to_text(each) for each in sig]])
+    return load(self, sig, context)
+kernel.KernelFiles.load_overload = seen
+import meshwind
+meshwind.wind(sys.argv[1], paths=2, particles=51, revolutions=0.8, out=sys.argv[2], render=False)
+print(json.dumps(used))
+"""
+
+
+def in_place(kernel: Dispatcher) -> bool:
+    """Whether a kernel is put in the place of its calls instead of being compiled."""
+    return str(kernel.targetoptions.get("inline", "never")) == "always"
+
+
+def called(kernel: Dispatcher) -> set[tuple[str, str]]:
+    """The kernels that a kernel calls, also through those that are put in their place."""
+    found, left, seen = set(), [kernel], {kernel}
+    while left:
+        function = left.pop().py_func
+        for name in function.__code__.co_names:
+            other = function.__globals__.get(name)
+            if isinstance(other, Dispatcher) and other not in seen:
+                seen.add(other)
+                if in_place(other):
+                    left.append(other)
+                else:
+                    found.add((other.py_func.__module__, other.py_func.__qualname__))
+    return found
+
+
+def test_types_come_back_as_they_were() -> None:
+    for kernel in table():
+        for text in kernel.types:
+            assert json.loads(json.dumps(to_text(from_text(text)))) == text
+
+
+def test_what_a_kernel_calls_comes_before_it_in_the_table() -> None:
+    before: set[tuple[str, str]] = set()
+    for number, kernel in enumerate(table()):
+        assert isinstance(kernel.compiled, Dispatcher), f"{kernel.module} has no {kernel.name} any more: {RECORD}"
+        assert kernel.job in JOBS and max(kernel.calls, default=-1) < number
+        before.add((kernel.module, kernel.name))
+        missing = {name for name in called(kernel.compiled) if name not in before}
+        assert not missing, f"{kernel.name} calls {missing}, which are not in the table: {RECORD}"
+
+
+def test_a_run_uses_no_kernel_that_is_not_in_the_table(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", LOADED, str(ROOT / "data/vase.stl"), str(tmp_path / "out")],
+        capture_output=True, text=True, check=True, env=dict(os.environ, PYTHONPATH=str(ROOT)),
+    )  # fmt: skip
+    known = {(kernel.module, kernel.name, json.dumps(kernel.types)) for kernel in table()}
+    used = {(module, name, json.dumps(types)) for module, name, types in json.loads(done.stdout.splitlines()[-1])}
+    assert len(used) > 20
+    assert not used - known, RECORD
+
+
+def test_a_process_that_ends_leaves_its_kernels_to_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+    told: list[str] = []
+    compile_ahead._Pool([0, 1, 2], told.append).run(2)
+    assert told[0] == "compiling kernels for this machine once, 0 of 3"
