@@ -20,7 +20,7 @@ from meshwind.core.compile_ahead import JOBS, TABLE
 from meshwind.core.kernel_types import to_text
 
 DATA = Path(__file__).parents[1] / "data"
-SMALL = {"paths": 2, "particles": 51, "render": False}
+SMALL: dict[str, Any] = {"paths": 2, "particles": 51, "render": False}
 
 
 class Recorder(event.Listener):  # type: ignore[misc]

@@ -54,7 +54,9 @@ def tried(tmp_path: Path) -> Path:
 
 
 def start(tried: Path, kept: Path | None, **options: object) -> "subprocess.Popen[str]":
-    environment = dict(os.environ, PYTHONPATH=str(ROOT), XDG_CACHE_HOME=str(tried / "user"), PYTHONDONTWRITEBYTECODE="1")
+    environment = dict(
+        os.environ, PYTHONPATH=str(ROOT), XDG_CACHE_HOME=str(tried / "user"), PYTHONDONTWRITEBYTECODE="1"
+    )
     environment.pop("NUMBA_CACHE_DIR", None)
     if kept is not None:
         environment["NUMBA_CACHE_DIR"] = str(kept)

@@ -17,6 +17,7 @@ from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryFile
 from threading import Condition, Thread
+from time import monotonic
 from typing import Any
 
 from meshwind.core.progress import Progress, silent
@@ -28,6 +29,8 @@ MAX_PROCESSES = 8
 """More do not help: kernels wait for those that they call."""
 WORTH = 3.0
 """Seconds of compiling below which no processes are started: each needs one to import Numba."""
+EVERY = 2.0
+"""Seconds between two words of progress."""
 UNKEPT = "unkept"
 """Answer of a process that cannot keep what it compiles."""
 SAY = "compiling kernels for this machine once"
@@ -138,39 +141,38 @@ class _Pool:
 
     def __init__(self, numbers: list[int], progress: Progress) -> None:
         self.waiting, self.undone, self.total = set(numbers), set(numbers), len(numbers)
-        self.progress, self.change = progress, Condition()
+        self.progress, self.change, self.serving = progress, Condition(), 0
         self.urgency = _urgency(numbers)
 
     def run(self, processes: int) -> None:
         """Compile all of them, or as many as the processes live to."""
         workers = [_Worker() for _ in range(processes)]
-        threads = [Thread(target=self._serve, args=(worker,), daemon=True) for worker in workers]
-        told = -1
+        self.serving = processes
+        told = -EVERY
         try:
-            for thread in threads:
-                thread.start()
-            while any(thread.is_alive() for thread in threads):
-                with self.change:
-                    done = self.total - len(self.undone)
-                    if done != told and done < self.total:
-                        self.progress(f"{SAY}, {done} of {self.total}")
-                    told = done
-                    self.change.wait(2.0)
+            for worker in workers:
+                Thread(target=self._serve, args=(worker,), daemon=True).start()
+            with self.change:
+                while self.serving:
+                    if monotonic() - told >= EVERY:
+                        told = monotonic()
+                        self.progress(f"{SAY}, {self.total - len(self.undone)} of {self.total}")
+                    self.change.wait(EVERY)
         finally:
             for worker in workers:
                 worker.close()
 
     def _serve(self, worker: "_Worker") -> None:
         """Give a process one kernel after the other until none is left or it has ended."""
-        while True:
-            number = self._next()
-            alive = number is not None and worker.compile(number)
+        alive = True
+        while alive and (number := self._next()) is not None:
+            alive = worker.compile(number)
             with self.change:
-                if number is not None:
-                    self.undone.discard(number)  # one whose process has ended is no longer waited for either
+                self.undone.discard(number)  # one whose process has ended is no longer waited for either
                 self.change.notify_all()
-            if not alive:
-                return
+        with self.change:
+            self.serving -= 1
+            self.change.notify_all()
 
     def _next(self) -> int | None:
         """The kernel that the most work waits for, once all that it calls is compiled; None where none is left."""
@@ -181,7 +183,7 @@ class _Pool:
                     best = max(ready, key=self.urgency.__getitem__)
                     self.waiting.discard(best)
                     return best
-                self.change.wait(2.0)
+                self.change.wait(EVERY)
         return None
 
 

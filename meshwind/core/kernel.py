@@ -36,7 +36,7 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     keep = options.pop("cache", False)
 
     def declare(function: Callable[..., Any]) -> Any:
-        kernel = numba.njit(**options)(function)
+        kernel: Any = numba.njit(**options)(function)
         if keep and isinstance(kernel, Dispatcher):  # with NUMBA_DISABLE_JIT it is the function itself
             kernel._cache = KernelFiles(function)
         return kernel

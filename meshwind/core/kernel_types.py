@@ -3,8 +3,9 @@
 from importlib import import_module
 from typing import Any
 
-from numba.core import types
+from numba.core import types as _types
 
+types: Any = _types
 Text = list[Any] | str
 """A number's type by its name, or a list: a word for the kind, then its contents."""
 
