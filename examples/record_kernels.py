@@ -35,7 +35,7 @@ class Recorder(event.Listener):  # type: ignore[misc]
         """A kernel begins, perhaps within another one."""
         self._open.append([event.data["dispatcher"].py_func, event.data["args"], time.process_time(), 0.0])
 
-    def on_end(self, event: Any) -> None:
+    def on_end(self, event: Any) -> None:  # noqa: ARG002  (the name is that of the base class)
         """It is done."""
         function, args, start, within = self._open.pop()
         taken = time.process_time() - start
@@ -95,7 +95,7 @@ def write(rows: list[dict[str, Any]]) -> None:
             "types": [kinds.index(text) for text in texts], "calls": calls, "seconds": round(row["seconds"], 1),
         }))  # fmt: skip
     shown = ",\n  ".join(json.dumps(kind) for kind in kinds), ",\n  ".join(lines)
-    TABLE.write_text('{"types": [\n  %s\n], "kernels": [\n  %s\n]}\n' % shown, encoding="utf-8")
+    TABLE.write_text(f'{{"types": [\n  {shown[0]}\n], "kernels": [\n  {shown[1]}\n]}}\n', encoding="utf-8")
     print(len(rows), "kernels,", round(sum(row["seconds"] for row in rows), 1), "s")
 
 

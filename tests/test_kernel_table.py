@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -80,8 +81,48 @@ def test_a_run_uses_no_kernel_that_is_not_in_the_table(tmp_path: Path) -> None:
     assert not used - known, RECORD
 
 
-def test_a_process_that_ends_leaves_its_kernels_to_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_processes_that_end_leave_their_kernels_to_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "executable", "/bin/false")
     told: list[str] = []
-    compile_ahead._Pool([0, 1, 2], told.append).run(2)
+    compile_ahead._Pool([0, 1, 2], told.append).run(2)  # and does not wait for ever
     assert told[0] == "compiling kernels for this machine once, 0 of 3"
+
+
+ENTRIES = """
+from meshwind.core import compile_ahead
+compile_ahead.WORTH = -1.0
+few = [k for k in range(len(compile_ahead.table())) if compile_ahead.table()[k].module.startswith("meshwind.layup")]
+compile_ahead._missing = lambda jobs, missing=compile_ahead._missing: [k for k in missing(jobs) if k in few]
+print(len(few), compile_ahead.compile_ahead(), compile_ahead.left_out())
+"""
+
+
+def test_two_at_a_time_and_killed_leave_what_the_next_one_ends(tmp_path: Path) -> None:
+    environment = dict(os.environ, PYTHONPATH=str(ROOT), NUMBA_CACHE_DIR=str(tmp_path))
+
+    def start() -> "subprocess.Popen[str]":
+        return subprocess.Popen([sys.executable, "-c", ENTRIES], env=environment, stdout=subprocess.PIPE, text=True)
+
+    killed, other = start(), start()
+    while not list(tmp_path.rglob("*.nbc")) and killed.poll() is None:
+        time.sleep(0.02)
+    killed.kill()
+    killed.communicate()
+    few, _, left = (int(word) for word in other.communicate()[0].split())
+    assert few > 2 and left == 0
+    assert start().communicate()[0].split() == [str(few), "0", "0"]
+
+
+def test_a_folder_that_cannot_be_written_is_an_error_of_compile_alone(tmp_path: Path) -> None:
+    barred = tmp_path / "barred"
+    barred.write_text("a file where the folder should be")
+    environment = dict(os.environ, PYTHONPATH=str(ROOT), NUMBA_CACHE_DIR=str(barred))
+    done = subprocess.run(
+        [sys.executable, "-m", "meshwind", "compile", "--json"],
+        env=environment, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 2 and done.stdout == ""
+    assert "NUMBA_CACHE_DIR" in json.loads(done.stderr)["error"]
+    ahead = "from meshwind.core.compile_ahead import compile_ahead; print(compile_ahead() > 100)"
+    done = subprocess.run([sys.executable, "-c", ahead], env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout == "True\n"

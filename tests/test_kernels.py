@@ -67,7 +67,7 @@ def start(tried: Path, kept: Path | None, **options: object) -> "subprocess.Pope
 
 
 def call(tried: Path, kept: Path | None, **options: object) -> tuple[str, str]:
-    """What a process that calls the kernels prints: two results, the number of kernels that it compiled; and warnings."""
+    """What such a process prints: two results and the number of kernels that it compiled, and warnings."""
     out, err = start(tried, kept, **options).communicate(timeout=300)
     return out.strip(), err
 

@@ -148,7 +148,8 @@ class _Pool:
         """Compile all of them, or as many as the processes live to."""
         workers = [_Worker() for _ in range(processes)]
         self.serving = processes
-        told = -EVERY
+        self.progress(f"{SAY}, 0 of {self.total}")
+        told = monotonic()
         try:
             for worker in workers:
                 Thread(target=self._serve, args=(worker,), daemon=True).start()
