@@ -62,6 +62,10 @@ def wind(
     Exit status: 0 done; 1 the summary could not be printed; 2 bad input or usage; 3 done, but some paths did not
     converge (the report says which and why).
     """
+    from meshwind.pictures.painter import start_probe
+
+    if files.render:
+        start_probe()  # it loads its libraries while this process loads its own
     # the numerical libraries are imported late: --help and usage errors must not wait for them
     from meshwind.run.wind import wind as run
 
