@@ -37,7 +37,7 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 
     def declare(function: Callable[..., Any]) -> Any:
         kernel: Any = numba.njit(**options)(function)
-        if keep and isinstance(kernel, Dispatcher):  # with NUMBA_DISABLE_JIT it is the function itself
+        if keep and hasattr(kernel, "enable_caching"):  # with NUMBA_DISABLE_JIT it is the function itself
             kernel._cache = KernelFiles(function)
         return kernel
 
