@@ -60,6 +60,11 @@ def test_types_come_back_as_they_were() -> None:
             assert json.loads(json.dumps(to_text(from_text(text)))) == text
 
 
+def test_kernels_are_kept_by_files_of_their_own() -> None:
+    for file in (ROOT / "meshwind").rglob("*.py"):
+        assert "from numba import njit" not in file.read_text(encoding="utf-8"), f"{file}: take that of core.kernel"
+
+
 def test_what_a_kernel_calls_comes_before_it_in_the_table() -> None:
     before: set[tuple[str, str]] = set()
     for number, kernel in enumerate(table()):

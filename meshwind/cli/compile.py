@@ -34,7 +34,7 @@ def compile(*, printed: Printed) -> int:
             "set NUMBA_CACHE_DIR to one that can"
         )  # fmt: skip
     with stages(printed) as progress:
-        missing = compile_ahead(progress=progress)
+        missing = compile_ahead(progress=progress, worth=0.0)
     left = left_out()
     if left:
         typer.echo(f"meshwind: warning: {left} kernels could not be compiled or kept", err=True)

@@ -65,15 +65,15 @@ def table() -> tuple[Kernel, ...]:
     )  # fmt: skip
 
 
-def compile_ahead(jobs: Iterable[str] = JOBS, progress: Progress = silent, processes: int | None = None) -> int:
+def compile_ahead(jobs: Iterable[str] = JOBS, progress: Progress = silent, worth: float = WORTH) -> int:
     """Compile the kernels of some jobs that are not kept yet; returns how many these are.
 
-    processes: how many at a time, by default one for each core.  A process that is killed leaves its kernel to the
-    first call of it, and so does a folder that takes no more.
+    worth: seconds of compiling below which none is compiled.  A process that is killed leaves its kernel to the first
+    call of it, and so does a folder that takes no more.
     """
     missing = _missing(frozenset(jobs))
-    if sum(table()[number].seconds for number in missing) > WORTH and where() is not None:
-        _Pool(missing, progress).run(min(processes or _cores(), MAX_PROCESSES, len(missing)))
+    if sum(table()[number].seconds for number in missing) >= worth and missing and where() is not None:
+        _Pool(missing, progress).run(min(_cores(), MAX_PROCESSES, len(missing)))
     return len(missing)
 
 
