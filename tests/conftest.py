@@ -7,6 +7,8 @@ from shutil import which
 import pytest
 from needs import CHROMIUM, NEEDS, STRICT
 
+from meshwind.core.compile_ahead import compile_ahead
+
 _MISSING = "missing"
 """Property of a test's report: the need that was not met."""
 
@@ -43,6 +45,12 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
         if os.environ.get(STRICT):
             pytest.fail(f"{NEEDS[name].advice}, and {STRICT} is set", pytrace=False)
         pytest.skip(NEEDS[name].advice)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Compile the kernels that are missing before several processes test, which would each compile them."""
+    if getattr(config.option, "numprocesses", None) and not hasattr(config, "workerinput"):
+        compile_ahead()
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

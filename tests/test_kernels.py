@@ -23,11 +23,15 @@ def twice(x):
 """
 INNER = """
 from meshwind.core.kernel import njit
+from meshwind.tried.numbers import STEP
 
 
 @njit(cache=True)
 def grown(x):
-    return x + 1
+    return x + STEP
+"""
+NUMBERS = """
+STEP = 1
 """
 CALL = """
 import sys, meshwind
@@ -48,7 +52,7 @@ def tried(tmp_path: Path) -> Path:
     """A folder with a package `tried` of two kernels, of which one calls the other."""
     package = tmp_path / "tried"
     package.mkdir()
-    for name, text in (("__init__", ""), ("outer", SOURCE), ("inner", INNER)):
+    for name, text in (("__init__", ""), ("outer", SOURCE), ("inner", INNER), ("numbers", NUMBERS)):
         (package / f"{name}.py").write_text(text)
     return tmp_path
 
@@ -83,10 +87,13 @@ def test_kernels_are_kept_and_compiled_anew_when_they_or_what_they_call_change(t
     assert call(tried, kept) == ("5 6.0 0", "")
     inner = tried / "tried" / "inner.py"
     stamp = inner.stat().st_mtime_ns
-    inner.write_text(INNER.replace("+ 1", "+ 3"))  # same size, same time
+    inner.write_text(INNER.replace("x + STEP", "STEP - x"))  # same size, same time
+    assert inner.stat().st_size == len(INNER)
     os.utime(inner, ns=(stamp, stamp))
+    assert call(tried, kept) == ("1 1.0 4", "")
+    inner.write_text(INNER)
+    (tried / "tried" / "numbers.py").write_text(NUMBERS.replace("1", "3"))  # a module without kernels
     assert call(tried, kept) == ("7 8.0 4", "")
-    assert len(files(kept)) == 4
 
 
 def test_a_damaged_file_is_compiled_anew(tried: Path) -> None:

@@ -149,7 +149,10 @@ def folders(source: str) -> list[Path]:
 
 @lru_cache
 def sources(module: str) -> str:
-    """Digest of the source files of a module and of those whose kernels or records it takes, and so on."""
+    """Digest of the source files of a module and of those whose kernels or records it takes, and so on.
+
+    The numbers that these modules take from others count as well: they are part of the code.
+    """
     names, left = {module}, [module]
     while left:
         for value in list(vars(sys.modules[left.pop()]).values()):
@@ -162,7 +165,20 @@ def sources(module: str) -> str:
             if home.split(".")[0] == _PACKAGE and home not in names:
                 names.add(home)
                 left.append(home)
-    return hashlib.sha256("".join(_source(name) for name in sorted(names)).encode()).hexdigest()
+    return hashlib.sha256("".join(_source(name) + _numbers(name) for name in sorted(names)).encode()).hexdigest()
+
+
+@lru_cache
+def _numbers(module: str) -> str:
+    """The numbers, texts and tuples of them among the names of a module."""
+    held = vars(sys.modules[module]).items()
+    return repr(sorted((name, repr(value)) for name, value in held if _is_plain(value) and not name.startswith("__")))
+
+
+def _is_plain(value: object) -> bool:
+    if type(value) is tuple:
+        return all(_is_plain(each) for each in value)
+    return isinstance(value, int | float | complex | str) and type(value).__module__ == "builtins"
 
 
 @lru_cache
