@@ -13,7 +13,7 @@ import meshwind as mw
 from meshwind.cli.redesign import redesign
 from meshwind.cli.wind import wind
 from meshwind.core.option import options_of
-from meshwind.editing.options import EditOptions
+from meshwind.editing.options import EditOptions, WindingOptions
 from meshwind.workflow.options import Options
 
 BAD: list[tuple[dict[str, Any], str]] = [
@@ -87,10 +87,11 @@ def test_wind_takes_every_option_with_its_default() -> None:
 
 def test_redesign_takes_its_options_with_their_defaults() -> None:
     parameters = inspect.signature(mw.redesign).parameters
-    defaults = {option.name: option.default for option in (*fields(Options), *fields(EditOptions))}
-    taken = set(parameters) - {"mesh", "progress"}
-    assert {name for name in taken if parameters[name].default != defaults[name]} == {"revolutions"}
-    assert parameters["revolutions"].default == inspect.signature(redesign).parameters["revolutions"].default == "auto"
+    each = (*fields(Options), *fields(EditOptions), *fields(WindingOptions))  # whose revolutions stand for those of Options
+    defaults = {option.name: option.default for option in each}
+    for name in set(parameters) - {"mesh", "progress"}:
+        assert parameters[name].default == defaults[name], name
+    assert inspect.signature(redesign).parameters["revolutions"].default == defaults["revolutions"] == "auto"
 
 
 def test_the_command_line_has_the_same_defaults() -> None:
