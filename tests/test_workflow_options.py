@@ -87,7 +87,7 @@ def test_wind_takes_every_option_with_its_default() -> None:
 
 def test_redesign_takes_its_options_with_their_defaults() -> None:
     parameters = inspect.signature(mw.redesign).parameters
-    each = (*fields(Options), *fields(EditOptions), *fields(WindingOptions))  # the last come first
+    each = (*fields(Options), *fields(EditOptions), *fields(WindingOptions))  # of one name the last counts
     defaults = {option.name: option.default for option in each}
     for name in set(parameters) - {"mesh", "progress"}:
         assert parameters[name].default == defaults[name], name
