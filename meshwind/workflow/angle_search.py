@@ -22,8 +22,8 @@ _NARROWED, _WITHIN = 3, 3
 class Hunt(NamedTuple):
     """What a search found.
 
-    revolutions: the best ones; reached: the angle there, in radians; lost: the least at which no path came to rest, or
-    infinity; within: whether the angle is met, or is between those of two trials.
+    revolutions: the best ones; reached: the angle there, in radians; lost: the least at which too few paths came to
+    rest, or infinity; within: whether the angle is met, or is between those of two trials.
     """
 
     revolutions: float
@@ -35,8 +35,8 @@ class Hunt(NamedTuple):
 def hunt(measure: Callable[[float], float | None], wanted: float, start: float, near: float, most: float) -> Hunt:
     """Search for the revolutions at which an angle is `wanted`, up to `near`, both in radians.
 
-    measure: gives the angle at some revolutions, or None where no path comes to rest; start: the first trial's; most:
-    revolutions beyond which none are tried.  Reached is -infinity where no path comes to rest at any.
+    measure: gives the angle at some revolutions, or None where too few paths come to rest; start: the first trial's;
+    most: revolutions beyond which none are tried.  Reached is -infinity where too few come to rest at any.
     """
     low, high, lost, best, reached, steepest = 0.0, np.inf, np.inf, 0.0, -np.inf, -np.inf
     target, before, turns = float(np.tan(wanted)), (0.0, 0.0), min(start, most)
@@ -70,7 +70,7 @@ def survey(
 ) -> Hunt:
     """The best that `hunt` found, or better from trials all over a span of revolutions.
 
-    On bent parts the angle does not grow with every turn: it has lows, and ranges where no path comes to rest.
+    On bent parts the angle does not grow with every turn: it has lows, and ranges where too few paths come to rest.
     """
     low, high = span
     turns = np.geomspace(low, high, max(_FEW, 1 + int(np.ceil(np.log(high / low) / np.log(_APART)))))
