@@ -189,7 +189,7 @@ class Helices:
 
         place: where, as `station` reads it, or the widest place of the layer.  A few paths come first, and then those
         that tell the angle, most often once or twice.
-        Raises BadInputError where no path comes to rest at all.
+        Raises BadInputError where too few paths come to rest at any revolutions.
         """
         v = self._widest if place is None else station(place, self.lines)
         tube = self._on_a_tube(angle)
@@ -211,7 +211,10 @@ class Helices:
             start = found.revolutions
             found = found_with(_TRIAL_PATHS, start, _NEAR, (start / _ABOUT, start * _ABOUT))
         if not np.isfinite(found.reached):
-            raise BadInputError(f"no path comes to rest at {found.lost:.4g} revolutions and below; give more friction")
+            raise BadInputError(
+                f"less than {100 * _MOST:.0f} % of the paths come to rest at {found.lost:.4g} revolutions, and at fewer; "
+                "give more friction"
+            )
         turned = Turned(found.revolutions, v, angle, found.reached, found.lost)
         return turned if turned.met else self._steepest(turned)
 
