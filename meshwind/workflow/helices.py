@@ -212,7 +212,7 @@ class Helices:
             found = found_with(_TRIAL_PATHS, start, _NEAR, (start / _ABOUT, start * _ABOUT))
         if not np.isfinite(found.reached):
             raise BadInputError(
-                f"less than {100 * _MOST:.0f} % of the paths come to rest at {found.lost:.4g} revolutions, and at fewer; "
+                f"under {100 * _MOST:.0f} % of the paths come to rest at {found.lost:.4g} revolutions, and at fewer; "
                 "give more friction"
             )
         turned = Turned(found.revolutions, v, angle, found.reached, found.lost)
