@@ -247,7 +247,7 @@ def _rounds(
 ) -> tuple[_State, Outcome, tuple[Round, ...]]:
     """Do up to so many rounds; returns the best state, the outcome, and the figures of the rounds."""
     best, idle, total, short, figures = now, 0, True, False, list[Round]()
-    outcome = Outcome.ROUNDS_SPENT
+    outcome, lowest = Outcome.ROUNDS_SPENT, best.gap  # against the best gap alone, small losses would add up
     for number in range(most):
         if now.bridged == 0.0 and problem.holds(now):
             break
@@ -260,7 +260,8 @@ def _rounds(
         figures.append(problem.figures(now, after, found))
         before, now = now, after
         holds = problem.holds(now)
-        better = holds and is_better((now.bridged, now.gap), (best.bridged, best.gap))
+        better = holds and is_better((now.bridged, now.gap), (best.bridged, lowest))
+        lowest = min(lowest, now.gap) if holds else lowest
         best, idle = (now, 0) if better else (best, idle + holds if after is not before else MAX_IDLE_ROUNDS)
         outcome = _outcome(now.bridged == 0.0 and holds, found, idle)
         if outcome != Outcome.ROUNDS_SPENT:
