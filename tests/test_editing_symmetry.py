@@ -6,11 +6,12 @@ from scipy.spatial import cKDTree
 from test_editing import hyperboloid
 
 import meshwind as mw
+from meshwind.core.vectors import rotation
 from meshwind.editing.edit import edit
 from meshwind.editing.freedom import free_moves, frozen_mask
 from meshwind.editing.options import EditOptions
 from meshwind.editing.redesign import redesign
-from meshwind.editing.symmetry import mesh_group, net_group, planes, reflected, rotation
+from meshwind.editing.symmetry import mesh_group, net_group, planes, reflected
 from meshwind.mesh import Mesh, mesh_from
 from meshwind.surface import Surface
 from meshwind.workflow.options import Options

@@ -6,7 +6,6 @@ where it no longer fits.  A kernel that is missing there is compiled when it is 
 """
 
 import json
-import os
 import subprocess
 import sys
 from collections.abc import Iterable
@@ -20,6 +19,7 @@ from threading import Condition, Thread
 from time import monotonic
 from typing import Any
 
+from meshwind.core.processes import cores
 from meshwind.core.progress import Progress, silent
 
 TABLE = Path(__file__).with_name("kernels.json")
@@ -73,7 +73,7 @@ def compile_ahead(jobs: Iterable[str] = JOBS, progress: Progress = silent, worth
     """
     missing = _missing(frozenset(jobs))
     if sum(table()[number].seconds for number in missing) >= worth and missing and where() is not None:
-        _Pool(missing, progress).run(min(_cores(), MAX_PROCESSES, len(missing)))
+        _Pool(missing, progress).run(min(cores(), MAX_PROCESSES, len(missing)))
     return len(missing)
 
 
@@ -99,10 +99,6 @@ def where() -> Path | None:
             return Path(config.CACHE_DIR)
         return package if package in folder.parents else folder.parent
     return None
-
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def compile_one(number: int) -> None:

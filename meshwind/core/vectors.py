@@ -25,3 +25,10 @@ def unit(vectors: Floats) -> Floats:
     """Vectors (..., d) over their lengths; those without a length stay zero."""
     size = sizes(vectors)[..., None]
     return np.divide(vectors, size, out=np.zeros_like(vectors), where=size > 0.0)
+
+
+def rotation(axis: Floats, angle: float) -> Floats:
+    """The rotation (3, 3) about a unit axis through the origin by an angle in radians."""
+    x, y, z = axis
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross))

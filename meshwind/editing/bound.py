@@ -10,8 +10,8 @@ from meshwind.chart.chart import Chart
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.editing.feet import feet_of
-from meshwind.editing.region import lattice
-from meshwind.editing.stencil import weights
+from meshwind.editing.region import SAMPLES_PER_SPAN
+from meshwind.editing.stencil import lattice, weights
 from meshwind.editing.symmetry import Group
 from meshwind.mesh import Annulus, Mesh
 from meshwind.surface.surface import Surface
@@ -54,7 +54,7 @@ class Bound:
         annulus = chart.annulus
         _, vertex = cKDTree(annulus.mesh.vertices).query(annulus.vertices)
         values = self.each[vertex]
-        samples = lattice(surface)
+        samples = lattice(surface, SAMPLES_PER_SPAN)
         _, near = cKDTree(annulus.vertices).query(surface.points(samples))
         uv = np.concatenate([samples, chart.uv, feet_of(surface, annulus.vertices, chart.uv)])
         which, _ = weights(surface, uv, ((0, 0),))

@@ -40,7 +40,7 @@ QUICK = 0.1
 RIM = 4.0
 """Factor of the pressing within a span of a rim, where a fit knows one side only and its curvature is less certain.
 
-The refit of the edited sample cast lifted fibres along its rims, and nowhere else; with 3 it lifts none.
+The refit of the edited sample cast lifted fibres along its rims, and nowhere else; with 4, at 0.5 revolutions, none.
 """
 SHARES = (1.0, 0.5, 0.25, 0.1)
 """Of a change that leaves fibres out of reach: those that are tried in turn until the largest gap is lower."""

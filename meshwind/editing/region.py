@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.errors import BadInputError
-from meshwind.editing.stencil import weights
+from meshwind.editing.stencil import lattice, weights
 from meshwind.mesh.io.scalars import Scalars
 from meshwind.surface.surface import Surface
 from meshwind.workflow.option_checks import FIELD
@@ -61,7 +61,7 @@ class Region:
         uv (n, 2): parameters of points in it, beside those of a lattice over the whole surface.  Raises BadInputError
         where the region is empty.
         """
-        samples = lattice(surface)
+        samples = lattice(surface, SAMPLES_PER_SPAN)
         inside = samples[self.contains(samples, surface.points(samples), scalars)]
         inside = np.concatenate([inside, uv])
         if not len(inside):
@@ -116,13 +116,6 @@ def _faces(term: str, text: str) -> Ints:
         except (OSError, ValueError) as error:
             raise BadInputError(f"{FACES}{term} is no file of whole numbers ({error}); {_ADVICE}") from error
     raise BadInputError(f"freeze is {text!r}; {_ADVICE}")
-
-
-def lattice(surface: Surface) -> Floats:
-    """Parameters (k, 2) of samples of a surface."""
-    around, along = (SAMPLES_PER_SPAN * spans for spans in surface.spans)
-    u, v = np.meshgrid(np.arange(around) / around, np.linspace(0.0, 1.0, along + 1), indexing="ij")
-    return np.stack([u.ravel(), v.ravel()], axis=1)
 
 
 def _range(term: str, text: str) -> Range:

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import sparse
 
 from meshwind.core.cast import Floats, Ints
-from meshwind.editing.stencil import along, weights
+from meshwind.editing.stencil import along, lattice, weights
 from meshwind.mesh.geometry.areas_and_volumes import area_vectors, volume
 from meshwind.surface.surface import Surface
 
@@ -39,7 +39,7 @@ def nothing(surface: Surface) -> Kept:
 
 def one_way(first: Surface, moved: Floats, inward: bool) -> Kept:
     """The first surface moves outward only, or inward, counting what it has moved so far (m, 3)."""
-    uv = _lattice(first, 1)
+    uv = lattice(first, 1)
     direction = first.normals(uv) * (-1.0 if inward else 1.0)
     which, (part,) = weights(first, uv, ((0, 0),))
     matrix = along(which, part, direction, len(moved))
@@ -73,7 +73,7 @@ def volume_gain(first: Surface, now: Surface) -> float:
 
 def _body(surface: Surface) -> tuple[sparse.csr_array, Ints]:
     """Vertices (n, m) by the control points, and triangles (k, 3), of a body with the surface's shape."""
-    uv = _lattice(surface, PER_SPAN)
+    uv = lattice(surface, PER_SPAN)
     around = PER_SPAN * surface.spans[0]
     which, (part,) = weights(surface, uv, ((0, 0),))
     row = np.repeat(np.arange(len(uv)), part.shape[1])
@@ -82,13 +82,6 @@ def _body(surface: Surface) -> tuple[sparse.csr_array, Ints]:
     rims = [np.arange(around), len(uv) - around + np.arange(around)]
     caps = [sparse.csr_array(samples[rim].sum(axis=0).reshape(1, -1) / around) for rim in rims]
     return sparse.csr_array(sparse.vstack([samples, *caps])), _faces(around, len(uv) // around)
-
-
-def _lattice(surface: Surface, per_span: int) -> Floats:
-    """Parameters (k, 2) of samples, around for each of the stations along."""
-    around, along_ = (per_span * spans for spans in surface.spans)
-    v, u = np.meshgrid(np.linspace(0.0, 1.0, along_ + 1), np.arange(around) / around, indexing="ij")
-    return np.stack([u.ravel(), v.ravel()], axis=1)
 
 
 def _faces(around: int, rings: int) -> Ints:

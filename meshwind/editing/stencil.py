@@ -64,3 +64,10 @@ def pitches(surface: Surface) -> tuple[float, float]:
     frames = surface.frames(np.stack(np.meshgrid(side, side), axis=-1).reshape(-1, 2))
     speed = np.linalg.norm(frames[:, 1:3], axis=2).mean(axis=0)
     return float(speed[0]) / surface.spans[0], float(speed[1]) / surface.spans[1]
+
+
+def lattice(surface: Surface, per_span: int) -> Floats:
+    """Parameters (k, 2) of samples, around for each of the stations along."""
+    around, along_ = (per_span * spans for spans in surface.spans)
+    v, u = np.meshgrid(np.linspace(0.0, 1.0, along_ + 1), np.arange(around) / around, indexing="ij")
+    return np.stack([u.ravel(), v.ravel()], axis=1)

@@ -10,8 +10,10 @@ from scipy.spatial import cKDTree
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import shortened
+from meshwind.core.vectors import rotation
 from meshwind.editing.feet import feet_of
-from meshwind.editing.region import lattice
+from meshwind.editing.region import SAMPLES_PER_SPAN
+from meshwind.editing.stencil import lattice
 from meshwind.surface.surface import Surface
 
 SAME_PLACE = 1e-6
@@ -120,7 +122,7 @@ class Reflected:
 
 def reflected(surface: Surface, plane: Plane, middle: Floats) -> Reflected:
     """Find that; raises BadInputError where the surface is far from its image."""
-    uv = lattice(surface)
+    uv = lattice(surface, SAMPLES_PER_SPAN)
     uv = uv[np.abs(uv[:, 1] - 0.5) < 0.45]
     points = surface.points(uv)
     images = plane.images(points, middle)
@@ -181,13 +183,6 @@ def axis_of(surface: Surface) -> Floats:
     """Direction (3,) of the axis through the centres of the rows of control points."""
     rings = surface.control_points.mean(axis=0)
     return np.asarray(np.linalg.svd(rings - rings.mean(axis=0))[2][0])
-
-
-def rotation(axis: Floats, angle: float) -> Floats:
-    """The rotation (3, 3) about a unit axis by an angle in radians."""
-    x, y, z = axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
 
 
 def mesh_group(vertices: Floats, order: int, mirrors: Sequence[Plane], axis: Floats) -> Group | None:

@@ -72,21 +72,18 @@ class Course:
         """Its paths on a surface, laid from where the `dense` ones lie there."""
         if self.is_hoop:
             return self.laid(surface)
-        ends = families(surface, self.paths, self.revolutions, between=self.between)
         curves = np.array(dense.uv[np.arange(2 * self.paths) * self._per_gap(surface)])
-        return solve(
-            surface, ends.start, ends.end, family=ends.family, particles=self.particles, friction=self.friction,
-            initial=curves,
-        )  # fmt: skip
+        return self._helices(surface, self.paths, curves)
 
     def _per_gap(self, surface: Surface) -> int:
         return -(-surface.control_points.shape[0] // self.paths)
 
-    def _helices(self, surface: Surface, paths: int) -> Paths:
+    def _helices(self, surface: Surface, paths: int, initial: Floats | None = None) -> Paths:
         ends = families(surface, paths, self.revolutions, between=self.between)
         return solve(
-            surface, ends.start, ends.end, family=ends.family, particles=self.particles, friction=self.friction
-        )
+            surface, ends.start, ends.end, family=ends.family, particles=self.particles, friction=self.friction,
+            initial=initial,
+        )  # fmt: skip
 
     def _hoop(self, surface: Surface, width: float) -> Paths:
         """One fibre around the part, its turns so far apart; it stays within the band that is asked for."""

@@ -1,6 +1,5 @@
 """Run a study: finished cases stay, the others are wound, and the table grows with each of them."""
 
-import os
 import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -8,6 +7,7 @@ from pathlib import Path
 from time import monotonic
 
 from meshwind.core.errors import BadInputError
+from meshwind.core.processes import cores
 from meshwind.sweep.charts import draw_tradeoffs
 from meshwind.sweep.store import CASES, PICTURE, Store
 from meshwind.sweep.study import CaseStatus, Row, Study, read_study
@@ -82,8 +82,4 @@ def _run(store: Store, processes: int | None, scheduler: str | None) -> Iterator
 
     if store.open:
         compile_for(case.options for case in store.open.values())  # once, and not in every process
-    return run_local(groups, min(processes or _cores(), max(len(store.open), 1)))
-
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return run_local(groups, min(processes or cores(), max(len(store.open), 1)))

@@ -69,7 +69,7 @@ def lay_layers(
 
 
 def _say_of(say: Progress, layer: str, words: str) -> None:
-    """Progress something of a layer."""
+    """Say something of a layer."""
     say(f"{layer}, {words}")
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.core.cast import Floats
+from meshwind.core.vectors import rotation
 from meshwind.mesh.io.deck.blocks import Block
 from meshwind.mesh.io.deck.numbers import floats_of
 
@@ -93,10 +94,7 @@ def _begins_empty(block: Block) -> bool:
 
 def about(axis: Floats, degrees: float) -> Floats:
     """Rotation (3, 3) about an axis through the origin."""
-    x, y, z = axis / _size(axis)
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    angle = np.radians(degrees)
-    return np.asarray(np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross))
+    return rotation(axis / _size(axis), float(np.radians(degrees)))
 
 
 def _size(vector: Floats) -> float:
