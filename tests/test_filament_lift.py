@@ -8,7 +8,7 @@ from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 
 import meshwind as mw
-from meshwind.core.cast import Floats
+from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.filament.closing import ClosedLayer, close_layer
 from meshwind.filament.collar_turn import Collar
@@ -18,6 +18,7 @@ from meshwind.filament.ends import LayerPlan, choose_end
 from meshwind.filament.filament import filaments_of
 from meshwind.filament.leaving import Rays
 from meshwind.filament.lift import leaning, legs_over
+from meshwind.filament.line_meetings import Meeting, meet_all
 from meshwind.filament.pin_turn import Pins
 from meshwind.filament.section import section
 from meshwind.path.winding_angle import axes, headings, winding_angle
@@ -62,7 +63,8 @@ def test_lines_come_into_a_section_where_all_its_edges_say(angles: list[float], 
     random = np.random.default_rng(seed)
     start, way = random.uniform(-5.0, 5.0, (50, 2)), random.normal(size=(50, 2))
     hull = section(ring)
-    found = hull.met(start, way)
+    found = Meeting(*(np.empty(50) for _ in range(3)))
+    meet_all(hull.ring, start, way, found)
     side = np.roll(ring, -1, axis=0) - ring
     out = np.stack([side[:, 1], -side[:, 0]], axis=1)
     rate = way @ out.T
@@ -288,15 +290,17 @@ def test_a_notch_in_a_rim_is_no_rim_along_the_axis() -> None:
     assert np.linalg.norm(filament.points[0] - filament.points[-1]) < 1e-9
 
 
-def test_rays_have_points_and_tangents_of_fourth_order() -> None:
-    """Along a helix, from its end, between particles and at them."""
+@pytest.mark.parametrize("end", [0, 1])
+def test_rays_have_points_and_tangents_of_fourth_order(end: int) -> None:
+    """Along a helix, from either end, between particles and at them."""
     off = []
     for many in (21, 41, 81):
         t = np.linspace(0.0, 2.0, many)
-        points = np.stack([np.cos(t), np.sin(t), 0.3 * t], axis=1)[None, ::-1]
-        rays = Rays(points, np.array([0]), np.array([1]))
+        points = np.stack([np.cos(t), np.sin(t), 0.3 * t], axis=1)[None]
+        each = np.zeros(41, dtype=np.int64)
+        rays = Rays(frozen(points if end else points[:, ::-1]), each, each + 1, end)
         share = np.linspace(0.0, 0.8, 41)
-        at, ahead = rays.at(share * (many - 1), np.zeros(41, dtype=int))
+        at, ahead = rays.at(share * (many - 1))
         s = 2.0 * (1.0 - share)
         exact = np.stack([np.cos(s), np.sin(s), 0.3 * s], axis=1)
         way = np.stack([-np.sin(s), np.cos(s), np.full_like(s, 0.3)], axis=1) / hypot(1.0, 0.3)

@@ -13,7 +13,7 @@ import numpy as np
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.vectors import unit
 from meshwind.filament.edge import Edge, Legs, Lift, legs
-from meshwind.filament.leaving import Rays, first, met, touch
+from meshwind.filament.leaving import Rays
 from meshwind.filament.part_edge import PartEdge
 from meshwind.filament.turnaround import Catch, Turnaround
 from meshwind.path.paths import Paths
@@ -51,7 +51,7 @@ def legs_of_all(turn: Turnaround, paths: Paths, families: tuple[int, ...] = (1, 
         return crossing
     rays = rays.chosen(which)
     last = (paths.points.shape[1] - 1) / 2.0  # the other end of a path has the other half to leave from
-    place, found = first(rays, on, catch, last)
+    place, found = rays.first(on, catch, last)
     made = []
     begin = np.cumsum([0, *(len(each) for each in crossing)])
     for each, start, end in zip(crossing, begin[:-1], begin[1:], strict=True):
@@ -150,17 +150,20 @@ def hung(paths: Paths, over: Sequence[tuple[Legs, int, int]]) -> Hung:
 def _lifted(crossing: Legs, which: Ints, rays: Rays, found: tuple[Edge, Catch, Floats]) -> Legs:
     """Legs of which some leave the part at places."""
     on, catch, place = found
-    off, ahead = rays.at(place)
-    there = met(on, off, ahead)
-    length, hits = there.length, np.isfinite(there.length)  # or grazes, but for round-off
+    seen = rays.looks(on, place)
+    off, ahead, length, hits = (
+        seen.point,
+        seen.ahead,
+        seen.length,
+        np.isfinite(seen.length),
+    )  # or grazes, but for round-off
     level = (off - on.origin) @ on.axis + np.where(hits, length, 0.0) * (ahead @ on.axis)
     held = hits & (level >= catch.height - _SAME * on.hull.perimeter)
-    grazed, reach = touch(on, off, ahead, rays.sense)
-    grazed += on.hull.perimeter * np.round((crossing.around[which] - grazed) / on.hull.perimeter)
-    length = np.where(held, length, reach)
+    grazed = seen.grazed + on.hull.perimeter * np.round((crossing.around[which] - seen.grazed) / on.hull.perimeter)
+    length = np.where(held, length, seen.reach)
     corner = off + length[:, None] * ahead
-    turns = np.round((crossing.around[which] - there.passed) / on.hull.perimeter)
-    around = np.where(held, there.passed + on.hull.perimeter * turns, grazed)
+    turns = np.round((crossing.around[which] - seen.passed) / on.hull.perimeter)
+    around = np.where(held, seen.passed + on.hull.perimeter * turns, grazed)
     height = (corner - on.origin) @ on.axis
     hoop = rays.sense[:, None] * on.tangents(around)
     # of a fibre that pins hold, the angle that it turns by on its pin is what counts
@@ -171,7 +174,7 @@ def _lifted(crossing: Legs, which: Ints, rays: Rays, found: tuple[Edge, Catch, F
     last = max((rays.points.shape[1] - 1) // 2, 1)
     aloft = np.clip(np.round(place), min(_LEAST, last), last).astype(np.int64)
     index, row = place.astype(np.int64), np.arange(len(which))
-    steps = np.linalg.norm(np.diff(rays.points[rays.rows, : index.max(initial=0) + 2], axis=1), axis=2)
+    steps = np.linalg.norm(np.diff(rays.from_rim(index.max(initial=0) + 2), axis=1), axis=2)
     passed = np.concatenate([np.zeros((len(which), 1)), np.cumsum(steps, axis=1)], axis=1)
     before = passed[row, index] + (place - index) * steps[row, np.minimum(index, steps.shape[1] - 1)]
     full = [np.array(values) for values in (crossing.around, crossing.height, crossing.angle, crossing.points)]

@@ -2,28 +2,16 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshwind.core.cast import Floats, Ints, floats, frozen
+from meshwind.core.cast import Floats, floats, frozen
 from meshwind.core.errors import BadInputError
+from meshwind.filament.line_meetings import Ring
 
 _HOLLOW = 1e-9
 """Turn of the normal backwards, in radians, that is round-off."""
-
-
-class Meeting(NamedTuple):
-    """Where lines come into a section: lengths along them, 0 inside and infinite where they pass by or have left it.
-
-    passed: lengths along the section there; depth: how far lines lead through it, seen along them, from its nearer
-    side, negative where they pass by.  All (n,).
-    """
-
-    length: Floats
-    passed: Floats
-    depth: Floats
 
 
 @dataclass(frozen=True)
@@ -56,68 +44,15 @@ class Section:
         whole, rest = np.divmod(np.asarray(turned) - angles[0], 2.0 * np.pi)
         return np.asarray(whole * self.perimeter + np.interp(rest + angles[0], angles, loop))
 
-    def met(self, start: Floats, way: Floats) -> Meeting:
-        """Where lines from points (n, 2) with directions (n, 2) come into the section.
-
-        On the edges that face a line the side of it that a corner lies on changes once, which is found by halving.
-        """
-        facing, count = self._facing, len(self.points)
-        ahead = np.arctan2(way[:, 1], way[:, 0]) + 0.5 * np.pi
-        ahead += 2.0 * np.pi * np.ceil((facing[0] - ahead) / (2.0 * np.pi))
-        low = np.searchsorted(facing, ahead, side="right")
-        high = np.searchsorted(facing, ahead + np.pi, side="left")
-        left = self._left(start, way, low), self._left(start, way, high)
-        depth = np.minimum(left[0], -left[1]) / np.hypot(way[:, 0], way[:, 1])
-        side, off = self._crossed(start, way, low, high)
-        along = ((start + off[:, None] * way - self.points[side]) * self._sides[side]).sum(axis=1) / self._sizes[side]
-        through = depth > 0.0
-        length = np.where(through & (off > 0.0), off, np.inf)
-        behind = np.flatnonzero(through & ~(off > 0.0))
-        if len(behind):
-            # of lines that came in before, those that have not gone out again are inside
-            out = self._crossed(start[behind], -way[behind], high[behind], low[behind] + count)[1]
-            length[behind[out < 0.0]] = 0.0
-        return Meeting(length, self.passed[side] + along, depth)
-
-    def _crossed(self, start: Floats, way: Floats, low: Ints, high: Ints) -> tuple[Ints, Floats]:
-        """The edges (n,), between two corners each, on which these come to the left of lines, and how far along."""
-        count = len(self.points)
-        x, y = self._corners
-        level = way[:, 0] * start[:, 1] - way[:, 1] * start[:, 0]
-        for _ in range(int((high - low).max(initial=1)).bit_length()):
-            middle = (low + high) // 2
-            there = way[:, 0] * y[middle] - way[:, 1] * x[middle] >= level
-            low, high = np.where(there, middle, low), np.where(there, high, np.maximum(middle, low + 1))
-        side = low % count
-        corner, edge = self.points[side], self._sides[side]
-        cross = edge[:, 1] * way[:, 0] - edge[:, 0] * way[:, 1]
-        return side, (edge[:, 1] * (corner - start)[:, 0] - edge[:, 0] * (corner - start)[:, 1]) / cross
-
-    def _left(self, start: Floats, way: Floats, corner: Ints) -> Floats:
-        """How far corners (n,) lie to the left of lines, times the size of their directions."""
-        off = self.points[corner % len(self.points)] - start
-        return np.asarray(way[:, 0] * off[:, 1] - way[:, 1] * off[:, 0])
-
     @cached_property
-    def _corners(self) -> tuple[Floats, Floats]:
-        """Both coordinates of the points, in four loops."""
-        return np.tile(self.points[:, 0], 4), np.tile(self.points[:, 1], 4)
-
-    @cached_property
-    def _sizes(self) -> Floats:
-        """Lengths (n,) of the edges."""
-        return np.hypot(self._sides[:, 0], self._sides[:, 1])
-
-    @cached_property
-    def _sides(self) -> Floats:
-        """Edges (n, 2), from each point to the next."""
-        return np.roll(self.points, -1, axis=0) - self.points
-
-    @cached_property
-    def _facing(self) -> Floats:
-        """Angles (3 n,) of the normals of the edges, growing, in three loops."""
-        angle = np.unwrap(np.arctan2(-self._sides[:, 0], self._sides[:, 1]))
-        return np.asarray((angle + 2.0 * np.pi * np.arange(3)[:, None]).ravel())
+    def ring(self) -> Ring:
+        """The section as kernels take it."""
+        sides = np.roll(self.points, -1, axis=0) - self.points
+        angle = np.unwrap(np.arctan2(-sides[:, 0], sides[:, 1]))
+        facing = (angle + 2.0 * np.pi * np.arange(3)[:, None]).ravel()
+        size = np.hypot(sides[:, 0], sides[:, 1])
+        passed, turned = self._loop
+        return Ring(self.points, frozen(sides), frozen(size), frozen(facing), frozen(passed), frozen(turned))
 
     @cached_property
     def _loop(self) -> tuple[Floats, Floats]:
