@@ -8,7 +8,7 @@ import numpy as np
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.progress import Progress, silent
 from meshwind.filament.cap_turn import Cap, ends_with_caps, joined_on_caps, passes_on_caps
-from meshwind.filament.course import Course, Courses, Kind, Stretch, in_line
+from meshwind.filament.course import Course, Courses, Kind, Stretches, in_line
 from meshwind.filament.ends import CAP, LayerPlan, Pairs
 from meshwind.filament.joining import Joining, join, passes
 from meshwind.filament.lift import Hung, hung
@@ -156,28 +156,25 @@ def _filaments(
     found, done = [], 0
     for there in joining.filaments:
         back = joining.back[there]
-        stretches = [_stretches(laid, ways[0][there]), _stretches(laid, ways[1][back], backwards=True)]
+        stretches = [Stretches(laid, ways[0][there]), Stretches(laid, ways[1][back], backwards=True)]
         passed = [0, 1]
         if over_end is not None:
-            stretches.insert(1, _stretches(over_end, there))
+            stretches.insert(1, Stretches(over_end, there))
             passed.insert(1, 0)
         if over_start is not None:
-            stretches.append(_stretches(over_start, back))
+            stretches.append(Stretches(over_start, back))
             passed.append(1)
-        course, count = in_line([each for circuit in zip(*stretches, strict=True) for each in circuit])
-        number = np.repeat((2 * (done + np.arange(len(there)))[:, None] + passed).ravel(), count)
-        found.append(replace(course, circuit=frozen(number // 2), passed=frozen(number)))
+        course, count = in_line(stretches)
+        circuit = done + np.arange(len(there))
+        found.append(
+            replace(
+                course,
+                circuit=frozen(np.repeat(circuit, count.sum(axis=1))),
+                passed=frozen(np.repeat(2 * circuit[:, None] + passed, count.ravel())),
+            )
+        )
         done += len(there)
     return tuple(found)
-
-
-def _stretches(courses: Courses, rows: Ints, *, backwards: bool = False) -> list[Stretch]:
-    """Some of the courses, each from its first point to its last or backwards."""
-    first = courses.first[rows]
-    ends = zip(first.tolist(), (first + courses.count[rows]).tolist(), strict=True)
-    if backwards:
-        return [Stretch(courses.course, slice(end - 1, begin - 1 if begin else None, -1)) for begin, end in ends]
-    return [Stretch(courses.course, slice(begin, end)) for begin, end in ends]
 
 
 def _turns(pairs: Sequence[Pairs | None], joining: Joining) -> tuple[Courses | None, Courses | None]:

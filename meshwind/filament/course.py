@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.filament.runs import Columns, Runs, copy_runs
 
 
 class Kind(IntEnum):
@@ -80,36 +81,14 @@ class Course:
 def joined(courses: Sequence[Course]) -> Course:
     """One course from several in a row, each of which starts where the one before ends.
 
-    The first point of each stretch but the first is left out, as the stretch before it has it already.
+    The first point of each but the first is left out, as the one before it has it already.
     """
-    return in_line([Stretch(each, slice(0, len(each))) for each in courses])[0]
+    return in_a_row([each.chosen(slice(min(k, 1), None)) for k, each in enumerate(courses)])
 
 
 def in_a_row(courses: Sequence[Course]) -> Course:
     """One course from several, from each of which the fibre goes straight to the next."""
     return Course(*(frozen(np.concatenate([getattr(one, each.name) for one in courses])) for each in fields(Course)))
-
-
-class Stretch(NamedTuple):
-    """A stretch of a course: points one after the other, forwards or backwards."""
-
-    course: Course
-    part: slice
-
-
-def in_line(stretches: Sequence[Stretch]) -> tuple[Course, Ints]:
-    """One course from stretches, each of which starts where the one before ends, and how many points each gives.
-
-    The first point of each stretch but the first is left out, as the stretch before it has it already.
-    """
-    whole = [
-        Stretch(one, part if k == 0 else slice(part.start + (part.step or 1), part.stop, part.step))
-        for k, (one, part) in enumerate(stretches)
-    ]
-    made = Course(
-        *(frozen(np.concatenate([getattr(one, each.name)[part] for one, part in whole])) for each in fields(Course))
-    )
-    return made, np.array([len(one.kind[part]) for one, part in whole])
 
 
 @dataclass(frozen=True)
@@ -134,6 +113,41 @@ class Courses:
         points = self.course.points.copy()
         points[self.first], points[self.first + self.count - 1] = first, last
         return Courses(replace(self.course, points=points), self.count)
+
+
+class Stretches(NamedTuple):
+    """Some of the courses of many fibres, `rows` (n,), each from its first point to its last or backwards."""
+
+    courses: Courses
+    rows: Ints
+    backwards: bool = False
+
+
+def in_line(stretches: Sequence[Stretches]) -> tuple[Course, Ints]:
+    """One course through the first of all stretches, then the second ones, and how many points (n, k) each gives.
+
+    Each starts where the one before ends, so that its first point is left out.  Circuits and passes are not set.
+    """
+    step = np.array([-1 if each.backwards else 1 for each in stretches])
+    count = np.stack([each.courses.count[each.rows] for each in stretches], axis=1)
+    first = np.stack([each.courses.first[each.rows] for each in stretches], axis=1)
+    first = np.where(step < 0, first + count - 1, first) + step
+    count -= 1
+    first[0, 0] -= step[0]
+    count[0, 0] += 1
+    at = (np.cumsum(count) - count.ravel()).reshape(count.shape)
+    many = int(count.sum())
+    made = Columns(
+        np.empty((many, 3)), np.empty((many, 3)), np.empty(many), np.empty(many), np.empty(many, dtype=np.int64),
+        np.empty(many, dtype=np.int64),
+    )  # fmt: skip
+    for k, each in enumerate(stretches):
+        one = each.courses.course
+        source = Columns(*(frozen(getattr(one, name)) for name in Columns._fields))
+        runs_ = Runs(frozen(first[:, k]), frozen(count[:, k]), frozen(at[:, k]), int(step[k]))
+        copy_runs(source, runs_, made)
+    none = np.broadcast_to(-1, many)
+    return Course(*(frozen(each) for each in made[:-1]), none, none, frozen(made.path)), count
 
 
 def in_turn(parts: Sequence[Courses], *, share: bool) -> Courses:

@@ -1,0 +1,40 @@
+"""Compiled: runs of points of one course, forwards or backwards, copied to places in another."""
+
+from typing import NamedTuple
+
+from meshwind.core.cast import Floats, Ints
+from meshwind.core.kernel import njit
+
+
+class Columns(NamedTuple):
+    """What is known of the points (n,) of a course, as `Course` has it."""
+
+    points: Floats
+    normal: Floats
+    angle: Floats
+    slip: Floats
+    kind: Ints
+    path: Ints
+
+
+class Runs(NamedTuple):
+    """Runs of `count` (m,) points, from `first` (m,) on by `step`, and where their first points go, `at` (m,)."""
+
+    first: Ints
+    count: Ints
+    at: Ints
+    step: int
+
+
+@njit(cache=True)
+def copy_runs(source, runs, out):
+    """Copy all runs; threads would only wait for the memory."""
+    for run in range(len(runs.first)):
+        begin, to = runs.first[run], runs.at[run]
+        for i in range(runs.count[run]):
+            here, there = begin + runs.step * i, to + i
+            for k in range(3):
+                out.points[there, k] = source.points[here, k]
+                out.normal[there, k] = source.normal[here, k]
+            out.angle[there], out.slip[there] = source.angle[here], source.slip[here]
+            out.kind[there], out.path[there] = source.kind[here], source.path[here]
