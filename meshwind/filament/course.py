@@ -146,8 +146,9 @@ def in_line(stretches: Sequence[Stretches]) -> tuple[Course, Ints]:
         source = Columns(*(frozen(getattr(one, name)) for name in Columns._fields))
         runs_ = Runs(frozen(first[:, k]), frozen(count[:, k]), frozen(at[:, k]), int(step[k]))
         copy_runs(source, runs_, made)
+    points, normal, angle, slip, kind, path = (frozen(each) for each in made)
     none = np.broadcast_to(-1, many)
-    return Course(*(frozen(each) for each in made[:-1]), none, none, frozen(made.path)), count
+    return Course(points, normal, angle, slip, kind, none, none, path), count
 
 
 def in_turn(parts: Sequence[Courses], *, share: bool) -> Courses:

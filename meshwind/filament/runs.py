@@ -18,10 +18,10 @@ class Columns(NamedTuple):
 
 
 class Runs(NamedTuple):
-    """Runs of `count` (m,) points, from `first` (m,) on by `step`, and where their first points go, `at` (m,)."""
+    """Runs of `length` (m,) points, from `first` (m,) on by `step`, and where their first points go, `at` (m,)."""
 
     first: Ints
-    count: Ints
+    length: Ints
     at: Ints
     step: int
 
@@ -31,7 +31,7 @@ def copy_runs(source, runs, out):
     """Copy all runs; threads would only wait for the memory."""
     for run in range(len(runs.first)):
         begin, to = runs.first[run], runs.at[run]
-        for i in range(runs.count[run]):
+        for i in range(runs.length[run]):
             here, there = begin + runs.step * i, to + i
             for k in range(3):
                 out.points[there, k] = source.points[here, k]
