@@ -1,6 +1,7 @@
 """Closing a layer: revolutions, phase and turnarounds with which its paths join to one filament."""
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,6 +17,7 @@ from meshwind.filament.pattern import Pattern
 from meshwind.filament.settling import lay
 from meshwind.filament.turnaround import Turnaround
 from meshwind.path import Paths
+from meshwind.path.winding_angle import winding_angle
 from meshwind.surface.rims import rim
 from meshwind.surface.surface import Surface
 
@@ -95,10 +97,13 @@ def close_layer(surface: Surface, plan: LayerPlan, say: Progress = silent) -> Cl
     if CAP in plan.turns:
         return _on_caps(surface, plan)
     settled, kept, left_out = lay(surface, plan, say)
-    pairs = [end.pairs(kept) for end in settled.ends]
-    joining = _joined(pairs)
-    fibres = _hung(kept, pairs)
-    filaments = _filaments(_laid(kept, fibres), kept.family, joining, _turns(pairs, joining))
+    with ThreadPoolExecutor(1) as beside:
+        angle = beside.submit(winding_angle, kept)  # compiled, so that it takes no time from the rest
+        pairs = [end.pairs(kept) for end in settled.ends]
+        joining = _joined(pairs)
+        turns = _turns(pairs, joining)
+        fibres = _hung(kept, pairs, angle.result())
+    filaments = _filaments(_laid(kept, fibres), kept.family, joining, turns)
     turnarounds = (settled.ends[0].turnaround, settled.ends[1].turnaround)
     plan = replace(plan, paths=settled.plan.paths)
     return ClosedLayer(plan, settled.revolutions, kept, fibres, joining, turnarounds, filaments, left_out)
@@ -110,7 +115,7 @@ def _on_caps(surface: Surface, plan: LayerPlan) -> ClosedLayer:
     ends = ends_with_caps(surface, plan, over)
     pairs = [None if isinstance(end, Cap) else end.pairs(over.paths) for end in ends]
     joining = joined_on_caps(over) if over.pattern is not None else _joined_at_rim(surface, over.paths, pairs)
-    fibres = _hung(over.paths, pairs)
+    fibres = _hung(over.paths, pairs, winding_angle(over.paths))
     filaments = _filaments(_laid(over.paths, fibres), over.paths.family, joining, _turns(pairs, joining))
     start, end = (end if isinstance(end, Cap) else end.turnaround for end in ends)
     turned = np.abs(over.paths.uv[:, -1, 0] - over.paths.uv[:, 0, 0]).mean()
@@ -191,15 +196,15 @@ def _turns(pairs: Sequence[Pairs | None], joining: Joining) -> tuple[Courses | N
     return made[0], made[1]
 
 
-def _hung(paths: Paths, pairs: Sequence[Pairs | None]) -> Hung:
-    """The paths as their fibres lie."""
+def _hung(paths: Paths, pairs: Sequence[Pairs | None], angle: Floats) -> Hung:
+    """The paths as their fibres lie; angle: those of the paths."""
     over = [
         (legs, pair.end.edge.end, legs.sense if pair.end.edge.end else -legs.sense)
         for pair in pairs
         if pair is not None
         for legs in (pair.arriving, pair.leaving)
     ]
-    return hung(paths, over)
+    return hung(paths, angle, over)
 
 
 def _laid(paths: Paths, fibres: Hung) -> Courses:

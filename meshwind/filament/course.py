@@ -8,7 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.threads import parallel_for
 from meshwind.filament.runs import Columns, Runs, copy_runs
+
+_BLOCK = 50
+"""Stretches at least that a thread copies."""
 
 
 class Kind(IntEnum):
@@ -145,7 +149,7 @@ def in_line(stretches: Sequence[Stretches]) -> tuple[Course, Ints]:
         one = each.courses.course
         source = Columns(*(frozen(getattr(one, name)) for name in Columns._fields))
         runs_ = Runs(frozen(first[:, k]), frozen(count[:, k]), frozen(at[:, k]), int(step[k]))
-        copy_runs(source, runs_, made)
+        parallel_for(copy_runs, len(count), _BLOCK, source, runs_, made)
     points, normal, angle, slip, kind, path = (frozen(each) for each in made)
     none = np.broadcast_to(-1, many)
     return Course(points, normal, angle, slip, kind, none, none, path), count

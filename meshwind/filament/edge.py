@@ -214,9 +214,9 @@ def edge(surface: Surface, v: float, end: int | None = None) -> Edge:
 def legs(on: Edge, paths: Paths, family: int) -> Legs:
     """The fibres of a family where they cross the edge: those of +1 arrive at the part's end and leave its start."""
     surface, rows = paths.surface, np.flatnonzero(paths.family == family)
-    last = slice(None, -5, -1) if on.end else slice(0, 4)
-    points = paths.points[rows][:, last]
-    touching: Bools = np.all(paths.on_surface[rows][:, last], axis=1, keepdims=True)
+    last = np.arange(-1, -5, -1) if on.end else np.arange(4)
+    points = paths.points[rows[:, None], last]
+    touching: Bools = np.all(paths.on_surface[rows[:, None], last], axis=1, keepdims=True)
     uv = paths.uv[rows, -1 if on.end else 0]
     # outwards: from the part over the rim
     ahead = np.where(touching, np.einsum("k,nkc->nc", _ONE_SIDED, points), points[:, 0] - points[:, 1])

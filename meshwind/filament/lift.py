@@ -17,7 +17,6 @@ from meshwind.filament.leaving import Rays
 from meshwind.filament.part_edge import PartEdge
 from meshwind.filament.turnaround import Catch, Turnaround
 from meshwind.path.paths import Paths
-from meshwind.path.winding_angle import winding_angle
 
 _FLUSH = np.sin(np.radians(0.1))
 """Sine of the angle by which a fibre must come in to the prism for a corner: a fit leaves less on a cylinder."""
@@ -116,13 +115,15 @@ class Hung:
     before: tuple[float, float] = (0.0, 0.0)
 
 
-def hung(paths: Paths, over: Sequence[tuple[Legs, int, int]]) -> Hung:
-    """Paths as their fibres lie; over: legs with the end and the family that they are of.
+def hung(paths: Paths, angle: Floats, over: Sequence[tuple[Legs, int, int]]) -> Hung:
+    """Paths as their fibres lie.
+
+    angle (p, n): their winding angles; over: legs with the end and the family that they are of.
 
     The particle next to where a fibre leaves the part is moved there, those between it and the rim to the straight way
     to the prism, and the last to where that ends.
     """
-    points, normals, angle = np.array(paths.points), np.array(paths.normal), winding_angle(paths)
+    points, normals, angle = np.array(paths.points), np.array(paths.normal), np.array(angle)
     aloft, before = np.zeros(points.shape[:2], dtype=bool), [0.0, 0.0]
     many = points.shape[1]
     for legs_, end, family in over:

@@ -26,10 +26,10 @@ class Runs(NamedTuple):
     step: int
 
 
-@njit(cache=True)
-def copy_runs(source, runs, out):
-    """Copy all runs; threads would only wait for the memory."""
-    for run in range(len(runs.first)):
+@njit(nogil=True, cache=True)
+def copy_runs(first, last, source, runs, out):
+    """Copy runs first to last."""
+    for run in range(first, last):
         begin, to = runs.first[run], runs.at[run]
         for i in range(runs.length[run]):
             here, there = begin + runs.step * i, to + i
