@@ -16,8 +16,8 @@ _ROUNDS = 48
 """Most rounds in which the place where a fibre leaves is found; five do where the part is smooth."""
 _HALVED = 4
 """Rounds of which one halves the way that is left, however the others get on."""
-_NEAR = 1e-10
-"""Numbers of a particle, and lengths over the hull's, beyond which no fit is right."""
+_NEAR = 1e-13
+"""Numbers of a particle, and lengths over the hull's, that are round-off: the last round to them is a short way."""
 _WITHIN = 0.02
 """Depth below the rim, over the hull's perimeter, of what would be the prism within the part."""
 _LEAP = 1e-6
