@@ -14,17 +14,19 @@ import numpy as np
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
-from meshwind.core.vectors import unit
+from meshwind.core.threads import parallel_for
+from meshwind.filament.marched_points import places
 from meshwind.filament.pattern import Pattern
-from meshwind.filament.polar_hollow import hollow
+from meshwind.filament.polar_hollow import hollows
 from meshwind.filament.polar_legs import End, Half, halves, opening
 from meshwind.filament.polar_meet import MEETS, met
 from meshwind.filament.polar_natural import natural, tables, with_least
-from meshwind.filament.polar_rows import Rows, Stretch, evenly
+from meshwind.filament.polar_rows import Stretch, evenly
+from meshwind.march.march import EVALUATIONS
 from meshwind.march.traced import Stop
 from meshwind.path.paths import Counters, Paths, Status
 from meshwind.path.solve import check_count
-from meshwind.surface.evaluate import SU, SV, S
+from meshwind.surface.evaluate import SU, SV
 from meshwind.surface.surface import Surface
 
 Side: TypeAlias = Literal["start", "end"]
@@ -186,11 +188,12 @@ def passes_between_caps(
     touch = maps.touches(np.asarray(theta))
     touch[:, 2] = np.append(touch[1:, 0], touch[0, 0] + chosen)
     found = met(ends, legs, touch)
-    order = [*zip(*found.legs[0], strict=True), *zip(*found.legs[1][::-1], strict=True)]
-    fibres = [
-        [Stretch(at_start, ends[0].half, False), Stretch(at_end, ends[1].half, True)] for at_start, at_end in order
-    ]
-    paths = _as_paths(surface, ends, fibres, evenly(surface, fibres, particles), friction)
+    (leave_start, come_to_end), (leave_end, come_to_start) = found.legs
+    fibres = (
+        Stretch(leave_start.with_more(come_to_start), ends[0].half, False),
+        Stretch(come_to_end.with_more(leave_end), ends[1].half, True),
+    )
+    paths = _as_paths(surface, ends, fibres, particles, friction)
     slip, miss = np.concatenate([found.slip[0], found.slip[1][:, ::-1]]), found.miss.ravel()
     paths = replace(paths, residual=frozen(miss), status=_met(paths.status, miss))
     return PolarPasses(paths, frozen(slip), frozen(miss), Pattern(circuits, chosen), free.turns)
@@ -261,8 +264,8 @@ def passes_over_a_cap(
             " rim across from it: it turns back before; give an --opening that is, with half a band's width, as "
             "narrow as the part at its narrowest"
         )
-    fibres = [[Stretch(trace, end.half, at_end)] for legs in (there, back) for trace in legs.marched.traces()]
-    paths = _as_paths(surface, (end,), fibres, evenly(surface, fibres, particles), friction)
+    fibres = (Stretch(there.marched.with_more(back.marched), end.half, at_end),)
+    paths = _as_paths(surface, (end,), fibres, particles, friction)
     return PolarPasses(paths, frozen(np.zeros((2 * circuits, 2))), frozen(np.zeros(2 * circuits)))
 
 
@@ -297,43 +300,40 @@ def _spread(surface: Surface, end: End, count: int) -> Floats:
 
 
 def _as_paths(
-    surface: Surface, ends: tuple[End, ...], fibres: list[list[Stretch]], rows: Rows, friction: float
+    surface: Surface, ends: tuple[End, ...], fibres: tuple[Stretch, ...], particles: int, friction: float
 ) -> Paths:
     """Paths with the status that the local criterion gives them."""
-    uv = rows.uv.copy()
-    uv[:, :, 0] -= np.floor(uv[:, :1, 0])
-    shape = uv.shape[:2]
-    frames = surface.frames(uv.reshape(-1, 2))
-    points = np.ascontiguousarray(frames[:, S]).reshape(*shape, 3)
-    normal = unit(np.cross(frames[:, SU], frames[:, SV])).reshape(*shape, 3)
-    slip = np.abs([[stretch.slip for stretch in fibre] for fibre in fibres])
-    at = np.take_along_axis(slip, rows.stretch, axis=1)
-    at[:, [0, -1]] = np.nan
-    half = len(fibres) // 2
-    steps = sum(stretch.trace.evaluations for fibre in fibres for stretch in fibre)
+    laid = evenly(fibres, particles)
+    shape = laid.slip.shape
+    points, normal = np.empty((*shape, 3)), np.empty((*shape, 3))
+    parallel_for(places, shape[0], 1, surface.spline, laid.uv, points, normal)
+    slip = np.abs(np.stack([stretch.marched.slip for stretch in fibres], axis=1))
+    laid.slip[:, [0, -1]] = np.nan
+    half = shape[0] // 2
+    steps = sum(int(stretch.marched.counts[:, EVALUATIONS].sum()) for stretch in fibres)
     return Paths(
         surface=surface,
         points=frozen(points),
-        uv=frozen(uv),
+        uv=frozen(laid.uv),
         on_surface=frozen(np.ones(shape, dtype=bool)),
         gap=frozen(np.zeros(shape)),
         normal=frozen(normal),
-        slip=frozen(at),
+        slip=frozen(laid.slip),
         family=frozen(np.repeat([1, -1], half)),
-        status=_status(surface, ends, fibres, uv, slip > friction + MEETS),
-        residual=frozen(np.zeros(len(fibres))),
+        status=_status(surface, ends, fibres, laid.uv, slip > friction + MEETS),
+        residual=frozen(np.zeros(shape[0])),
         friction=friction,
         counters=Counters(steps, 0, 0, 0),
     )
 
 
-def _status(surface: Surface, ends: tuple[End, ...], fibres: list[list[Stretch]], uv: Floats, beyond: Bools) -> Ints:
-    status = np.full(len(fibres), int(Status.CONVERGED))
+def _status(surface: Surface, ends: tuple[End, ...], fibres: tuple[Stretch, ...], uv: Floats, beyond: Bools) -> Ints:
+    status = np.full(len(uv), int(Status.CONVERGED))
     status[beyond[:, -1]] = Status.SLID_OFF_END
     status[beyond[:, 0]] = Status.SLID_OFF_START
-    lifts = np.array([hollow(surface, fibre) for fibre in fibres])
+    lifts = np.any([hollows(surface, stretch) for stretch in fibres], axis=0)
     out = np.min([end.opening.inside(uv).min(axis=1) for end in ends], axis=0)
-    stopped = np.array([any(s.trace.stop == Stop.STEP_LIMIT for s in fibre) for fibre in fibres])
+    stopped = np.any([stretch.marched.stop == Stop.STEP_LIMIT for stretch in fibres], axis=0)
     status[lifts | (out < -_INSIDE) | stopped] = Status.STALLED
     return frozen(status)
 

@@ -9,9 +9,8 @@ from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.filament.polar_legs import End, Legs
 from meshwind.filament.polar_natural import Tables, slips
 from meshwind.march.forward import Marched
-from meshwind.march.traced import Trace
 
-_Pair: TypeAlias = tuple[tuple[Trace, ...], tuple[Trace, ...]]
+_Pair: TypeAlias = tuple[Marched, Marched]
 """The half-legs that leave and those that arrive, of as many passes."""
 
 MEETS = 1e-10
@@ -89,7 +88,7 @@ def _meet(ends: tuple[End, End], touch: Floats, slip: Floats, rates: Floats) -> 
         step = after
         slip[open_] += step
         rounds = [[_chosen(run, going) for run in [*rounds[k][-1:], legs[k].marched]] for k in range(2)]
-    return best, (kept[0].traces(), kept[1].traces()), off
+    return best, (kept[0], kept[1]), off
 
 
 def _legs(end: End, at: tuple[Floats, Floats], leaving: bool, last: tuple[list[Marched], Floats]) -> Legs:

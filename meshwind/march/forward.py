@@ -189,6 +189,13 @@ class Marched:
         slip[at], counts[at] = by.slip[which], by.counts[which]
         return Marched(self.surface, tuple(rows), slip, counts)
 
+    def with_more(self, other: "Marched") -> "Marched":
+        """The same and after them those of another march over the same surface."""
+        return Marched(
+            self.surface, (*self.rows, *other.rows), np.concatenate([self.slip, other.slip]),
+            np.concatenate([self.counts, other.counts]),
+        )  # fmt: skip
+
     def traces(self) -> tuple[Trace, ...]:
         """The fibres with all that is known of their points."""
         return _finish(self.surface, list(self.rows), self.slip, self.counts)
