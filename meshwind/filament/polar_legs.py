@@ -150,6 +150,10 @@ class End:
         )
         return self.crossing(found, leaving)
 
+    def beside(self, found: Marched, slip: Floats, leaving: bool, most: float) -> tuple[Marched, Bools]:
+        """Half-legs from where those marched begin, with other slips (n,), and which are good; see `Marched.beside`."""
+        return found.beside(slip if leaving else -slip, most)
+
     def crossing(self, found: Marched, leaving: bool) -> Legs:
         """Half-legs as they were marched, leaving or arriving, with where they cross the level half-way."""
         last = found.last

@@ -52,8 +52,8 @@ def met(ends: tuple[End, End], tables: Tables, touch: Floats) -> Met:
 def _meet(ends: tuple[End, End], touch: Floats, slip: Floats, rates: Floats) -> tuple[Floats, _Pair, Floats]:
     """Slips (n, 2), half-legs and misses (n,) of passes from one end to the other.
 
-    Two rounds are marched.  From the third on half-legs are run on from the two rounds before, in a straight line, and
-    marched only where that would not be as good.
+    One round is marched.  In the second half-legs are moved beside the first, from the third on run on from the two
+    rounds before, in a straight line, and marched only where that would not be as good.
     """
     best, off = slip.copy(), np.full(len(touch), np.inf)
     open_: Ints = np.arange(len(touch))
@@ -92,12 +92,19 @@ def _meet(ends: tuple[End, End], touch: Floats, slip: Floats, rates: Floats) -> 
 
 
 def _legs(end: End, at: tuple[Floats, Floats], leaving: bool, last: tuple[list[Marched], Floats]) -> Legs:
-    """Half-legs from touch points with slips (n,) each: run on by shares (n,) of the last step, or else marched."""
+    """Half-legs from touch points with slips (n,) each, by the easiest way that is good enough.
+
+    They are run on by shares (n,) of the last step, or moved beside those of the round before, or else marched.
+    """
     (touch, slip), (rounds, share) = at, last
-    if len(rounds) < 2:
+    if not rounds:
         return end.march(touch, slip, leaving)
-    run, good = _run_on(rounds[0], rounds[1], share)
+    run, good = _run_on(rounds[0], rounds[1], share) if len(rounds) > 1 else (rounds[0], np.zeros(len(slip), np.bool_))
     bent = np.flatnonzero(~good)
+    if len(bent):
+        near, good[bent] = end.beside(_chosen(rounds[-1], bent), slip[bent], leaving, _STRAIGHT)
+        run = run.put(bent, near, np.arange(len(bent)))
+        bent = np.flatnonzero(~good)
     if len(bent):
         run = run.put(bent, end.march(touch[bent], slip[bent], leaving).marched, np.arange(len(bent)))
     return end.crossing(run, leaving)

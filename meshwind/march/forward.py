@@ -11,10 +11,11 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshwind.core.cast import Floats, Ints, floats, frozen
+from meshwind.core.cast import Bools, Floats, Ints, floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.threads import parallel_for
 from meshwind.march.march import EVALUATIONS, ROWS, RUNNING, STOP, Marches, Rules, march_all
+from meshwind.march.nearby import Beside, go_beside
 from meshwind.march.traced import Stop, Trace
 from meshwind.surface.evaluate import Spline
 from meshwind.surface.surface import Surface
@@ -188,6 +189,21 @@ class Marched:
             rows[old] = by.rows[new]
         slip[at], counts[at] = by.slip[which], by.counts[which]
         return Marched(self.surface, tuple(rows), slip, counts)
+
+    def beside(self, slip: Floats, most: float) -> tuple["Marched", Bools]:
+        """The fibres with other slips (p,), little different, and which are good to `most` over the size.
+
+        Those end on the rims that these end on.
+        """
+        lengths = [len(row) for row in self.rows]
+        first, rows = np.cumsum([0, *lengths]), np.concatenate(self.rows)
+        good = np.empty(len(lengths), dtype=np.bool_)
+        both = frozen(np.stack([self.slip, slip], axis=1))
+        made = Beside(
+            frozen(first), frozen(rows), both, frozen(self.stop), self.surface.size, most, np.empty_like(rows), good
+        )
+        parallel_for(go_beside, len(lengths), 1, self.surface.spline, made)
+        return Marched(self.surface, tuple(np.split(made.moved, first[1:-1])), slip, self.counts), good
 
     def with_more(self, other: "Marched") -> "Marched":
         """The same and after them those of another march over the same surface."""
