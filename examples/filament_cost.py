@@ -7,7 +7,8 @@ filament, the solving of its paths included: settling its revolutions, turnaroun
 of a lathe of four axes with its checks, its text for LinuxCNC, and that text read back and compared.  "winding again"
 is the program wound by physics.  Seconds are the shortest of some runs.  In brackets are ratios to the solving, of
 seconds and of work (seconds of a core), which are to be at most 2, 20 and 60.  On closed ends paths are marched, not
-solved: there the measure is to march all half-legs once, with the slips that were found.  Writes filament_cost.csv.
+solved: there the measure is to march all half-legs once, with the slips that were found, and to put the particles of all
+paths on them, as solving gives these on open ends.  Writes filament_cost.csv.
 """
 
 import argparse
@@ -25,6 +26,9 @@ import meshwind as mw
 from meshwind.filament.closing import ClosedLayer, close_layer
 from meshwind.filament.ends import LayerPlan
 from meshwind.filament.filament import filaments_of
+from meshwind.filament.polar_legs import Half
+from meshwind.filament.polar_rows import Stretch, evenly
+from meshwind.march.forward import marched
 from meshwind.program.machine import read_machine
 from meshwind.program.program import Program, Work, program
 from meshwind.program.rewinding.rewind import Ground, rewind
@@ -95,15 +99,20 @@ def timed(work: Callable[[], T]) -> tuple[Cost, T]:
 
 
 def solve_again(part: Part, layer: ClosedLayer, particles: int) -> object:
-    """The paths of a layer once more, from their ends; on closed ends by marching their half-legs."""
+    """The paths of a layer once more, from their ends; on closed ends their marched half-legs and particles on these."""
     uv, family = layer.paths.uv, layer.paths.family
     if "cap" not in part.turns:
         return mw.solve(part.surface, uv[:, 0], uv[:, -1], particles=particles, family=family, friction=part.friction)
-    touch = np.concatenate([uv[:, 0], uv[:, -1]])
-    slip = np.nan_to_num(np.concatenate([layer.paths.slip[:, 1], layer.paths.slip[:, -2]]))
-    way = np.repeat([1.0, -1.0], len(uv)) * np.tile(family, 2)
-    length = np.tile(0.5 * layer.paths.length, 2)
-    return mw.traces(part.surface, touch, np.stack([way, 0.0 * way], axis=1), length, slip=slip, press="ignore")
+    slip, half = np.nan_to_num(layer.paths.slip[:, [1, -2]]), Half(part.surface, 0.0, 1.0)
+    legs = []
+    for end in (0, 1):
+        way = (1 - 2 * end) * family.astype(float)
+        found = marched(
+            part.surface, uv[:, -end], np.stack([way, 0.0 * way], axis=1), 0.5 * layer.paths.length,
+            slip=slip[:, end], press="ignore",
+        )  # fmt: skip
+        legs.append(Stretch(found, half, bool(end)))
+    return evenly(part.surface, legs, particles)
 
 
 def programmed(work: Work, folder: Path) -> Program:

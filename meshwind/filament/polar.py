@@ -14,8 +14,6 @@ import numpy as np
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
-from meshwind.core.threads import parallel_for
-from meshwind.filament.marched_points import places
 from meshwind.filament.pattern import Pattern
 from meshwind.filament.polar_hollow import hollows
 from meshwind.filament.polar_legs import End, Half, halves, opening
@@ -303,21 +301,19 @@ def _as_paths(
     surface: Surface, ends: tuple[End, ...], fibres: tuple[Stretch, ...], particles: int, friction: float
 ) -> Paths:
     """Paths with the status that the local criterion gives them."""
-    laid = evenly(fibres, particles)
+    laid = evenly(surface, fibres, particles)
     shape = laid.slip.shape
-    points, normal = np.empty((*shape, 3)), np.empty((*shape, 3))
-    parallel_for(places, shape[0], 1, surface.spline, laid.uv, points, normal)
     slip = np.abs(np.stack([stretch.marched.slip for stretch in fibres], axis=1))
     laid.slip[:, [0, -1]] = np.nan
     half = shape[0] // 2
     steps = sum(int(stretch.marched.counts[:, EVALUATIONS].sum()) for stretch in fibres)
     return Paths(
         surface=surface,
-        points=frozen(points),
+        points=frozen(laid.points),
         uv=frozen(laid.uv),
         on_surface=frozen(np.ones(shape, dtype=bool)),
         gap=frozen(np.zeros(shape)),
-        normal=frozen(normal),
+        normal=frozen(laid.normal),
         slip=frozen(laid.slip),
         family=frozen(np.repeat([1, -1], half)),
         status=_status(surface, ends, fibres, laid.uv, slip > friction + MEETS),

@@ -12,9 +12,10 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.threads import parallel_for
-from meshwind.filament.marched_points import Rows, Way, curvatures, spread
+from meshwind.filament.marched_points import Rows, Way, curvatures, places, spread
 from meshwind.filament.polar_legs import Half
 from meshwind.march.forward import Marched
+from meshwind.surface.surface import Surface
 
 
 @dataclass(frozen=True)
@@ -42,19 +43,23 @@ class Stretch:
 
 @dataclass(frozen=True)
 class Evenly:
-    """Paths of n points: uv (p, n, 2), where u of each begins within [0, 1), and slip (p, n), without its sign."""
+    """Paths of n points: uv (p, n, 2), where u of each begins within [0, 1), points and outward normals (p, n, 3).
+
+    slip (p, n): that of each point, without its sign.
+    """
 
     uv: Floats
+    points: Floats
+    normal: Floats
     slip: Floats
-    length: Floats
 
 
-def evenly(fibres: Sequence[Stretch], points: int) -> Evenly:
-    """Points along fibres of one stretch or several in a row, evenly by arc length."""
+def evenly(surface: Surface, fibres: Sequence[Stretch], count: int) -> Evenly:
+    """So many points along fibres of one stretch or several in a row, evenly by arc length."""
     lengths = np.stack([stretch.length for stretch in fibres], axis=1)
     end = np.cumsum(lengths, axis=1)
     begin, total = end - lengths, end[:, -1]
-    wanted = total[:, None] * np.linspace(0.0, 1.0, points)
+    wanted = total[:, None] * np.linspace(0.0, 1.0, count)
     uv, slip = np.empty((*wanted.shape, 2)), np.empty(wanted.shape)
     whole = np.floor(fibres[0].rows.at[_outer(fibres[0]), 1])
     for k, stretch in enumerate(fibres):
@@ -63,7 +68,9 @@ def evenly(fibres: Sequence[Stretch], points: int) -> Evenly:
             float(stretch.half.first), float(stretch.half.last),
         )  # fmt: skip
         parallel_for(spread, len(total), 1, stretch.rows, way, wanted, uv, slip)
-    return Evenly(uv, slip, total)
+    points, normal = np.empty((*wanted.shape, 3)), np.empty((*wanted.shape, 3))
+    parallel_for(places, len(total), 1, surface.spline, uv, points, normal)
+    return Evenly(uv, points, normal, slip)
 
 
 def _outer(stretch: Stretch) -> Ints:
