@@ -7,8 +7,8 @@ filament, the solving of its paths included: settling its revolutions, turnaroun
 of a lathe of four axes with its checks, its text for LinuxCNC, and that text read back and compared.  "winding again"
 is the program wound by physics.  Seconds are the shortest of some runs.  In brackets are ratios to the solving, of
 seconds and of work (seconds of a core), which are to be at most 2, 20 and 60.  On closed ends paths are marched, not
-solved: there the measure is to march all half-legs once, with the slips that were found, and to put the particles of all
-paths on them, as solving gives these on open ends.  Writes filament_cost.csv.
+solved: there the measure is to march all half-legs once, with the slips that were found, and to put all particles on
+them, which solving gives on open ends as well.  Writes filament_cost.csv.
 """
 
 import argparse
@@ -99,7 +99,7 @@ def timed(work: Callable[[], T]) -> tuple[Cost, T]:
 
 
 def solve_again(part: Part, layer: ClosedLayer, particles: int) -> object:
-    """The paths of a layer once more, from their ends; on closed ends their marched half-legs and particles on these."""
+    """The paths of a layer once more, from their ends; on closed ends by marching half-legs, with particles on them."""
     uv, family = layer.paths.uv, layer.paths.family
     if "cap" not in part.turns:
         return mw.solve(part.surface, uv[:, 0], uv[:, -1], particles=particles, family=family, friction=part.friction)

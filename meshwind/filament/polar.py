@@ -328,7 +328,7 @@ def _status(surface: Surface, ends: tuple[End, ...], fibres: tuple[Stretch, ...]
     status[beyond[:, -1]] = Status.SLID_OFF_END
     status[beyond[:, 0]] = Status.SLID_OFF_START
     lifts = np.any([hollows(surface, stretch) for stretch in fibres], axis=0)
-    out = np.min([end.opening.inside(uv).min(axis=1) for end in ends], axis=0)
+    out = np.min([end.opening.inside(uv) for end in ends], axis=0)
     stopped = np.any([stretch.marched.stop == Stop.STEP_LIMIT for stretch in fibres], axis=0)
     status[lifts | (out < -_INSIDE) | stopped] = Status.STALLED
     return frozen(status)

@@ -46,9 +46,9 @@ class Opening:
         return np.stack([np.ones_like(u), np.zeros_like(u) if self.level is None else self.level(u, 1)], axis=1)
 
     def inside(self, uv: Floats) -> Floats:
-        """How far in v points (..., 2) lie inside of the curve."""
-        more = 0.0 if self.level is None else self.level(uv[..., 0])
-        return np.asarray((uv[..., 1] - self.end - more) * (1 - 2 * self.end))
+        """How far in v fibres of points (..., n, 2) lie inside of the curve at the least."""
+        off = uv[..., 1] if self.level is None else uv[..., 1] - self.level(uv[..., 0])
+        return np.asarray(1.0 - off.max(axis=-1) if self.end else off.min(axis=-1))
 
 
 def opening(surface: Surface, end: int, clearance: float = 0.0) -> Opening:

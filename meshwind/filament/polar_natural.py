@@ -13,8 +13,9 @@ from typing import NoReturn
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from meshwind.core.cast import Floats
+from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
+from meshwind.filament.half_leg_table import follow, look_up
 from meshwind.filament.polar_legs import End
 
 _AROUND = 128
@@ -55,23 +56,20 @@ _DONE = 1e-11
 
 @dataclass(frozen=True)
 class Table:
-    """Half-legs of a kind by touch point and slip: u and angle at the level half-way, as smooth functions."""
+    """Half-legs of a kind by touch point and slip: u and angle at the level half-way, as smooth functions.
 
-    spline: CubicSpline
+    splines: as `half_leg_table.look_up` takes them.
+    """
+
+    splines: Floats
     reach: float
     touches: int
 
     def at(self, u: Floats, slip: Floats) -> tuple[Floats, Floats, Floats]:
         """u and angle (n, 2) at touch points u (n,) and slips (n,), and their derivatives by both."""
-        x = slip / self.reach
-        powers = np.stack([np.ones_like(x), x, x * x], axis=1)[:, :, None]
-        rates = np.stack([np.zeros_like(x), np.ones_like(x), 2.0 * x], axis=1)[:, :, None] / self.reach
-        around = u - np.floor(u)
-        value, by_u = self.spline(around), self.spline(around, 1)
-        found, slope = (value * powers).sum(axis=1), (by_u * powers).sum(axis=1)
-        found[:, 0] += u
-        slope[:, 0] += 1.0
-        return found, slope, (value * rates).sum(axis=1)
+        found, by_u, by_slip = (np.empty((len(u), 2)) for _ in range(3))
+        look_up(self.splines, self.reach, frozen(u), frozen(slip), found, by_u, by_slip)
+        return found, by_u, by_slip
 
 
 @dataclass(frozen=True)
@@ -138,7 +136,12 @@ def _table(end: End, leaving: bool, reach: float, steered: int) -> Table:
     odd, even = 0.5 * (left - right), 0.5 * (left + right) - free[::steered]
     powers = np.stack([_finer(each) for each in (free, odd, even)], axis=1)
     closed = np.concatenate([powers, powers[:1]])
-    return Table(CubicSpline(np.linspace(0.0, 1.0, len(closed)), closed, bc_type="periodic"), reach, len(free))
+    return Table(_splines(closed), reach, len(free))
+
+
+def _splines(values: Floats) -> Floats:
+    """Periodic splines (4, m, ...) through values (m + 1, ...) at even places around an opening."""
+    return frozen(CubicSpline(np.linspace(0.0, 1.0, len(values)), values, bc_type="periodic").c)
 
 
 def _free(end: End, leaving: bool) -> Floats:
@@ -296,16 +299,12 @@ def _guess(legs: Tables, theta: Floats) -> Natural:
     """
     a = np.linspace(0.0, 1.0, _FINER * _AROUND + 1)
     b = _over(legs.kinds[0], legs.kinds[1], a)
-    ahead = CubicSpline(a, _closed(_over(legs.kinds[2], legs.kinds[3], b) - a), bc_type="periodic")
+    ahead = _splines(_closed(_over(legs.kinds[2], legs.kinds[3], b) - a))
     share = (np.arange(_CIRCUITS) + 0.5) / _CIRCUITS
     weight = np.exp(-1.0 / (share * (1.0 - share)))
     weight /= weight.sum()
-    at, leads = a, np.empty((_CIRCUITS, len(a)))
-    orbit = np.empty((_CIRCUITS, len(a)))
-    for k in range(_CIRCUITS):
-        leads[k] = ahead(at - np.floor(at))
-        orbit[k] = at
-        at = at + leads[k]
+    leads, orbit = np.empty((_CIRCUITS, len(a))), np.empty((_CIRCUITS, len(a)))
+    follow(ahead, a, leads, orbit)
     turns = float((weight @ leads).mean())
     natural_of_a = np.maximum.accumulate(weight @ (orbit - turns * np.arange(_CIRCUITS)[:, None]))
     natural_of_a -= natural_of_a[0]
