@@ -123,8 +123,10 @@ def hung(paths: Paths, angle: Floats, over: Sequence[tuple[Legs, int, int]]) -> 
     The particle next to where a fibre leaves the part is moved there, those between it and the rim to the straight way
     to the prism, and the last to where that ends.
     """
+    aloft, before = np.zeros(angle.shape, dtype=bool), [0.0, 0.0]
+    if all(legs_.lift is None for legs_, _, _ in over):
+        return Hung(paths.points, paths.normal, frozen(angle), frozen(aloft))
     points, normals, angle = np.array(paths.points), np.array(paths.normal), np.array(angle)
-    aloft, before = np.zeros(points.shape[:2], dtype=bool), [0.0, 0.0]
     many = points.shape[1]
     for legs_, end, family in over:
         if legs_.lift is None:

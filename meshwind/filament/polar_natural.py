@@ -7,6 +7,7 @@ openings, or a triaxial ellipsoid opened along lines of curvature, no slip is le
 coordinate of their geodesics.  With other turns a circuit than the natural ones the same maps share out the slip.
 """
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import NoReturn
 
@@ -110,14 +111,11 @@ def tables(ends: tuple[End, End], reach: float = _REACH, steered: int = _STEERED
 
     steered: touch points for each of those from which half-legs with slip are tabulated as well.
     """
-    return Tables(
-        (
-            _table(ends[0], True, reach, steered),
-            _table(ends[1], False, reach, steered),
-            _table(ends[1], True, reach, steered),
-            _table(ends[0], False, reach, steered),
-        )
-    )
+    with ThreadPoolExecutor(2) as pool:  # a kind alone is too few half-legs to keep two cores busy
+        kinds = (ends[0], True), (ends[1], False), (ends[1], True), (ends[0], False)
+        made = [pool.submit(_table, end, leaving, reach, steered) for end, leaving in kinds]
+        first, second, third, fourth = (each.result() for each in made)
+    return Tables((first, second, third, fourth))
 
 
 def _table(end: End, leaving: bool, reach: float, steered: int) -> Table:

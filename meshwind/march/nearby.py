@@ -76,16 +76,21 @@ def go_on(piece, slip, row, h, y, K, at, out):
 
 @njit(cache=True)
 def to_line(piece, slip, row, base, y, K, at):
-    """Move a row along its fibre, by little, to the knot line that the marched one is on, if that is on one."""
+    """Move a row along its fibre, by little, to the knot line that the marched one is on, if that is on one.
+
+    K: the stages of the step that led there, of which the last says how the fibre bends well enough to begin with.
+    """
     for c in range(2):
         wall = base[1 + c] * piece.spans[c] - piece.corner[c]
         if min(abs(wall), abs(wall - 1.0)) > WIDTH:
             continue
         local(piece, row, y)
-        rates(piece.spline, slip, y, at, K[0])
         h = (wall - y[c]) / y[2 + c]
-        h -= 0.5 * K[0, 2 + c] * h * h / y[2 + c]
-        rates(piece.spline, slip, y + 0.5 * h * K[0], at, K[1])
+        h -= 0.5 * K[3, 2 + c] * h * h / y[2 + c]
+        for k in range(2):
+            y[k] += 0.5 * h * y[2 + k]
+            y[2 + k] += 0.5 * h * K[3, 2 + k]
+        rates(piece.spline, slip, y, at, K[1])
         row[0] += h
         for k in range(2):
             row[1 + k] += h * K[1, k] / piece.spans[k]
