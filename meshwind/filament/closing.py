@@ -112,14 +112,11 @@ def close_layer(surface: Surface, plan: LayerPlan, say: Progress = silent) -> Cl
 def _on_caps(surface: Surface, plan: LayerPlan) -> ClosedLayer:
     """The layer where one end or both turn on a cap."""
     over = passes_on_caps(surface, plan)
-    with ThreadPoolExecutor(1) as beside:
-        angle = beside.submit(winding_angle, over.paths)
-        ends = ends_with_caps(surface, plan, over)
-        pairs = [None if isinstance(end, Cap) else end.pairs(over.paths) for end in ends]
-        joining = joined_on_caps(over) if over.pattern is not None else _joined_at_rim(surface, over.paths, pairs)
-        turns = _turns(pairs, joining)
-        fibres = _hung(over.paths, pairs, angle.result())
-    filaments = _filaments(_laid(over.paths, fibres), over.paths.family, joining, turns)
+    ends = ends_with_caps(surface, plan, over)
+    pairs = [None if isinstance(end, Cap) else end.pairs(over.paths) for end in ends]
+    joining = joined_on_caps(over) if over.pattern is not None else _joined_at_rim(surface, over.paths, pairs)
+    fibres = _hung(over.paths, pairs, over.angle)
+    filaments = _filaments(_laid(over.paths, fibres), over.paths.family, joining, _turns(pairs, joining))
     start, end = (end if isinstance(end, Cap) else end.turnaround for end in ends)
     turned = np.abs(over.paths.uv[:, -1, 0] - over.paths.uv[:, 0, 0]).mean()
     return ClosedLayer(

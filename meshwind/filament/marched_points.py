@@ -7,7 +7,8 @@ import numpy as np
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.kernel import njit
 from meshwind.march.geodesic_equation import rates
-from meshwind.surface.evaluate import S, tangents, unit_normal
+from meshwind.path.kernels.heading import ANGLE, heading, rate
+from meshwind.surface.evaluate import SU, SV, S, tangents, unit_normal
 
 
 class Rows(NamedTuple):
@@ -97,11 +98,20 @@ def spread(first, last, rows, way, wanted, uv, slip):
 
 
 @njit(nogil=True, cache=True)
-def places(first, last, spline, uv, points, normal):
-    """Write points and outward unit normals (p, n, 3) at uv (p, n, 2) of fibres first to last."""
-    frame = np.empty((3, 3))
+def places(first, last, spline, uv, points, normal, angle):
+    """Write points and outward unit normals (p, n, 3) at uv (p, n, 2) of fibres first to last.
+
+    angle (p, n): room for their winding angle as well, as `winding_angle` has it, or of no size.
+    """
+    frame, way, out = np.empty((3, 3)), np.empty(3), np.empty(3)
     for fibre in range(first, last):
         for i in range(uv.shape[1]):
             tangents(spline, uv[fibre, i, 0], uv[fibre, i, 1], frame)
             points[fibre, i] = frame[S]
             unit_normal(frame, normal[fibre, i])
+            if angle.size > 0:
+                du, dv = rate(uv[fibre], i, 0), rate(uv[fibre], i, 1)
+                for k in range(3):
+                    way[k] = frame[SU, k] * du + frame[SV, k] * dv
+                heading(frame[SU], frame[SV], way, out)
+                angle[fibre, i] = out[ANGLE]

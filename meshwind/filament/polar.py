@@ -47,6 +47,8 @@ class PolarPasses:
     slip : ndarray of float, shape (2 N, 2)
         Slip |kg|/kn on the half-leg at the start and on that at the end of each pass, with its sign: positive to the
         left of the fibre on its way.
+    angle : ndarray of float, shape (2 N, n)
+        Winding angle at each point of each pass, in radians.
     miss : ndarray of float, shape (2 N,)
         By how much the two half-legs miss each other half-way: turns, or radians of their angle, the larger.
     pattern : Pattern or None
@@ -57,6 +59,7 @@ class PolarPasses:
 
     paths: Paths
     slip: Floats
+    angle: Floats
     miss: Floats
     pattern: Pattern | None = None
     natural: float | None = None
@@ -191,10 +194,10 @@ def passes_between_caps(
         Stretch(leave_start.with_more(come_to_start), ends[0].half, False),
         Stretch(come_to_end.with_more(leave_end), ends[1].half, True),
     )
-    paths = _as_paths(surface, ends, fibres, particles, friction)
+    paths, angle = _as_paths(surface, ends, fibres, particles, friction)
     slip, miss = np.concatenate([found.slip[0], found.slip[1][:, ::-1]]), found.miss.ravel()
     paths = replace(paths, residual=frozen(miss), status=_met(paths.status, miss))
-    return PolarPasses(paths, frozen(slip), frozen(miss), Pattern(circuits, chosen), free.turns)
+    return PolarPasses(paths, frozen(slip), angle, frozen(miss), Pattern(circuits, chosen), free.turns)
 
 
 def passes_over_a_cap(
@@ -263,8 +266,8 @@ def passes_over_a_cap(
             "narrow as the part at its narrowest"
         )
     fibres = (Stretch(there.marched.with_more(back.marched), end.half, at_end),)
-    paths = _as_paths(surface, (end,), fibres, particles, friction)
-    return PolarPasses(paths, frozen(np.zeros((2 * circuits, 2))), frozen(np.zeros(2 * circuits)))
+    paths, angle = _as_paths(surface, (end,), fibres, particles, friction)
+    return PolarPasses(paths, frozen(np.zeros((2 * circuits, 2))), angle, frozen(np.zeros(2 * circuits)))
 
 
 def _two_caps(surface: Surface, clearance: tuple[float, float]) -> tuple[End, End]:
@@ -299,15 +302,15 @@ def _spread(surface: Surface, end: End, count: int) -> Floats:
 
 def _as_paths(
     surface: Surface, ends: tuple[End, ...], fibres: tuple[Stretch, ...], particles: int, friction: float
-) -> Paths:
-    """Paths with the status that the local criterion gives them."""
-    laid = evenly(surface, fibres, particles)
+) -> tuple[Paths, Floats]:
+    """Paths with the status that the local criterion gives them, and their winding angles (p, n)."""
+    laid = evenly(surface, fibres, particles, angles=True)
     shape = laid.slip.shape
     slip = np.abs(np.stack([stretch.marched.slip for stretch in fibres], axis=1))
     laid.slip[:, [0, -1]] = np.nan
     half = shape[0] // 2
     steps = sum(int(stretch.marched.counts[:, EVALUATIONS].sum()) for stretch in fibres)
-    return Paths(
+    paths = Paths(
         surface=surface,
         points=frozen(laid.points),
         uv=frozen(laid.uv),
@@ -321,6 +324,7 @@ def _as_paths(
         friction=friction,
         counters=Counters(steps, 0, 0, 0),
     )
+    return paths, frozen(laid.angle)
 
 
 def _status(surface: Surface, ends: tuple[End, ...], fibres: tuple[Stretch, ...], uv: Floats, beyond: Bools) -> Ints:

@@ -45,16 +45,17 @@ class Stretch:
 class Evenly:
     """Paths of n points: uv (p, n, 2), where u of each begins within [0, 1), points and outward normals (p, n, 3).
 
-    slip (p, n): that of each point, without its sign.
+    slip (p, n): that of each point, without its sign; angle (p, n): their winding angle, of no size if not asked for.
     """
 
     uv: Floats
     points: Floats
     normal: Floats
     slip: Floats
+    angle: Floats
 
 
-def evenly(surface: Surface, fibres: Sequence[Stretch], count: int) -> Evenly:
+def evenly(surface: Surface, fibres: Sequence[Stretch], count: int, *, angles: bool = False) -> Evenly:
     """So many points along fibres of one stretch or several in a row, evenly by arc length."""
     lengths = np.stack([stretch.length for stretch in fibres], axis=1)
     end = np.cumsum(lengths, axis=1)
@@ -69,8 +70,9 @@ def evenly(surface: Surface, fibres: Sequence[Stretch], count: int) -> Evenly:
         )  # fmt: skip
         parallel_for(spread, len(total), 1, stretch.rows, way, wanted, uv, slip)
     points, normal = np.empty((*wanted.shape, 3)), np.empty((*wanted.shape, 3))
-    parallel_for(places, len(total), 1, surface.spline, uv, points, normal)
-    return Evenly(uv, points, normal, slip)
+    angle = np.empty(wanted.shape if angles else (0, 0))
+    parallel_for(places, len(total), 1, surface.spline, uv, points, normal, angle)
+    return Evenly(uv, points, normal, slip, angle)
 
 
 def _outer(stretch: Stretch) -> Ints:

@@ -25,6 +25,25 @@ def rate(values, i, k):
     return 1.5 * values[last, k] - 2.0 * values[last - 1, k] + 0.5 * values[last - 2, k]
 
 
+@njit(inline="always", cache=True)
+def heading(su, sv, way, out):
+    """Write the heading (3,) of a direction (3,) where the surface has the tangents su and sv (3,)."""
+    aa = su[0] * su[0] + su[1] * su[1] + su[2] * su[2]
+    ab = su[0] * sv[0] + su[1] * sv[1] + su[2] * sv[2]
+    wa = su[0] * way[0] + su[1] * way[1] + su[2] * way[2]
+    # along the part is s_v without its share of s_u
+    share = ab / max(aa, TINY)
+    size = wl = 0.0
+    for k in range(3):
+        along = sv[k] - share * su[k]
+        wl += along * way[k]
+        size += along * along
+    out[ALONG] = wl / max(sqrt(size), TINY)
+    out[AROUND] = wa / max(sqrt(aa), TINY)
+    whole = sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2])
+    out[ANGLE] = asin(min(abs(out[AROUND]) / max(whole, TINY), 1.0))
+
+
 @njit(nogil=True, cache=True)
 def headings(first, last, spline, uv, points, touching, out):
     """Write the headings (p, n, 3) of paths first to last, with uv (p, n, 2), points (p, n, 3), touching (p, n).
@@ -44,17 +63,4 @@ def headings(first, last, spline, uv, points, touching, out):
             else:
                 for k in range(3):
                     way[k] = rate(points[p], i, k)
-            aa = su[0] * su[0] + su[1] * su[1] + su[2] * su[2]
-            ab = su[0] * sv[0] + su[1] * sv[1] + su[2] * sv[2]
-            wa = su[0] * way[0] + su[1] * way[1] + su[2] * way[2]
-            # along the part is s_v without its share of s_u
-            share = ab / max(aa, TINY)
-            size = wl = 0.0
-            for k in range(3):
-                along = sv[k] - share * su[k]
-                wl += along * way[k]
-                size += along * along
-            out[p, i, ALONG] = wl / max(sqrt(size), TINY)
-            out[p, i, AROUND] = wa / max(sqrt(aa), TINY)
-            whole = sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2])
-            out[p, i, ANGLE] = asin(min(abs(out[p, i, AROUND]) / max(whole, TINY), 1.0))
+            heading(su, sv, way, out[p, i])
