@@ -12,6 +12,7 @@ from scipy.integrate import DOP853, solve_ivp
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.march import Stop, trace, traces
+from meshwind.march.forward import marched
 from meshwind.surface import Surface, shapes
 
 # accuracy and order
@@ -172,3 +173,21 @@ def test_a_piece_of_the_surface_costs_two_steps() -> None:
     """One to see where the path leaves it and one that ends there, of 12 evaluations each, and two for the pressure."""
     path = trace(fine_barrel(), (0, 0.3), 1.2, 3.2)
     assert path.evaluations < 28 * len(path)
+
+
+@pytest.mark.parametrize("surface", [fine_barrel(), coarse_barrel()], ids=["many spans", "few spans"])
+def test_fibres_beside_marched_ones_are_what_a_march_gives(surface: Surface) -> None:
+    """As far as they are said to be good: a little beside all are, far beside none, on surfaces with kinks as well."""
+    start = np.stack([np.arange(9) / 9, np.zeros(9)], axis=1)
+    angle, most = np.linspace(0.4, 1.2, 9), 2e-11
+    first = marched(surface, start, angle, 9.0, slip=0.05, press="ignore")
+    assert (first.stop == Stop.RIM_END).all()
+    shares = []
+    for more in (1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 0.1):
+        found, good = first.beside(np.full(9, 0.05 + more), most)
+        exact = marched(surface, start, angle, 9.0, slip=0.05 + more, press="ignore", tolerance=1e-14)
+        size = [surface.size, 1.0, 1.0, 1.0 / surface.size, 1.0 / surface.size]
+        assert (np.abs(found.last - exact.last)[good] / size).max(initial=0.0) < most
+        assert (found.last[good, 2] == 1.0).all()
+        shares.append(good.mean())
+    assert shares[0] == 1.0 and shares[-1] == 0.0
