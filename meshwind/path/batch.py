@@ -87,10 +87,9 @@ class Batch(NamedTuple):
         return few
 
     def halved(self) -> "Batch":
-        """The same paths with every second of their particles, of which there is an odd number; counters go on."""
+        """The same paths and starting curves with every second of their particles, an odd number; counters go on."""
         names = [name for name in _ALONG_PATH if name != "starts"]
-        few = self.copied()._replace(**{name: np.ascontiguousarray(getattr(self, name)[:, ::2]) for name in names})
-        return few.curves_sampled()
+        return self.copied()._replace(**{name: np.ascontiguousarray(getattr(self, name)[:, ::2]) for name in names})
 
     def curves_sampled(self) -> "Batch":
         """The same with as many points on the starting curves as there are particles."""

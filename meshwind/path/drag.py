@@ -14,8 +14,8 @@ from meshwind.core.errors import BadInputError
 from meshwind.path.batch import Batch, fresh
 from meshwind.path.friction import Friction, friction_of
 from meshwind.path.kernels.coulomb import STUCK
-from meshwind.path.nested import failing
 from meshwind.path.paths import Paths
+from meshwind.path.search import failing
 from meshwind.path.solve import (
     ITERATIONS,
     TOLERANCE,

@@ -11,8 +11,9 @@ from meshwind.path import Paths, Status, solve
 from meshwind.path.batch import fresh
 from meshwind.path.friction import Friction, friction_of
 from meshwind.path.lengths import bridged_share, lengths
-from meshwind.path.nested import fewest, search
+from meshwind.path.nested import fewest
 from meshwind.path.paths import converged_or_all
+from meshwind.path.search import search
 from meshwind.path.solve import as_paths, straight
 from meshwind.path.solver import Solver
 from meshwind.planning.families import families

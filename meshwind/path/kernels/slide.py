@@ -12,7 +12,7 @@ from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.contact import pull
 from meshwind.path.kernels.coulomb import Fibre, Grip
-from meshwind.path.kernels.geometry import dot, row
+from meshwind.path.kernels.geometry import dot, minus, over, row
 from meshwind.path.kernels.grip import attach_to_curve, hold_all
 from meshwind.path.kernels.relax import relax
 from meshwind.path.kernels.relax_with_friction import relax_with_friction
@@ -39,14 +39,14 @@ AT_REST = 2e-6
 """Largest move within an increment, over the fibre's length, of a fibre at rest."""
 FIRM = 1e3
 """Force over the tension that holds the fibre to its starting curve while it lifts off hollows, which takes no time."""
-SAME = 3e-4
+SAME = 3e-5
 """Distance, over the length, up to which friction from an earlier curve leads to the same place of rest."""
 ROUNDS, BALANCE = 30, 1e-6
 """Maximum number of steps of an increment before a shorter one is tried, and the unbalanced force it leaves."""
 PASSES, SETTLED = 4, 0.05
 """Maximum number of times that an increment is made anew with the contact force at its end, and the change from one to
 the next, over the increment's move, with which it counts."""
-MOST, DEAREST = 250, 20_000
+MOST, DEAREST = 250, 5_000
 """Maximum number of increments, and of evaluations a particle, of a slide."""
 LEANING = 16
 """Number of increments in a row over which a fibre that leans on a rim has slid off: in them the time grows six times,
@@ -119,10 +119,12 @@ def slide(rough, limits, state, lain, counters):
     Returns (residual, status, steps); lain (m, n, 2): where it lay at first and after each step.
     """
     n = len(state.X)
-    before, last = blank(n), blank(n)
+    before, last, older = blank(n), blank(n), blank(n)
+    aimed = np.empty((n, 3))
     contacts = no_contacts(n)
     loose = Limits(limits.pull_off, max(limits.tolerance, BALANCE), ROUNDS)
     time, steps, leant = FIRST, 0, 0
+    past = 0.0  # length of the increment before
     lain[0] = state.uv
     length = energy(state.X)[1]
     resist = resistance(n, 0.0, ROOM * length, FIRM * length)
@@ -135,8 +137,13 @@ def slide(rough, limits, state, lain, counters):
     for _ in range(MOST):
         copy(state, before)
         length = energy(state.X)[1]
-        resist = resistance(n, 1.0 / (time * (n - 1) ** 2), ROOM * length, 0.0)
+        ratio = time / past if past > 0.0 else 0.0
+        pace = (1.0 + 2.0 * ratio) / (1.0 + ratio) / (time * (n - 1) ** 2)
+        resist = resistance(n, pace, ROOM * length, 0.0)
         lay_down(resist, rough, state, contacts)
+        if past > 0.0:
+            aim_ahead(resist, before, older, ratio * ratio / (1.0 + 2.0 * ratio))
+        aimed[:] = resist.lain
         move, settled = 0.0, False
         for turn in range(PASSES):
             copy(state, last)
@@ -148,6 +155,7 @@ def slide(rough, limits, state, lain, counters):
                 settled = True
                 break
             press_anew(resist, rough, state, contacts)
+            follow_bend(resist, aimed, before, state)
         if status == NEEDS_TREE:
             break
         shorter = time > SHORTEST
@@ -161,6 +169,8 @@ def slide(rough, limits, state, lain, counters):
             continue
         steps += 1
         lain[steps] = state.uv
+        copy(before, older)
+        past = time
         leant = leant + 1 if status != CONVERGED else 0
         if leant == LEANING:
             break
@@ -168,6 +178,46 @@ def slide(rough, limits, state, lain, counters):
             break
         time *= GROWTH
     return residual, status, steps
+
+
+@njit(cache=True)
+def aim_ahead(resist, now, before, share):
+    """Move what the slip is measured from on by a share of the last increment's slip, as BDF2 does."""
+    n = len(now.X)
+    for i in range(1, n - 1):
+        if resist.bound[i] >= 0.0 and now.touching[i] and before.touching[i]:
+            across = row(resist.across, i)
+            d = share * slip_from(before, i, row(now.X, i), across)
+            for a in range(3):
+                resist.lain[i, a] += d * across[a]
+
+
+@njit(cache=True)
+def follow_bend(resist, aimed, before, state):
+    """Measure slips from where the fibre, not its tangent, passes a particle that moved along it."""
+    n = len(state.X)
+    for i in range(1, n - 1):
+        if resist.bound[i] >= 0.0 and before.touching[i]:
+            across = row(resist.across, i)
+            here = row(state.X, i)
+            straight = dot(minus(here, row(before.X, i)), across)
+            d = straight - slip_from(before, i, here, across)
+            for a in range(3):
+                resist.lain[i, a] = aimed[i, a] + d * across[a]
+
+
+@njit(cache=True)
+def slip_from(before, i, here, across):
+    """Distance across of a point from a fibre near its particle i."""
+    X = before.X
+    far = minus(here, row(X, i))
+    slip = dot(far, across)
+    if before.touching[i - 1] and before.touching[i + 1]:
+        ahead, back = minus(row(X, i + 1), row(X, i)), minus(row(X, i), row(X, i - 1))
+        way = over(minus(row(X, i + 1), row(X, i - 1)), 2.0)
+        along = dot(far, way) / max(dot(way, way), TINY)
+        slip -= 0.5 * along * along * dot(minus(ahead, back), across) + along * dot(way, across)
+    return slip
 
 
 @njit(cache=True)
