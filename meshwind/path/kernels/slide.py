@@ -12,7 +12,7 @@ from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.contact import pull
 from meshwind.path.kernels.coulomb import Fibre, Grip
-from meshwind.path.kernels.geometry import dot, minus, over, row
+from meshwind.path.kernels.geometry import dot, minus, over, put, row
 from meshwind.path.kernels.grip import attach_to_curve, hold_all
 from meshwind.path.kernels.relax import relax
 from meshwind.path.kernels.relax_with_friction import relax_with_friction
@@ -200,6 +200,8 @@ def follow_bend(resist, aimed, before, state):
         if resist.bound[i] >= 0.0 and before.touching[i]:
             across = row(resist.across, i)
             here = row(state.X, i)
+            if resist.mode[i] == 0:  # held, it stays where it was
+                put(row(before.X, i), aimed, i)
             straight = dot(minus(here, row(before.X, i)), across)
             d = straight - slip_from(before, i, here, across)
             for a in range(3):
