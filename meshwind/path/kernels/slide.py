@@ -33,14 +33,18 @@ from meshwind.path.kernels.state import (
 FIRST, GROWTH = 1e-4, 1.12
 """Length of the first increment, in units of the fibre's length squared over its tension's mobility, and the factor
 from each to the next: waves die out in the order of their lengths, each in a time of its length squared."""
+FARTHEST = 0.005
+"""Move within an increment, over the fibre's length, from which on increments no longer grow: a fibre that leaps off a
+bump is followed."""
 LATE = 0.1
 """Time from which on a fibre that moves little is at rest: its longest wave dies out in this time."""
 AT_REST = 2e-6
 """Largest move within an increment, over the fibre's length, of a fibre at rest."""
 FIRM = 1e3
 """Force over the tension that holds the fibre to its starting curve while it lifts off hollows, which takes no time."""
-SAME = 3e-5
-"""Distance, over the length, up to which friction from an earlier curve leads to the same place of rest."""
+SAME, AT_ONCE = 3e-5, 40
+"""Distance, over the length, up to which friction from an earlier curve leads to the same place of rest, and the most
+steps by which it does."""
 ROUNDS, BALANCE = 30, 1e-6
 """Maximum number of steps of an increment before a shorter one is tried, and the unbalanced force it leaves."""
 PASSES, SETTLED = 4, 0.05
@@ -176,7 +180,7 @@ def slide(rough, limits, state, lain, counters):
             break
         if time > LATE and move <= AT_REST * length:
             break
-        time *= GROWTH
+        time *= min(GROWTH, max(FARTHEST * length / max(move, TINY), SHORTER))
     return residual, status, steps
 
 
@@ -232,6 +236,7 @@ def settle(rough, limits, state, grip, start, lain, steps, counters):
     copy(state, rest)
     length = energy(rest.X)[1]
     residual, status = np.inf, STALLED
+    quick = Limits(limits.pull_off, limits.tolerance, AT_ONCE)
     k = 0
     while True:
         curve = start if k == 0 else lain[k]
@@ -239,7 +244,7 @@ def settle(rough, limits, state, grip, start, lain, steps, counters):
             copy(rest, state)
         fibre = Fibre(state, grip, curve)
         hold_all(fibre, rough.body.size)
-        residual, status = relax_with_friction(rough, limits, fibre, counters)
+        residual, status = relax_with_friction(rough, limits if k == steps else quick, fibre, counters)
         if status == NEEDS_TREE or k == steps:
             break
         if status != STALLED and largest_move(state.X, rest.X) <= SAME * length:
