@@ -19,6 +19,8 @@ from meshwind.path.batch import fresh, resampled
 from meshwind.path.friction import Friction
 from meshwind.path.kernels.lay import halvings
 from meshwind.path.kernels.status import Status
+from meshwind.path.levels import segments
+from meshwind.path.sliding import fine_level
 from meshwind.path.solver import Solver
 from meshwind.surface.evaluate import SU, SV
 
@@ -181,8 +183,11 @@ class _Slides:
         """Paths slid with a change, on half the particles on which they were slid at first."""
         n, options = self.curves.shape[1], self.asked.options
         starts = self.shifted(index, change.shift)
-        level = min((halvings(curve, n) for curve in self.curves[index]), default=0)
-        batch = fresh(starts, max(((n - 1) >> (level + 1)) + 1, 3))
+        curves = self.curves[index]
+        level = min((halvings(curve, n) for curve in curves), default=0)
+        if not self.paths.on_surface[index].all():
+            level = min(level, fine_level(curves, n))
+        batch = fresh(starts, max(segments(n, level + 1) + 1, 3))
         surface, friction = self.paths.surface, self.friction(change.friction)
         Solver(surface, friction, options.bridging, options.tolerance, options.iterations).coarse.slide(batch)
         return _State(batch.X + surface.middle, batch.status)

@@ -24,7 +24,7 @@ def slide_from_level(solver: Solver, batch: Batch, level: int) -> Batch:
     fewer one over many small dents.
     """
     done = slide_at(solver, batch, level)
-    fine = _fine(batch.starts, batch.particles)
+    fine = fine_level(batch.starts, batch.particles)
     for way in dict.fromkeys((min(fine, level), level - 1, max(level, 0) + 1)):
         wanting = done.status == Status.STALLED
         if way == fine < level:
@@ -64,7 +64,7 @@ def slide_at(solver: Solver, batch: Batch, level: int) -> Batch:
     return done
 
 
-def _fine(curves: Floats, particles: int) -> int:
+def fine_level(curves: Floats, particles: int) -> int:
     """The level on which fibres that bridge slide from starting curves (p, k, 2)."""
     enough = ENOUGH * max(max(1.0, turn_of(curve)) for curve in curves)
     level = 0
