@@ -15,7 +15,7 @@ import numpy as np
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.vectors import TINY, unit
 from meshwind.path.asked import Asked
-from meshwind.path.batch import fresh, resampled
+from meshwind.path.batch import Batch, fresh, resampled
 from meshwind.path.friction import Friction
 from meshwind.path.kernels.lay import halvings
 from meshwind.path.kernels.status import Status
@@ -180,17 +180,26 @@ class _Slides:
         return _State(resampled(self.paths.points[index], like.points.shape[1]), np.zeros(len(index), np.int64))
 
     def run(self, index: Ints, change: _Change) -> _State:
-        """Paths slid with a change, on half the particles on which they were slid at first."""
-        n, options = self.curves.shape[1], self.asked.options
+        """Paths slid with a change, on half the particles on which they were slid, or where that stalls on as many."""
+        n, curves = self.curves.shape[1], self.curves[index]
         starts = self.shifted(index, change.shift)
-        curves = self.curves[index]
         level = min((halvings(curve, n) for curve in curves), default=0)
         if not self.paths.on_surface[index].all():
             level = min(level, fine_level(curves, n))
-        batch = fresh(starts, max(segments(n, level + 1) + 1, 3))
-        surface, friction = self.paths.surface, self.friction(change.friction)
-        Solver(surface, friction, options.bridging, options.tolerance, options.iterations).coarse.slide(batch)
-        return _State(batch.X + surface.middle, batch.status)
+        batch = self.slid(starts, max(segments(n, level + 1), 2), change)
+        stalled = np.flatnonzero(batch.status == Status.STALLED)
+        if len(stalled):
+            batch.put(stalled, self.slid(starts[stalled], 2 * (batch.particles - 1), change).halved())
+        return _State(batch.X + self.paths.surface.middle, batch.status)
+
+    def slid(self, starts: Floats, count: int, change: _Change) -> Batch:
+        """Paths of so many segments slid from starting curves with a change of friction."""
+        options, batch = self.asked.options, fresh(starts, count + 1)
+        friction = self.friction(change.friction)
+        Solver(self.paths.surface, friction, options.bridging, options.tolerance, options.iterations).coarse.slide(
+            batch
+        )
+        return batch
 
     def shifted(self, index: Ints, shift: float) -> Floats:
         """Starting curves shifted, most in their middle, by a share of the largest shift."""

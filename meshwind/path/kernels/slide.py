@@ -36,6 +36,9 @@ from each to the next: waves die out in the order of their lengths, each in a ti
 FARTHEST = 0.005
 """Move within an increment, over the fibre's length, from which on increments no longer grow: a fibre that leaps off a
 bump is followed."""
+LITTLE, HASTE = 1e-4, 1.5
+"""Move within an increment, over the length, up to which it counts though the contact force has not settled, and the
+factor to the next after it."""
 LATE = 0.1
 """Time from which on a fibre that moves little is at rest: its longest wave dies out in this time."""
 AT_REST = 2e-6
@@ -50,7 +53,7 @@ ROUNDS, BALANCE = 30, 1e-6
 PASSES, SETTLED = 4, 0.05
 """Maximum number of times that an increment is made anew with the contact force at its end, and the change from one to
 the next, over the increment's move, with which it counts."""
-MOST, DEAREST = 250, 5_000
+MOST, DEAREST = 400, 5_000
 """Maximum number of increments, and of evaluations a particle, of a slide."""
 LEANING = 16
 """Number of increments in a row over which a fibre that leans on a rim has slid off: in them the time grows six times,
@@ -165,7 +168,7 @@ def slide(rough, limits, state, lain, counters):
         shorter = time > SHORTEST
         if counters[EVALUATIONS] > spent:
             status, shorter = STALLED, False
-        if status == STALLED or (shorter and not settled):
+        if status == STALLED or (shorter and not settled and move > LITTLE * length):
             copy(before, state)
             if not shorter:
                 break
@@ -180,7 +183,7 @@ def slide(rough, limits, state, lain, counters):
             break
         if time > LATE and move <= AT_REST * length:
             break
-        time *= min(GROWTH, max(FARTHEST * length / max(move, TINY), SHORTER))
+        time *= HASTE if move <= LITTLE * length else min(GROWTH, max(FARTHEST * length / move, SHORTER))
     return residual, status, steps
 
 
