@@ -12,6 +12,11 @@ from scipy.spatial import cKDTree
 import meshwind as mw
 from meshwind.core.cast import Floats
 from meshwind.path import Paths, Status
+from meshwind.path.batch import fresh, resampled
+from meshwind.path.friction import friction_of
+from meshwind.path.levels import draw
+from meshwind.path.sliding import slide_from_level
+from meshwind.path.solver import Solver
 
 DATA = Path(__file__).parents[1] / "data"
 Shape = Callable[[Floats, Floats], Floats]
@@ -149,8 +154,11 @@ def test_a_slide_that_stalls_is_shown_where_it_lies(particles: int) -> None:
     surface = mw.shapes.revolution(lambda z: 1.0 - 0.3 * (z - 1.0) ** 2, 0.0, 2.0)
     t = np.linspace(0.0, 1.0, 41)
     wavy = np.column_stack([0.25 * t, t + 0.05 * np.sin(4.0 * np.pi * t)])
-    start, end = [(0.0, 0.0)], [(0.25, 1.0)]
-    stopped = mw.solve(surface, start, end, initial=[wavy], friction=0.1, particles=particles, iterations=1)
-    rested = mw.solve(surface, start, end, initial=[wavy], friction=0.1, particles=particles)
-    assert stopped.status[0] == Status.STALLED and rested.status[0] == Status.CONVERGED
-    assert stopped.length[0] == pytest.approx(rested.length[0], rel=1e-3)
+    solver = Solver(surface, friction_of(surface, 0.1), True, 1e-10, 1000)
+    rested = slide_from_level(solver, fresh(wavy[None], particles), 0)
+    assert rested.status[0] == Status.CONVERGED
+    stopped = rested.copied()._replace(starts=resampled(wavy[None], particles))
+    stopped.status[:] = Status.STALLED
+    draw(solver, stopped, np.array([0]))
+    assert stopped.status[0] == Status.STALLED
+    np.testing.assert_allclose(stopped.X, rested.X, atol=1e-3)

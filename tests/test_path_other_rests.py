@@ -12,6 +12,7 @@ from meshwind.cli.summary import run_lines
 from meshwind.core.cast import Floats
 from meshwind.path import Paths
 from meshwind.path.other_rests import ASIDE, FAR, LOOSER
+from meshwind.path.paths import SLID
 from meshwind.workflow.notes import about_other_rests
 
 DATA = Path(__file__).parents[1] / "data"
@@ -52,7 +53,7 @@ def test_a_state_that_less_friction_leads_to_is_found(bottle: mw.Surface) -> Non
         mw.solve(bottle, ends.start[10:11], ends.end[10:11], friction=0.15 * (1.0 + change))
         for change in (rests.friction[10], rests.friction[10] + LOOSER / 4)
     )
-    assert there.length[0] == pytest.approx(rests.length[10], rel=1e-9)
+    assert there.length[0] == pytest.approx(rests.length[10], rel=SLID)
     assert apart(paths.points[10], there.points[0]) > 0.9 * rests.apart[10] > FAR * bottle.size
     assert apart(paths.points[10], before.points[0]) < 0.3 * rests.apart[10]  # the edge lies between the two
 
@@ -78,14 +79,14 @@ def test_a_path_that_moves_far_in_proportion_has_none(bottle: mw.Surface) -> Non
 
 
 def test_a_path_that_would_slide_off_is_found(bottle: mw.Surface) -> None:
-    paths = wound(bottle, 6, 0.8, 0.1)
+    paths = wound(bottle, 6, 0.9, 0.1)
     rests = paths.other_rests
-    assert np.flatnonzero(rests.found).tolist() == [3]
-    assert rests.status[3] in (1, 2)
-    assert np.isnan(rests.apart[3])
+    assert np.flatnonzero(rests.found).tolist() == [11]
+    assert rests.status[11] in (1, 2)
+    assert np.isnan(rests.apart[11])
     assert not rests.found[paths.status != 0].any()
     (note,) = about_other_rests(paths, "mm")
-    assert "path 3 would not rest (the fibre slides off" in note.text
+    assert "path 11 would not rest (the fibre slides off" in note.text
 
 
 @pytest.mark.parametrize("surface", [
@@ -163,6 +164,6 @@ def test_the_note_names_three_paths_and_counts_the_others(bottle: mw.Surface) ->
     paths = paths.subset(five)
     vars(paths)["other_rests"] = many
     (note,) = about_other_rests(paths, "mm")
-    assert note.text.startswith("5 of 5 paths rest close to another state: path 0 would lie 14 mm away if friction")
+    assert note.text.startswith("5 of 5 paths rest close to another state: path 0 would lie 15 mm away if friction")
     assert note.text.count("% lower") == 3
     assert note.text.endswith("2 more paths in the report")

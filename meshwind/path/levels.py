@@ -6,7 +6,7 @@ import numpy as np
 
 from meshwind.core.cast import Ints
 from meshwind.path.batch import Batch, fresh
-from meshwind.path.paths import Status
+from meshwind.path.kernels.status import Status
 from meshwind.path.search import REST, failing, search
 from meshwind.path.solver import Solver
 

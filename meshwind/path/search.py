@@ -4,7 +4,7 @@ import numpy as np
 
 from meshwind.core.cast import Bools
 from meshwind.path.batch import Batch, fresh, resampled
-from meshwind.path.paths import Status
+from meshwind.path.kernels.status import Status
 from meshwind.path.solver import Solver
 
 REST, CUT = int(Status.CONVERGED), int(Status.TOO_COARSE)

@@ -5,8 +5,8 @@ import numpy as np
 from meshwind.core.cast import Floats
 from meshwind.path.batch import Batch, fresh
 from meshwind.path.kernels.lay import turn_of
+from meshwind.path.kernels.status import Status
 from meshwind.path.levels import ascend, climb, draw, segments
-from meshwind.path.paths import Status
 from meshwind.path.solver import Solver
 
 ENOUGH = 360
