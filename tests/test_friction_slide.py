@@ -14,6 +14,7 @@ from meshwind.core.cast import Floats
 from meshwind.path import Paths, Status
 from meshwind.path.batch import fresh, resampled
 from meshwind.path.friction import friction_of
+from meshwind.path.kernels.coulomb import STUCK
 from meshwind.path.levels import draw
 from meshwind.path.sliding import slide_from_level
 from meshwind.path.solver import Solver
@@ -158,7 +159,7 @@ def test_a_slide_that_stalls_is_shown_where_it_lies(particles: int) -> None:
     rested = slide_from_level(solver, fresh(wavy[None], particles), 0)
     assert rested.status[0] == Status.CONVERGED
     stopped = rested.copied()._replace(starts=resampled(wavy[None], particles))
-    stopped.status[:] = Status.STALLED
+    stopped.status[:], stopped.mode[:] = Status.STALLED, STUCK
     draw(solver, stopped, np.array([0]))
     assert stopped.status[0] == Status.STALLED
     np.testing.assert_allclose(stopped.X, rested.X, atol=1e-3)
