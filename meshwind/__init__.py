@@ -105,7 +105,7 @@ if TYPE_CHECKING:
     from meshwind.core.errors import BadInputError as BadInputError
     from meshwind.editing.redesign import Redesign as Redesign
     from meshwind.editing.redesign import redesign as redesign
-    from meshwind.export.cad_surface import read_cad as read_cad
+    from meshwind.exporting.cad_surface import read_cad as read_cad
     from meshwind.layup import Layup as Layup
     from meshwind.layup import assess as assess
     from meshwind.layup import windability as windability
@@ -156,7 +156,7 @@ _HOME = {
     "Families": "planning", "families": "planning", "choose_revolutions": "planning", "read_pins": "planning",
     "space_out": "planning",
     "Layup": "layup", "assess": "layup", "windability": "layup",
-    "read_cad": "export.cad_surface",
+    "read_cad": "exporting.cad_surface",
     "Redesign": "editing.redesign", "redesign": "editing.redesign", "write_redesign": "run.redesign",
     "Result": "run.result", "wind": "run.wind",
     "render": "pictures.render", "Page": "pictures.page", "draw_redesign": "pictures.redesign_scene",

@@ -24,11 +24,11 @@ ORDER = [
     "appearance",
     "workflow",
     "editing",
-    "export",
+    "exporting",
     "pictures",
     "program",
     "run",
-    "sweep",
+    "studies",
     "cli",
     "__main__",
 ]

@@ -15,8 +15,8 @@ from meshwind.cli import export, render
 from meshwind.cli.main import app
 from meshwind.core.option import options_of
 from meshwind.core.units import MILLIMETRES
-from meshwind.export.formats import FORMATS
-from meshwind.export.targets import GRID, QUADS, TARGETS
+from meshwind.exporting.formats import FORMATS
+from meshwind.exporting.targets import GRID, QUADS, TARGETS
 from meshwind.mesh.opening.choose_ends import parse_ends
 from meshwind.workflow.options import Options
 

@@ -10,8 +10,8 @@ import numba
 import pytest
 
 import meshwind as mw
-from meshwind.export.formats import FORMATS
-from meshwind.export.targets import TARGETS, ExportOptions, export
+from meshwind.exporting.formats import FORMATS
+from meshwind.exporting.targets import TARGETS, ExportOptions, export
 
 DATA = Path(__file__).parents[1] / "data"
 RUNS: dict[str, dict[str, float | str | None]] = {

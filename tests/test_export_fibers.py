@@ -10,9 +10,9 @@ from export_results import leave, plain_results, waisted_results
 from layup_shapes import cylinder, drawn, straight_uv
 
 from meshwind.core.errors import BadInputError
-from meshwind.export.elements import on_crossings, regular
-from meshwind.export.fibers import FILES, write_fibers
-from meshwind.export.plies import plies
+from meshwind.exporting.elements import on_crossings, regular
+from meshwind.exporting.fibers import FILES, write_fibers
+from meshwind.exporting.plies import plies
 from meshwind.layup.coverage import coverage
 from meshwind.layup.direction import winding_angle
 from meshwind.surface.grid import grid

@@ -12,7 +12,7 @@ from export_results import leave, waisted_results
 from layup_shapes import bridged
 
 from meshwind.core.errors import BadInputError
-from meshwind.export.targets import TARGETS, ExportOptions, export
+from meshwind.exporting.targets import TARGETS, ExportOptions, export
 from meshwind.path.paths import Status
 from meshwind.results.folder import beside
 from meshwind.results.reading import read_results

@@ -8,7 +8,7 @@ import pytest
 import pyvista as pv
 from export_results import plain_results, waisted_results
 
-from meshwind.export.formats import FORMATS, write_formats
+from meshwind.exporting.formats import FORMATS, write_formats
 from meshwind.results.vtk_reading import read_faces, read_lines
 
 ENDING = {name: name for name in FORMATS} | {"gmsh": "msh"}

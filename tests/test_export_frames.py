@@ -9,7 +9,7 @@ from layup_shapes import cylinder, helices
 
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
-from meshwind.export.frames import HEADER, frames, write_frames
+from meshwind.exporting.frames import HEADER, frames, write_frames
 from meshwind.results.reading import Results
 
 Table = dict[str, Floats]

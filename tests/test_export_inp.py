@@ -10,10 +10,10 @@ import pytest
 from export_results import plain_results, waisted_results
 
 from meshwind.core.errors import BadInputError
-from meshwind.export.elements import Elements, on_crossings, regular
-from meshwind.export.plies import plies
-from meshwind.export.shell_deck import Deck, Material, thicknesses, write_decks
-from meshwind.export.shell_loads import FORCE
+from meshwind.exporting.elements import Elements, on_crossings, regular
+from meshwind.exporting.plies import plies
+from meshwind.exporting.shell_deck import Deck, Material, thicknesses, write_decks
+from meshwind.exporting.shell_loads import FORCE
 from meshwind.results.reading import Results
 from meshwind.results.schema import SHELL, SHELL_S4R
 

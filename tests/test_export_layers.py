@@ -14,10 +14,10 @@ from export_results import filament_results, laminate, layered_results
 import meshwind as mw
 from meshwind.core.cast import Bools, Floats
 from meshwind.core.errors import BadInputError
-from meshwind.export.elements import on_crossings, regular
-from meshwind.export.plies import laid_on, plies
-from meshwind.export.shell_deck import Deck, Material, thicknesses
-from meshwind.export.targets import ExportOptions, export
+from meshwind.exporting.elements import on_crossings, regular
+from meshwind.exporting.plies import laid_on, plies
+from meshwind.exporting.shell_deck import Deck, Material, thicknesses
+from meshwind.exporting.targets import ExportOptions, export
 from meshwind.filament.laminate import Laminate
 from meshwind.results.reading import Results, read_results
 

@@ -8,8 +8,8 @@ import pytest
 from export_results import waisted_results
 
 from meshwind.core.errors import BadInputError
-from meshwind.export.formats import FORMATS
-from meshwind.export.targets import TARGETS, ExportOptions, export
+from meshwind.exporting.formats import FORMATS
+from meshwind.exporting.targets import TARGETS, ExportOptions, export
 from meshwind.results.folder import exports_in, writing
 from meshwind.results.schema import RESULTS
 

@@ -13,8 +13,8 @@ from meshwind.core import opencascade
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.core.opencascade import occ
-from meshwind.export.splines import clamped_surface
-from meshwind.export.step import write_step
+from meshwind.exporting.splines import clamped_surface
+from meshwind.exporting.step import write_step
 from meshwind.results.reading import Results
 from meshwind.results.schema import STEP
 from meshwind.surface import shapes

@@ -16,8 +16,8 @@ from viewer_browser import opened, settled
 
 from meshwind.appearance.looks import MAPS
 from meshwind.core.cast import Floats
-from meshwind.export.targets import export
-from meshwind.export.viewer import page_data
+from meshwind.exporting.targets import export
+from meshwind.exporting.viewer import page_data
 from meshwind.path.paths import Status
 
 BLUE, ORANGE = (0, 114, 178), (230, 159, 0)

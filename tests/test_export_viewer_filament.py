@@ -12,10 +12,10 @@ from viewer_browser import opened, settled
 
 import meshwind as mw
 from meshwind.core.cast import Floats, Ints
-from meshwind.export.packing import packed
-from meshwind.export.targets import export
-from meshwind.export.viewer import page_data
-from meshwind.export.viewer_filament import FilamentData
+from meshwind.exporting.packing import packed
+from meshwind.exporting.targets import export
+from meshwind.exporting.viewer import page_data
+from meshwind.exporting.viewer_filament import FilamentData
 from meshwind.filament.course import Kind
 from meshwind.results.reading import read_results
 

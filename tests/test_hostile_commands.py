@@ -14,8 +14,8 @@ from mesh_shapes import cone
 import meshwind as mw
 from meshwind.cli import main
 from meshwind.core.errors import BadInputError
-from meshwind.export.formats import FORMATS
-from meshwind.export.targets import ExportOptions, export
+from meshwind.exporting.formats import FORMATS
+from meshwind.exporting.targets import ExportOptions, export
 
 STRANGE = [
     "", " ", "nan", "inf", "-1", "0", "1e308", "1e-308", "-0.0", "1/0", "0x10", "--", "-", "\0", "\n", "ü", "\ud800",

@@ -8,7 +8,7 @@ from PIL import Image
 
 import meshwind as mw
 from meshwind.core.errors import BadInputError
-from meshwind.export.viewer import page_data
+from meshwind.exporting.viewer import page_data
 from meshwind.filament.course import Kind
 from meshwind.pictures.filament_scene import bands_scene
 from meshwind.pictures.gallery import scenes_of

@@ -15,10 +15,10 @@ import pytest
 from pyarrow import parquet
 
 from meshwind.core.errors import BadInputError
-from meshwind.sweep import read_study, sweep
-from meshwind.sweep.local import run_local
-from meshwind.sweep.study import CaseStatus
-from meshwind.sweep.work import Done, grouped
+from meshwind.studies import read_study, sweep
+from meshwind.studies.local import run_local
+from meshwind.studies.study import CaseStatus
+from meshwind.studies.work import Done, grouped
 
 DATA = Path(__file__).parents[1] / "data"
 FEW = "paths = 3\nparticles = 41\n"
@@ -168,7 +168,7 @@ def test_killed_workers_cases_are_run_again_and_come_once(tmp_path: Path) -> Non
 
 def test_a_job_that_kills_every_worker_is_given_up_and_the_others_done(tmp_path: Path) -> None:
     """A mesh whose worker dies as it is fitted, by a limit of memory that only it breaks, is a row in the end."""
-    from meshwind.sweep import local
+    from meshwind.studies import local
 
     plan = read_study(study(tmp_path, f"{FEW}mesh = [{mesh('vase.stl')}]\nrevolutions = [0.3, 0.4]\n"))
     queue = local._Queue(grouped(dict(enumerate(plan.cases))), tmp_path, deque())
@@ -219,7 +219,7 @@ def test_a_cluster_gives_the_same_table(done: tuple[Path, Path], tmp_path: Path)
 
 
 def test_a_missing_scheduler_is_one_line(tmp_path: Path) -> None:
-    from meshwind.sweep import cluster
+    from meshwind.studies import cluster
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(cluster, "CONNECT_SECONDS", 1)

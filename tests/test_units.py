@@ -17,7 +17,7 @@ from PIL import Image
 from meshwind.cli.wind import wind
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import MILLIMETRES, check_units, lengths_in, millimetres
-from meshwind.export.targets import ExportOptions, export
+from meshwind.exporting.targets import ExportOptions, export
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.results.write import write_edited
 

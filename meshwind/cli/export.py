@@ -133,8 +133,8 @@ def export(
     step: surface.step for CAD (needs meshwind[cad]).
     viewer: viewer.html, a page for any browser, without a network (needs meshwind[viewer]).
     """
-    from meshwind.export.targets import ExportOptions
-    from meshwind.export.targets import export as write
+    from meshwind.exporting.targets import ExportOptions
+    from meshwind.exporting.targets import export as write
 
     formats = split_names(what.formats)
     options = ExportOptions(

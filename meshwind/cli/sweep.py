@@ -71,7 +71,7 @@ def sweep(
     have paths that did not converge (the table says which and why).
     """
     # the numerical libraries are imported late: --help and usage errors must not wait for them
-    from meshwind.sweep.run import sweep as run
+    from meshwind.studies.run import sweep as run
 
     folder = out if out is not None else Path(f"{study.stem}-swept")
     with counter("cases", printed) as progress:

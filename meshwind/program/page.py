@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints
-from meshwind.export.packing import packed
-from meshwind.export.viewer import write_viewer
-from meshwind.export.viewer_program import ProgramData, Wound
+from meshwind.exporting.packing import packed
+from meshwind.exporting.viewer import write_viewer
+from meshwind.exporting.viewer_program import ProgramData, Wound
 from meshwind.filament.filament import backwards
 from meshwind.program.faults import LIMIT
 from meshwind.program.program import Program

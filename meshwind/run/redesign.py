@@ -11,7 +11,7 @@ from meshwind.core.version import version
 from meshwind.editing.notes import about_wall
 from meshwind.editing.redesign import Redesign
 from meshwind.editing.report import redesign_report
-from meshwind.export.step import write_step_of
+from meshwind.exporting.step import write_step_of
 from meshwind.layup.layup import assess
 from meshwind.pictures import driver
 from meshwind.pictures.drawings import Drawing

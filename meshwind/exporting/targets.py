@@ -7,15 +7,15 @@ from pathlib import Path
 from typing import TypeAlias
 
 from meshwind.core.errors import BadInputError
-from meshwind.export.elements import Elements, on_crossings, regular
-from meshwind.export.fibers import write_fibers
-from meshwind.export.formats import FORMATS, write_formats
-from meshwind.export.frames import Limits, write_frames
-from meshwind.export.ordered_frames import write_ordered_frames
-from meshwind.export.plies import laid_on, plies
-from meshwind.export.shell_deck import Deck, Material, write_decks
-from meshwind.export.step import write_step
-from meshwind.export.viewer import write_viewer
+from meshwind.exporting.elements import Elements, on_crossings, regular
+from meshwind.exporting.fibers import write_fibers
+from meshwind.exporting.formats import FORMATS, write_formats
+from meshwind.exporting.frames import Limits, write_frames
+from meshwind.exporting.ordered_frames import write_ordered_frames
+from meshwind.exporting.plies import laid_on, plies
+from meshwind.exporting.shell_deck import Deck, Material, write_decks
+from meshwind.exporting.step import write_step
+from meshwind.exporting.viewer import write_viewer
 from meshwind.results.folder import beside
 from meshwind.results.reading import Results, read_results
 

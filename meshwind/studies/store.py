@@ -16,8 +16,8 @@ from pathlib import Path
 from meshwind.core.errors import BadInputError
 from meshwind.results.report import plain
 from meshwind.results.staging import staged
-from meshwind.sweep.study import Case, CaseStatus, Row, Study
-from meshwind.sweep.work import Done
+from meshwind.studies.study import Case, CaseStatus, Row, Study
+from meshwind.studies.work import Done
 
 CASES, RECORD = "cases", "case.json"
 CSV, PARQUET, PICTURE = "results.csv", "results.parquet", "tradeoffs.png"

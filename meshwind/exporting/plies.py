@@ -10,7 +10,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
-from meshwind.export.elements import Elements
+from meshwind.exporting.elements import Elements
 from meshwind.layup.coverage import coverage
 from meshwind.layup.direction import directions, fibres_of
 from meshwind.path.paths import Paths

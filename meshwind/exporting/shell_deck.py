@@ -16,10 +16,10 @@ from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import millimetres
 from meshwind.core.vectors import TINY
-from meshwind.export.elements import Elements
-from meshwind.export.plies import Plies, Ply
-from meshwind.export.shell_loads import listed, step
-from meshwind.export.shell_nodes import Nodes, nodes_of
+from meshwind.exporting.elements import Elements
+from meshwind.exporting.plies import Plies, Ply
+from meshwind.exporting.shell_loads import listed, step
+from meshwind.exporting.shell_nodes import Nodes, nodes_of
 from meshwind.results.schema import SHELL, SHELL_S4R
 
 LEAST = 0.05

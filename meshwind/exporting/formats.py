@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.units import lengths_in
-from meshwind.export.xdmf import write_xdmf
+from meshwind.exporting.xdmf import write_xdmf
 from meshwind.results.meshio_files import write_meshio
 from meshwind.results.reading import Results, read_surface_grid
 from meshwind.results.schema import BRIDGES, CROSSINGS, FORMATS_FOLDER, PATHS, QUADS, SURFACE

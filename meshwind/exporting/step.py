@@ -9,7 +9,7 @@ from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.core.opencascade import knots_array, need, occ, points_array, quiet
 from meshwind.core.units import millimetres
-from meshwind.export.splines import clamped_surface, curve_through
+from meshwind.exporting.splines import clamped_surface, curve_through
 from meshwind.results import schema
 from meshwind.results.reading import Results
 from meshwind.surface.evaluate import DEGREE

@@ -1,6 +1,6 @@
 """Studies: many windings of many parts, as cases of one table."""
 
-from meshwind.sweep.run import Swept, sweep
-from meshwind.sweep.study import Case, Study, read_study
+from meshwind.studies.run import Swept, sweep
+from meshwind.studies.study import Case, Study, read_study
 
 __all__ = ["Case", "Study", "Swept", "read_study", "sweep"]

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from meshwind.core.cast import Floats
-from meshwind.export.elements import Elements
-from meshwind.export.plies import Plies
+from meshwind.exporting.elements import Elements
+from meshwind.exporting.plies import Plies
 from meshwind.results.meshio_files import write_meshio
 from meshwind.results.schema import (
     FIBERS,

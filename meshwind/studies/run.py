@@ -8,10 +8,10 @@ from time import monotonic
 
 from meshwind.core.errors import BadInputError
 from meshwind.core.processes import cores
-from meshwind.sweep.charts import draw_tradeoffs
-from meshwind.sweep.store import CASES, PICTURE, Store
-from meshwind.sweep.study import CaseStatus, Row, Study, read_study
-from meshwind.sweep.work import Done, grouped
+from meshwind.studies.charts import draw_tradeoffs
+from meshwind.studies.store import CASES, PICTURE, Store
+from meshwind.studies.study import CaseStatus, Row, Study, read_study
+from meshwind.studies.work import Done, grouped
 
 CaseProgress = Callable[[str, int, int], None]
 """Called with the name of a finished case, how many are finished, and how many there are."""
@@ -74,10 +74,10 @@ def _run(store: Store, processes: int | None, scheduler: str | None) -> Iterator
     """Run the cases that are left, here or on a cluster."""
     groups = grouped(store.open)
     if scheduler is not None:
-        from meshwind.sweep.cluster import run_cluster
+        from meshwind.studies.cluster import run_cluster
 
         return run_cluster(groups, scheduler)
-    from meshwind.sweep.local import run_local
+    from meshwind.studies.local import run_local
     from meshwind.workflow.compiling import compile_for
 
     if store.open:

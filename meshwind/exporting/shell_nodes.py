@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints
-from meshwind.export.elements import Elements
+from meshwind.exporting.elements import Elements
 
 
 @dataclass(frozen=True)

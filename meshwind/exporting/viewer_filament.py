@@ -10,7 +10,7 @@ from meshwind.appearance.looks import SEQUENTIAL
 from meshwind.appearance.ribbons import Fineness, ribbons, turned_by
 from meshwind.appearance.strips import WORDS, Gear
 from meshwind.core.cast import Ints
-from meshwind.export.packing import Packed, Stops, packed, stops
+from meshwind.exporting.packing import Packed, Stops, packed, stops
 from meshwind.filament.course import Kind
 from meshwind.filament.filament import Filament
 from meshwind.results.reading import Results

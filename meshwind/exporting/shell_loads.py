@@ -5,8 +5,8 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from meshwind.core.cast import Floats
-from meshwind.export.elements import Elements
-from meshwind.export.shell_nodes import Nodes, Rim
+from meshwind.exporting.elements import Elements
+from meshwind.exporting.shell_nodes import Nodes, Rim
 
 FORCE = 1000.0
 """Pull of the step, in N."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.vectors import unit
-from meshwind.export.frames import FORMAT, HEADER, Frames, Limits, frames, table, too_sharp, turns_of
+from meshwind.exporting.frames import FORMAT, HEADER, Frames, Limits, frames, table, too_sharp, turns_of
 from meshwind.filament.course import Kind
 from meshwind.results.reading import Results
 from meshwind.results.schema import FILAMENT_FRAMES, FRAMES_FOLDER, layer_frames

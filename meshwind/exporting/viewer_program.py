@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import TypedDict
 
 from meshwind.core.cast import Floats
-from meshwind.export.packing import Packed
+from meshwind.exporting.packing import Packed
 from meshwind.filament.filament import Filament
 from meshwind.results.schema import File
 

@@ -15,9 +15,9 @@ from meshwind.appearance.view import best_view
 from meshwind.appearance.words import quantity
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.errors import BadInputError
-from meshwind.export.packing import Packed, Stops, packed, stops
-from meshwind.export.viewer_filament import FilamentData, filament_data, gear_of
-from meshwind.export.viewer_program import ProgramData, Wound
+from meshwind.exporting.packing import Packed, Stops, packed, stops
+from meshwind.exporting.viewer_filament import FilamentData, filament_data, gear_of
+from meshwind.exporting.viewer_program import ProgramData, Wound
 from meshwind.path.lengths import bridged_share, bridging, lengths
 from meshwind.results.laminate_reading import read_laminate
 from meshwind.results.reading import Results, read_surface_grid

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from meshwind.core.errors import BadInputError
-from meshwind.sweep.study import CaseStatus
-from meshwind.sweep.work import CaseGroup, Done, fit_job, wind_job
+from meshwind.studies.study import CaseStatus
+from meshwind.studies.work import CaseGroup, Done, fit_job, wind_job
 
 CONNECT_SECONDS = 20
 """Time that a scheduler has to answer."""

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from meshwind.results.staging import staged
-from meshwind.sweep.study import CaseStatus, Row
+from meshwind.studies.study import CaseStatus, Row
 
 _FIGURES = {
     "bridged_share": "bridged, share of length",

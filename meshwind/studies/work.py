@@ -9,7 +9,7 @@ from threadpoolctl import threadpool_limits
 
 from meshwind.core.errors import BadInputError
 from meshwind.run.result import Result
-from meshwind.sweep.study import Case, CaseStatus, Row
+from meshwind.studies.study import Case, CaseStatus, Row
 from meshwind.workflow.clock import Clock
 from meshwind.workflow.options import Options
 from meshwind.workflow.part import Part, Source, fit_part, read_source

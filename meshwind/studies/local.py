@@ -12,8 +12,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from meshwind.sweep.study import Case, CaseStatus
-from meshwind.sweep.work import CaseGroup, Done, fit_job, wind_job
+from meshwind.studies.study import Case, CaseStatus
+from meshwind.studies.work import CaseGroup, Done, fit_job, wind_job
 from meshwind.workflow.options import Options
 from meshwind.workflow.part import Part, Source
 
