@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, PicklableRecord, frozen
 from meshwind.core.kernel import njit
 from meshwind.mesh.geometry.mesh import Annulus
@@ -39,6 +40,8 @@ class Chart(PicklableRecord):
     corner_uv: Floats
     flipped: int
     stretch: Floats
+
+    __repr__ = brief
 
 
 def signed_areas(corner_uv: Floats) -> Floats:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from meshwind.chart import Chart
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools
 from meshwind.editing.edit import lifted, threshold_of
 from meshwind.editing.windings import Course, marked_share
@@ -24,6 +25,8 @@ class Proof:
     wound: tuple[Paths, ...]
     threshold: float
     at_most: float = 0.0
+
+    __repr__ = brief
 
     @property
     def paths(self) -> Paths:

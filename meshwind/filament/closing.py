@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.progress import Progress, silent
 from meshwind.filament.cap_turn import Cap, ends_with_caps, joined_on_caps, passes_on_caps
@@ -57,6 +58,8 @@ class ClosedLayer:
     filaments: tuple[Course, ...]
     left_out: int = 0
     words: str = ""
+
+    __repr__ = brief
 
     @property
     def pattern(self) -> Pattern:

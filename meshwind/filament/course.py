@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.threads import parallel_for
 from meshwind.filament.runs import Columns, Runs, copy_runs
@@ -67,6 +68,8 @@ class Course:
     circuit: Ints
     passed: Ints
     path: Ints
+
+    __repr__ = brief
 
     def __len__(self) -> int:
         return len(self.points)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import unit
@@ -62,6 +63,8 @@ class Edge:
     hollow: float
     end: int
     crease: tuple[float, float]
+
+    __repr__ = brief
 
     def around(self, u: Floats) -> Floats:
         """Lengths (n,) along the hull at parameters u (n,) of the rim, both unwrapped."""

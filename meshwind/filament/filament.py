@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.filament.closing import ClosedLayer
 from meshwind.filament.course import Course, in_a_row
@@ -18,6 +19,8 @@ class Filament:
     course: Course
     layer: Ints
     thickness: Floats
+
+    __repr__ = brief
 
 
 def backwards(filaments: Sequence[Filament]) -> tuple[Filament, ...]:

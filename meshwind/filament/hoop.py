@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import TINY
@@ -105,6 +106,8 @@ class Hoop:
     friction: float
     lifts: float
     worst: tuple[float, float]
+
+    __repr__ = brief
 
     def slips(self, friction: float) -> float:
         """Share of the fibre's length that needs more friction than this, or does not press at all."""

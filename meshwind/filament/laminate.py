@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.filament.band import Roving
 from meshwind.filament.closing import ClosedLayer
 from meshwind.filament.hoop import Hoop
@@ -62,6 +63,8 @@ class LaidLayer:
     strand: Strand | None = None
     shortfall: str = ""
 
+    __repr__ = brief
+
     @property
     def closed(self) -> ClosedLayer | None:
         """The layer as a closed pattern, if it is helical and of one filament."""
@@ -116,6 +119,8 @@ class Laminate:
     """
 
     layers: tuple[LaidLayer, ...]
+
+    __repr__ = brief
 
     @property
     def surfaces(self) -> tuple[Surface, ...]:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.vectors import unit
 from meshwind.filament.edge import Edge, Legs, Lift, legs
@@ -113,6 +114,8 @@ class Hung:
     angle: Floats
     aloft: Bools
     before: tuple[float, float] = (0.0, 0.0)
+
+    __repr__ = brief
 
 
 def hung(paths: Paths, angle: Floats, over: Sequence[tuple[Legs, int, int]]) -> Hung:

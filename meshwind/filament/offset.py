@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import TINY
@@ -53,6 +54,8 @@ class Raised:
     evened: float
     hollow: float
     where: tuple[float, float]
+
+    __repr__ = brief
 
     def at(self, uv: Floats) -> Floats:
         """By how much the surface was raised at uv (n, 2), linear between the centres of the cells."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.vectors import TINY
 from meshwind.filament.course import Course, Courses, Kind, in_turn, runs
@@ -45,6 +46,8 @@ class Pins:
     name: str = field(default="pins", init=False)
     rule: str = field(default="held by pins; the hoop behind them needs no friction", init=False)
     slip: float = field(default=0.0, init=False)
+
+    __repr__ = brief
 
     @property
     def catch(self) -> Catch:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from meshwind.core.brief import brief
 from meshwind.core.units import millimetres
 from meshwind.filament.band import Roving
 from meshwind.filament.levels import levels
@@ -47,6 +48,8 @@ class PlainLayer:
     band: Band = field(default_factory=Band)
     stations: Stations | None = None
     thickness: Thickness | None = None
+
+    __repr__ = brief
 
 
 def plain_layer(paths: Paths, band: Band, width: float) -> PlainLayer:

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.filament.line_meetings import Ring
@@ -26,6 +27,8 @@ class Section:
     turned: Floats
     passed: Floats
     perimeter: float
+
+    __repr__ = brief
 
     def at(self, passed: Floats) -> Floats:
         """Points (n, 2) at lengths (n,) along the section."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.filament.hoop import Hoop
 from meshwind.filament.levels import Levels
@@ -43,6 +44,8 @@ class Stations:
     cover: Floats
     least: Floats
     most: Floats
+
+    __repr__ = brief
 
     @property
     def angles(self) -> tuple[float, float, float]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import TINY
@@ -75,6 +76,8 @@ class Tracks:
     steps: Floats
     gap: Floats
 
+    __repr__ = brief
+
     @property
     def length(self) -> float:
         """Length of all fibres."""
@@ -109,6 +112,8 @@ class Thickness:
     filler: Floats
     area: Floats
     over_rim: float
+
+    __repr__ = brief
 
     @property
     def volume(self) -> float:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
@@ -48,6 +49,8 @@ class Bands:
     width: float
     footprint: float
     openings: tuple[float, float]
+
+    __repr__ = brief
 
     def share(self, layers: int) -> float:
         """Share of the surface's area that lies under exactly `layers` layers."""

@@ -5,6 +5,7 @@ from math import floor
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.kernel import njit
@@ -35,6 +36,8 @@ class Coverage:
     layers: Floats
     area: Floats
     width: float
+
+    __repr__ = brief
 
     @property
     def min(self) -> float:

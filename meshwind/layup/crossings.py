@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.vectors import TINY
 from meshwind.layup.curve_meetings import curve_meetings
@@ -40,6 +41,8 @@ class Crossings:
     points: Floats
     on_surface: Bools
     compared: Bools
+
+    __repr__ = brief
 
     def __len__(self) -> int:
         return len(self.path_a)
@@ -99,6 +102,8 @@ class CellSides:
 
     d1: Floats
     d2: Floats
+
+    __repr__ = brief
 
 
 def cell_sides(paths: Paths, crossings: Crossings) -> CellSides:

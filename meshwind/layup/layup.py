@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Ints, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import unit
@@ -58,6 +59,8 @@ class Layup:
     quads: QuadMesh
     coverage: Coverage
     crossed: Paths
+
+    __repr__ = brief
 
     @property
     def initial(self) -> bool:

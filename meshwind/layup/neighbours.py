@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.path.apart import SEAM, both_ways, larger, measured
 from meshwind.path.paths import Paths
@@ -24,6 +25,8 @@ class Neighbours:
     particles: Ints
     distance: Floats
     largest: Floats
+
+    __repr__ = brief
 
 
 def neighbours(paths: Paths) -> Neighbours:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.vectors import TINY, unit
 from meshwind.layup.crossings import Crossings, own_crossings
@@ -31,6 +32,8 @@ class QuadMesh:
     on_surface: Bools
     left_out: tuple[int, ...] = ()
     note: str = ""
+
+    __repr__ = brief
 
     @property
     def euler(self) -> int:
@@ -117,6 +120,8 @@ class QuadQuality:
     warp: Floats
     inner: Bools
     convex: Bools
+
+    __repr__ = brief
 
     @property
     def convex_share(self) -> float:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.vectors import TINY, unit
 from meshwind.surface.evaluate import SV
@@ -41,6 +42,8 @@ class Windability:
     reach: Floats
     angle: Floats
     weight: Floats
+
+    __repr__ = brief
 
     @property
     def share(self) -> Floats:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from enum import IntEnum
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats
 from meshwind.surface.surface import Surface
 
@@ -111,6 +112,8 @@ class Trace:
     slip: float
     stop: Stop
     evaluations: int
+
+    __repr__ = brief
 
     def __len__(self) -> int:
         return len(self.points)

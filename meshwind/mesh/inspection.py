@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import ASSUMED, Unit
@@ -101,6 +102,8 @@ class Findings:
     units_from: str = ""
     warnings: tuple[str, ...] = ()
     part_size: Point = (0.0, 0.0, 0.0)
+
+    __repr__ = brief
 
 
 def inspect(

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.path.asked import Asked, Options
 from meshwind.path.friction import Friction, uniform
@@ -61,6 +62,8 @@ class Advice:
     friction: float = 0.0
     rougher: float = 0.0
     particles: int = 0
+
+    __repr__ = brief
 
     @property
     def text(self) -> str:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.path.friction import Friction
 
@@ -40,6 +41,8 @@ class Asked:
     initial: Floats | None
     options: Options
     turns: bool = True
+
+    __repr__ = brief
 
     def __len__(self) -> int:
         return len(self.start)

@@ -6,6 +6,7 @@ from functools import cache, cached_property
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.surface.surface import Surface
@@ -41,6 +42,8 @@ class Friction:
     """
 
     table: Floats
+
+    __repr__ = brief
 
     @cached_property
     def none(self) -> bool:

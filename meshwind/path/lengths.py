@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.lists import spread
 from meshwind.path.kernels.touchdown import touchdowns
@@ -29,6 +30,8 @@ class Lengths:
     max_gap: Floats
     max_slip: Floats
 
+    __repr__ = brief
+
 
 @dataclass(frozen=True)
 class Bridges:
@@ -46,6 +49,8 @@ class Bridges:
     max_gap: Floats
     resolved: Bools
     ends: Floats
+
+    __repr__ = brief
 
     def __len__(self) -> int:
         return len(self.path)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.vectors import TINY, unit
 from meshwind.path.asked import Asked
@@ -88,6 +89,8 @@ class OtherRests:
     shift: Floats
     moved: Floats
     most_shifted: float
+
+    __repr__ = brief
 
     @property
     def found(self) -> Bools:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.path.advice import Advice, advise
 from meshwind.path.asked import Asked
@@ -91,6 +92,8 @@ class Paths:
     friction: float
     counters: Counters
     asked: Asked | None = None
+
+    __repr__ = brief
 
     def __len__(self) -> int:
         return len(self.points)

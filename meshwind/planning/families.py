@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import TINY
@@ -42,6 +43,8 @@ class Families:
     start: Floats
     end: Floats
     family: Ints
+
+    __repr__ = brief
 
 
 def families(

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats
 from meshwind.core.defaults import PARTICLES, STEPS_PER_TURN
 from meshwind.core.errors import BadInputError
@@ -65,6 +66,8 @@ class Revolutions:
     square: float
     with_friction: float = 0.0
     with_opening: float = 0.0
+
+    __repr__ = brief
 
     @property
     def choice(self) -> float:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import TINY
@@ -49,6 +50,8 @@ class Spaced:
     partings: Ints
     gap: float
     widest: float
+
+    __repr__ = brief
 
     @property
     def parted(self) -> tuple[int, int]:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints
 
 TRAVEL = 5
@@ -55,6 +56,8 @@ class Blocks:
     time: Floats
     tension: Floats
     slip: Floats
+
+    __repr__ = brief
 
     def __len__(self) -> int:
         return len(self.time)

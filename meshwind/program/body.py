@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.vectors import TINY
 
@@ -30,6 +31,8 @@ class Body:
 
     x: Floats
     r: Floats
+
+    __repr__ = brief
 
     @property
     def radius(self) -> float:

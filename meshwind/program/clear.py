@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.vectors import unit
 from meshwind.mesh.geometry.facet_tree import FacetTree
@@ -32,6 +33,8 @@ class Obstacle:
     surface: FacetTree
     own: int
     sure: float
+
+    __repr__ = brief
 
     @property
     def held(self) -> bool:

@@ -5,6 +5,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from meshwind.core.brief import brief
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import nearest, read_toml
 
@@ -135,6 +136,8 @@ class Machine:
     eye: Eye = Eye()
     shaft: float = 0.0
     decimals: int | None = None
+
+    __repr__ = brief
 
     def axis(self, moves: str) -> Axis | None:
         """The axis that moves something, None if the machine has none."""

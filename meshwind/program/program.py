@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import millimetres
@@ -61,6 +62,8 @@ class Work:
     diagonal: float
     units: str = ""
     name: str = ""
+
+    __repr__ = brief
 
     @staticmethod
     def of(results: Results) -> "Work":
@@ -153,6 +156,8 @@ class Program:
     limiting: Ints
     remedies: tuple[str, ...] = ()
     backwards: bool = False
+
+    __repr__ = brief
 
     @property
     def eyes(self) -> Floats:

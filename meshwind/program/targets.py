@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.compile_ahead import compile_ahead
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import nearest
@@ -45,6 +46,8 @@ class Written:
     figures: dict[str, Any]
     notes: tuple[str, ...]
     texts: dict[str, ReadBack]
+
+    __repr__ = brief
 
     @property
     def sound(self) -> bool:

@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.vectors import TINY, dots, sizes, unit
 from meshwind.filament.course import Kind
@@ -51,6 +52,8 @@ class Track:
     passed: Ints
     path: Ints
     kind: Ints
+
+    __repr__ = brief
 
     def __len__(self) -> int:
         return len(self.motion)

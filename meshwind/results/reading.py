@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import reported_unit
@@ -52,6 +53,8 @@ class Results:
     folder: Path
     paths: Paths
     report: Report
+
+    __repr__ = brief
 
     @property
     def surface(self) -> Surface:

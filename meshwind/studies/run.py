@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic
 
+from meshwind.core.brief import brief
 from meshwind.core.errors import BadInputError
 from meshwind.core.processes import cores
 from meshwind.studies.charts import draw_tradeoffs
@@ -27,6 +28,8 @@ class Swept:
     rows: tuple[Row, ...]
     anew: int
     folder: Path
+
+    __repr__ = brief
 
     @property
     def settled(self) -> bool:

@@ -10,6 +10,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
+from meshwind.core.brief import brief
 from meshwind.core.errors import BadInputError
 from meshwind.core.option import options_of
 from meshwind.core.parsing import nearest, read_toml
@@ -78,6 +79,8 @@ class Study:
 
     cases: tuple[Case, ...]
     swept: tuple[str, ...]
+
+    __repr__ = brief
 
     def __len__(self) -> int:
         return len(self.cases)

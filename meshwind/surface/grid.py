@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.surface.evaluate import SU, SV
 from meshwind.surface.surface import Surface
@@ -41,6 +42,8 @@ class Grid:
     uv: Floats
     frames: Floats
     quads: Ints
+
+    __repr__ = brief
 
     @property
     def points(self) -> Floats:

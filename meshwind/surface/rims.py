@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline, PPoly
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats
 from meshwind.surface.evaluate import SU
 from meshwind.surface.surface import Surface
@@ -26,6 +27,8 @@ class Rim:
     passed: Floats
     ahead: PPoly
     shift: float
+
+    __repr__ = brief
 
     def parameters(self, share: Floats) -> Floats:
         """The u at shares (n,) of the length."""

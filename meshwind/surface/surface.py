@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, PicklableRecord, floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.threads import parallel_for
@@ -123,6 +124,8 @@ class Surface(PicklableRecord):
     error: FitError | None = None
     uncertainty: Floats | None = None
     threshold: float | None = None
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         points = floats(self.control_points, "control_points", -1, -1, 3)

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from meshwind.appearance.words import quantity
+from meshwind.core.brief import brief
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import AUTO
 from meshwind.core.progress import Progress, silent
@@ -40,6 +41,8 @@ class Layered:
     file: Path
     options: Options
     first: Settled | None = None
+
+    __repr__ = brief
 
 
 def lay_layers(

@@ -6,6 +6,7 @@ its help, configuration files, studies, `meshwind.wind` and meshwind.toml take t
 
 from dataclasses import dataclass, field, fields
 
+from meshwind.core.brief import brief
 from meshwind.core.defaults import FIT_TOLERANCE, OPENED_BY, PARTICLES, PATHS, REVOLUTIONS, SIDES, TURNAROUNDS
 from meshwind.core.errors import BadInputError
 from meshwind.core.option import option
@@ -223,6 +224,8 @@ class Options:
         default=AUTO,
         metadata=option("Turnaround at the end, likewise", FIBRES, metavar="KIND", words=(AUTO, *TURNAROUNDS)),
     )
+
+    __repr__ = brief
 
     def __post_init__(self) -> None:
         from meshwind.mesh.opening.choose_ends import parse_ends  # late: help shows these fields without loading NumPy

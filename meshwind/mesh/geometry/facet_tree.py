@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.kernel import njit
 from meshwind.core.threads import parallel_for
@@ -30,6 +31,8 @@ class FacetTree:
     corners: Floats
     numbers: Ints
     boxes: Floats
+
+    __repr__ = brief
 
     @staticmethod
     def of(vertices: Floats, faces: Ints) -> "FacetTree":

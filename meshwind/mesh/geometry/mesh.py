@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, PicklableRecord
 from meshwind.core.units import BY_DEFAULT, GIVEN, Unit
 
@@ -54,6 +55,8 @@ class Mesh(PicklableRecord):
     units_from: str = ""
     warnings: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+
+    __repr__ = brief
 
     @property
     def size(self) -> tuple[float, float, float]:
@@ -163,3 +166,5 @@ class Annulus(PicklableRecord):
     wall: Wall | None = None
     warnings: tuple[str, ...] = ()
     caps: tuple[bool, bool] = (False, False)
+
+    __repr__ = brief
