@@ -30,9 +30,10 @@ from meshwind.filament.polar_legs import Half
 from meshwind.filament.polar_rows import Stretch, evenly
 from meshwind.march.forward import marched
 from meshwind.program.machine import read_machine
-from meshwind.program.program import Program, Work, program
+from meshwind.program.program import Program, program
 from meshwind.program.rewinding.rewind import Ground, rewind
 from meshwind.program.texts import write_texts
+from meshwind.program.work import Work
 from meshwind.surface.surface import Surface
 
 DATA = Path(__file__).parents[1] / "data"

@@ -10,7 +10,7 @@ from meshwind.filament.course import Course, Kind, in_a_row, joined
 from meshwind.filament.filament import Filament
 from meshwind.layup.layup import assess
 from meshwind.mesh.geometry.mesh import Mesh
-from meshwind.program.program import Work
+from meshwind.program.work import Work
 from meshwind.results.filament_file import write_filaments
 from meshwind.results.report import RunFacts, report, write_report
 from meshwind.results.write import write_files

@@ -17,7 +17,8 @@ from meshwind.filament.filament import Filament
 from meshwind.program.axes import limits_of, moved
 from meshwind.program.blocks import Blocks
 from meshwind.program.machine import Eye, Machine, machine_names, read_machine
-from meshwind.program.program import Program, Work
+from meshwind.program.program import Program
+from meshwind.program.work import Work
 from meshwind.surface import Surface
 from meshwind.surface.evaluate import SU, SV
 from meshwind.surface.grid import Grid, grid

@@ -44,7 +44,7 @@ WITHIN = {
     "path": ["kernels", OWN],
     "program": [
         "blocks", "machine", "timing", "axes", "mandrel", "posts", "readback", "body", "track", "eye", "head", "clear",
-        "faults", "stepping", "hollows", "travel", "program", "rewinding", OWN,
+        "faults", "stepping", "hollows", "travel", "work", "program", "rewinding", OWN,
     ],
 }  # fmt: skip
 """The same for the packages within a package; what the package itself shows, its __init__, comes after all of them."""

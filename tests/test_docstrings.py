@@ -31,7 +31,7 @@ SPARED = {
 
 
 def documented() -> Iterator[tuple[str, Any]]:
-    """All public names with their objects, and the public methods and properties of public classes."""
+    """All public names with their objects, and the public methods and properties of public classes and their bases."""
     for name in mw.__all__:
         shown = getattr(mw, name)
         if inspect.ismodule(shown):
@@ -39,9 +39,10 @@ def documented() -> Iterator[tuple[str, Any]]:
             yield from ((f"{name}.{f.__name__}", f) for f in functions if not f.__name__.startswith("_"))
             continue
         yield name, shown
-        for member, value in vars(shown).items() if inspect.isclass(shown) else ():
-            if not member.startswith("_") and (inspect.isfunction(value) or _as_property(value)):
-                yield f"{name}.{member}", value
+        for kind in shown.__mro__ if inspect.isclass(shown) else ():
+            for member, value in vars(kind).items() if kind.__module__.startswith("meshwind") else ():
+                if not member.startswith("_") and (inspect.isfunction(value) or _as_property(value)):
+                    yield f"{kind.__name__ if kind is not shown else name}.{member}", value
 
 
 def _as_property(value: object) -> Any:

@@ -40,7 +40,7 @@ def test_lines_carry_their_data(written: tuple[Path, list[str]], name: str, caps
     assert np.array_equal(path, np.repeat(np.arange(count), each - 1))
     assert np.array_equal(segments // each, np.stack([path, path], axis=1).astype(int))
     steps = np.linalg.norm(np.diff(read.points[segments], axis=1)[:, 0], axis=1)
-    assert np.bincount(path.astype(int), steps) == pytest.approx(lines.cell_data["length"])
+    assert np.bincount(path.astype(int), steps) == pytest.approx(lines.line_data["length"])
     assert np.array_equal(read.point_data["slip"].ravel(), lines.point_data["slip"], equal_nan=True)
     assert np.array_equal(read.point_data["normal"], lines.point_data["normal"])
     assert np.array_equal(read.point_data["uv_0"].ravel(), lines.point_data["uv"][:, 0])

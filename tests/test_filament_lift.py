@@ -24,7 +24,8 @@ from meshwind.filament.section import section
 from meshwind.path.winding_angle import axes, headings, winding_angle
 from meshwind.program.faults import SPAN
 from meshwind.program.machine import read_machine
-from meshwind.program.program import Work, program
+from meshwind.program.program import program
+from meshwind.program.work import Work
 from meshwind.surface import Surface
 from meshwind.surface.interpolate import interpolate
 from meshwind.workflow.notes import about_filament

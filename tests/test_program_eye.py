@@ -21,9 +21,10 @@ from meshwind.program.body import Body, body_round, to_radius
 from meshwind.program.eye import Solver, Spans, at_radius, axes, on_body, taut
 from meshwind.program.machine import Machine, read_machine
 from meshwind.program.mandrel import Mandrel, mandrel_of
-from meshwind.program.program import Work, program
+from meshwind.program.program import program
 from meshwind.program.stepping import Steps, stepped
 from meshwind.program.track import AIR, PIVOT, track
+from meshwind.program.work import Work
 
 many = settings(max_examples=100, deadline=None, derandomize=True, database=None, phases=[Phase.generate])
 few = settings(max_examples=25, deadline=None, derandomize=True, database=None)

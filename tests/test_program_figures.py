@@ -23,9 +23,10 @@ from meshwind.program.posts.dialect import fitted
 from meshwind.program.posts.dialects import DIALECTS
 from meshwind.program.posts.header import Job
 from meshwind.program.posts.writer import program_text
-from meshwind.program.program import Work, program
+from meshwind.program.program import program
 from meshwind.program.readback.compare import read_text
 from meshwind.program.timing import Limits, timed
+from meshwind.program.work import Work
 
 RADIUS, EYE, HALF, CAP = 152.74, 172.0, 250.0, 98.4436
 CIRCUITS, ADVANCE, POLE = 233, 427.98283, 37.21

@@ -21,11 +21,18 @@ from meshwind.core.errors import BadInputError
 from meshwind.program.axes import limits_of
 from meshwind.program.machine import DEFAULT, FEEDS, MOVES, Eye, machine_names, machine_of, read_machine
 from meshwind.program.posts.dialects import DIALECTS
-from meshwind.program.program import Program, Work, program
+from meshwind.program.program import Program, program
 from meshwind.program.robot import APPROACH, robot_poses
 from meshwind.program.seen import SEEN
-from meshwind.program.targets import COLUMNS, TARGETS, write_program
+from meshwind.program.targets import TARGETS, write_program
 from meshwind.program.timing import Limits, timed
+from meshwind.program.work import Work
+
+COLUMNS = (
+    "index,layer,circuit,pass,path,kind,arc_length,x,y,z,tx,ty,tz,nx,ny,nz,free_length,eye_x,eye_r,mandrel_deg,roll_deg,"
+    "time,tension,slip"
+)
+"""What readers of program.csv rely on."""
 
 MINE = """
 words = "mine"

@@ -14,8 +14,9 @@ from meshwind.filament.ends import LayerPlan
 from meshwind.filament.filament import filaments_of
 from meshwind.program.blocks import Blocks
 from meshwind.program.machine import read_machine
-from meshwind.program.program import Program, Work, program
+from meshwind.program.program import Program, program
 from meshwind.program.rewinding.rewind import Ground, rewind
+from meshwind.program.work import Work
 
 MAJOR, MINOR = 80.0, 20.0
 FRICTION = 0.2

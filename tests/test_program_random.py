@@ -7,7 +7,8 @@ from hypothesis import HealthCheck, Phase, given, settings
 from program_random import holds, machines, works
 
 from meshwind.program.machine import Machine
-from meshwind.program.program import Work, program
+from meshwind.program.program import program
+from meshwind.program.work import Work
 
 COUNT = int(os.environ.get("MESHWIND_TEST_PROGRAMS", "25"))
 """A second for each."""

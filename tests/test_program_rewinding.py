@@ -16,8 +16,9 @@ from meshwind.filament.ends import LayerPlan
 from meshwind.filament.filament import filaments_of
 from meshwind.program.faults import LIES
 from meshwind.program.machine import read_machine
-from meshwind.program.program import Program, Work, program
+from meshwind.program.program import Program, program
 from meshwind.program.rewinding.rewind import Ground, rewind
+from meshwind.program.work import Work
 from meshwind.surface import Surface
 
 LATHE = read_machine("lathe-4")

@@ -30,10 +30,11 @@ from meshwind.program.hits_scene import hits_scene
 from meshwind.program.machine import read_machine
 from meshwind.program.machine_scene import frame_times, machine_scene, shots_of
 from meshwind.program.page import program_data
-from meshwind.program.program import Program, Work, program
+from meshwind.program.program import Program, program
 from meshwind.program.seen import SEEN, write_seen
 from meshwind.program.targets import write_program
 from meshwind.program.track import track
+from meshwind.program.work import Work
 from meshwind.results.reading import read_results
 
 

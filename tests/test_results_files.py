@@ -101,7 +101,7 @@ def test_paths(written: tuple[Layup, Path]) -> None:
         assert poly.point_data[name].dtype == np.float64, name
     assert poly.point_data["on_surface"].dtype == np.uint8
     assert np.array_equal(poly.point_data["on_surface"], paths.on_surface.ravel())
-    names = {"path", "family", "length", "fibre_length", "bridged_length", "max_gap", "max_slip", "status"}
+    names = {"path", "family", "length", "fibre_length", "bridged_length", "max_gap", "max_slip", "status", "residual"}
     assert set(poly.cell_data.keys()) == names
     steps = np.linalg.norm(np.diff(poly.points.reshape(p, n, 3), axis=1), axis=2)
     assert np.allclose(poly.cell_data["length"], steps.sum(axis=1), rtol=1e-12)

@@ -7,12 +7,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshwind.core.errors import BadInputError
 
+Array: TypeAlias = NDArray[Any]
 Floats: TypeAlias = NDArray[np.float64]
 Ints: TypeAlias = NDArray[np.int64]
 Bools: TypeAlias = NDArray[np.bool_]
 
 
-def frozen(array: NDArray[Any]) -> NDArray[Any]:
+def frozen(array: Array) -> Array:
     """Return a C-contiguous, read-only view or copy of `array`, as results are immutable."""
     view = np.ascontiguousarray(array).view()
     view.setflags(write=False)

@@ -1,22 +1,21 @@
 """The results as meshes in other formats, by meshio; what a format cannot hold is reported."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.geometry import Block, Data
 from meshwind.core.units import lengths_in
 from meshwind.exporting.xdmf import write_xdmf
 from meshwind.results.meshio_files import write_meshio
 from meshwind.results.reading import Results, read_surface_grid
 from meshwind.results.schema import BRIDGES, CROSSINGS, FORMATS_FOLDER, PATHS, QUADS, SURFACE
-from meshwind.results.vtk_reading import Faces, Lines, read_faces, read_lines, read_vertices
-
-Data: TypeAlias = Mapping[str, NDArray[Any]]
+from meshwind.results.vtk_reading import read_faces, read_lines, read_vertices
 
 
 @dataclass(frozen=True)
@@ -59,18 +58,15 @@ def _parts(results: Results) -> list[_Part]:
     return parts
 
 
-def _of_faces(name: str, read: Faces, units: str) -> _Part:
-    cells = tuple((kind, block) for kind, block in (("quad", read.quads), ("triangle", read.triangles)) if len(block))
-    return _Part(name, read.points, cells or (_vertices(read.points),), read.point_data, {}, units)
+def _of_faces(name: str, read: Block, units: str) -> _Part:
+    return _Part(name, read.points, tuple(read.cells), read.point_data, {}, units)
 
 
-def _of_lines(name: str, read: Lines, units: str) -> _Part:
+def _of_lines(name: str, read: Block, units: str) -> _Part:
     """Polylines as line cells: each segment carries the data of its line."""
-    sizes = np.diff(read.starts)
-    line = np.repeat(np.arange(len(sizes)), np.maximum(sizes - 1, 0))
-    first = np.delete(np.arange(len(read.points)), read.starts[1:] - 1) if len(sizes) else np.zeros(0, dtype=np.int64)
-    data = {key: values[line] for key, values in read.cell_data.items()}
-    return _Part(name, read.points, (("line", np.stack([first, first + 1], axis=1)),), read.point_data, data, units)
+    segments, line = read.segments
+    data = {key: values[line] for key, values in read.line_data.items()}
+    return _Part(name, read.points, (("line", segments),), read.point_data, data, units)
 
 
 def _vertices(points: Floats) -> tuple[str, Ints]:

@@ -15,6 +15,7 @@ from meshwind.appearance.view import best_view
 from meshwind.appearance.words import quantity
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.errors import BadInputError
+from meshwind.core.geometry import Block
 from meshwind.exporting.packing import Packed, Stops, packed, stops
 from meshwind.exporting.viewer_filament import FilamentData, filament_data, gear_of
 from meshwind.exporting.viewer_program import ProgramData, Wound
@@ -22,7 +23,6 @@ from meshwind.path.lengths import bridged_share, bridging, lengths
 from meshwind.results.laminate_reading import read_laminate
 from meshwind.results.reading import Results, read_surface_grid
 from meshwind.results.schema import NORMAL, UV, VIEWER
-from meshwind.results.vtk_reading import Faces
 
 _MOST = 12_000
 """Number of points of the surface that a browser turns smoothly without a graphics card."""
@@ -130,7 +130,7 @@ def page_data(results: Results, wound: Wound | None = None) -> PageData:
     }
 
 
-def _surface(grid: Faces, results: Results) -> SurfaceData:
+def _surface(grid: Block, results: Results) -> SurfaceData:
     """The surface, thinned to about `_MOST` points, with its maps."""
     uv = grid.point_data[UV]
     nv = int((uv[:, 0] == uv[0, 0]).sum())
@@ -221,7 +221,7 @@ def _lines(results: Results, kind: str, family: int, words: str, mine: Bools, wa
     }
 
 
-def _camera(grid: Faces, results: Results, beside: Floats) -> CameraData:
+def _camera(grid: Block, results: Results, beside: Floats) -> CameraData:
     """The camera, as on the pictures, but with the part in the middle; beside (k, 3): points beyond the part."""
     nv = int((grid.point_data[UV][:, 0] == grid.point_data[UV][0, 0]).sum())
     axis = grid.points.reshape(-1, nv, 3).mean(axis=0)

@@ -1,19 +1,27 @@
 """One filament in order of winding, over one layer or several."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.geometry import Block, Data, Geometric, joined
+from meshwind.core.table import data_frame
 from meshwind.filament.closing import ClosedLayer
 from meshwind.filament.course import Course, in_a_row
 from meshwind.filament.laminate import LaidLayer, Laminate
 
+if TYPE_CHECKING:
+    import pandas
+
 
 @dataclass(frozen=True)
-class Filament:
+class Filament(Geometric):
     """A filament in order of winding, with the layer of each of its n points, and the laminate's thickness below it."""
 
     course: Course
@@ -21,6 +29,40 @@ class Filament:
     thickness: Floats
 
     __repr__ = brief
+
+    @property
+    def block(self) -> Block:
+        """The polyline, with the fields of filament.vtp; angles in degrees."""
+        course = self.course
+        point_data: Data = {
+            "kind": course.kind.astype(np.uint8),
+            "layer": self.layer,
+            "circuit": course.circuit,
+            "pass": course.passed,
+            "path": course.path,
+            "arc_length": course.arc_length,
+            "angle": np.degrees(course.angle),
+            "slip": course.slip,
+            "normal": course.normal,
+            "thickness": self.thickness,
+        }
+        length = course.arc_length[-1:]
+        return Block(
+            course.points,
+            np.array([0, len(course)]),
+            point_data=point_data,
+            line_data={"filament": np.zeros(1, dtype=np.int64), "length": length},
+        )
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """The points as a table for pandas, a row each, with the fields of filament.vtp."""
+        return data_frame(self.block.columns())
+
+
+def filaments_block(filaments: Sequence[Filament]) -> Block:
+    """All filaments, a polyline each."""
+    block = joined([each.block for each in filaments])
+    return replace(block, line_data={**block.line_data, "filament": np.arange(len(filaments))})
 
 
 def backwards(filaments: Sequence[Filament]) -> tuple[Filament, ...]:

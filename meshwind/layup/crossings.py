@@ -6,6 +6,7 @@ import numpy as np
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.core.geometry import Block, Geometric
 from meshwind.core.vectors import TINY
 from meshwind.layup.curve_meetings import curve_meetings
 from meshwind.layup.meetings import Meetings, meet
@@ -22,7 +23,7 @@ _NEXT = 0.5
 
 
 @dataclass(frozen=True)
-class Crossings:
+class Crossings(Geometric):
     """The k crossings of family +1 (path_a) with family -1 (path_b), ordered by path_a, then along it.
 
     path_a, path_b (k,) indices of paths; t_a, t_b (k,) where their chords cross, as fractional particle indices;
@@ -43,6 +44,19 @@ class Crossings:
     compared: Bools
 
     __repr__ = brief
+
+    @property
+    def block(self) -> Block:
+        """The points, with the fields of crossings.vtp; angles in degrees."""
+        data = {
+            "path_a": self.path_a,
+            "path_b": self.path_b,
+            "angle": np.degrees(self.angle),
+            "quality": np.abs(np.cos(self.angle)),
+            "uv": self.uv,
+            "on_surface": self.on_surface,
+        }
+        return Block(self.points, point_data=data)
 
     def __len__(self) -> int:
         return len(self.path_a)

@@ -6,6 +6,7 @@ import numpy as np
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.core.geometry import Block, Geometric
 from meshwind.core.vectors import TINY, unit
 from meshwind.layup.crossings import Crossings, own_crossings
 from meshwind.layup.faces import split, trace
@@ -17,7 +18,7 @@ _ON_RIM = 1e-9
 
 
 @dataclass(frozen=True)
-class QuadMesh:
+class QuadMesh(Geometric):
     """An annulus of quads, with triangles at the rims; corners run counterclockwise seen from outside.
 
     points (k, 3); uv (k, 2) with u in [0, 1); quads (q, 4) and triangles (t, 3) indices of points; on_surface
@@ -34,6 +35,12 @@ class QuadMesh:
     note: str = ""
 
     __repr__ = brief
+
+    @property
+    def block(self) -> Block:
+        """The faces, with the fields of quads.vtu."""
+        data = {"uv": self.uv, "on_surface": self.on_surface}
+        return Block(self.points, quads=self.quads, triangles=self.triangles, point_data=data)
 
     @property
     def euler(self) -> int:

@@ -3,8 +3,10 @@
 The polyline through the particles is shorter than the fibre itself, whose length `Paths.length` gives.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, fields
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -12,7 +14,9 @@ from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.lists import spread
 from meshwind.path.kernels.touchdown import touchdowns
-from meshwind.path.paths import Paths
+
+if TYPE_CHECKING:
+    from meshwind.path.paths import Paths
 
 
 @dataclass(frozen=True)
@@ -55,7 +59,7 @@ class Bridges:
     def __len__(self) -> int:
         return len(self.path)
 
-    def where(self, chosen: Bools) -> "Bridges":
+    def where(self, chosen: Bools) -> Bridges:
         """Some of the spans (b,)."""
         return Bridges(*(frozen(getattr(self, field.name)[chosen]) for field in fields(self)))
 

@@ -1,19 +1,28 @@
 """Taut paths, each with its certificate."""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.core.geometry import Block, Geometric
+from meshwind.core.table import data_frame
 from meshwind.path.advice import Advice, advise
 from meshwind.path.asked import Asked
+from meshwind.path.blocks import paths_block, paths_table
 from meshwind.path.kernels.status import Status as Status
 from meshwind.path.length import Laid, Measured, measured
+from meshwind.path.one_path import OnePath
 from meshwind.path.other_rests import OtherRests, look_for_other_rests
 from meshwind.surface.surface import Surface
+
+if TYPE_CHECKING:
+    import pandas
 
 SLID = 2e-4
 """What a length may be off by under friction, over itself, as the slide's increments decide where a fibre stops.
@@ -34,7 +43,7 @@ class Counters:
 
 
 @dataclass(frozen=True)
-class Paths:
+class Paths(Geometric):
     """Taut paths on one surface: p paths of n particles each.
 
     Attributes
@@ -93,10 +102,58 @@ class Paths:
     counters: Counters
     asked: Asked | None = None
 
-    __repr__ = brief
+    def __repr__(self) -> str:
+        at_rest = int((self.status == Status.CONVERGED).sum())
+        return f"<meshwind Paths: {len(self)} paths of {self.gap.shape[1]} particles, {at_rest} at rest>"
 
     def __len__(self) -> int:
         return len(self.points)
+
+    def __iter__(self) -> Iterator[OnePath]:
+        return (OnePath(self, number) for number in range(len(self)))
+
+    @overload
+    def __getitem__(self, chosen: int) -> OnePath: ...
+    @overload
+    def __getitem__(self, chosen: slice | Bools | Ints) -> Paths: ...
+    def __getitem__(self, chosen: int | slice | Bools | Ints) -> OnePath | Paths:
+        if isinstance(chosen, int | np.integer):
+            return OnePath(self, range(len(self))[int(chosen)])
+        return self.subset(np.arange(len(self))[chosen])
+
+    @property
+    def block(self) -> Block:
+        """The polylines, with the fields of paths.vtp."""
+        return paths_block(self)
+
+    def to_dataframe(self, of: str = "paths") -> pandas.DataFrame:
+        """Give figures to pandas.
+
+        Parameters
+        ----------
+        of : {"paths", "points"}, default "paths"
+            What has a row: each path, or each particle of each path.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns named as the fields of paths.vtp; lengths in the surface's units.
+
+        Raises
+        ------
+        BadInputError
+            If `of` is another word, or pandas is not installed.
+
+        Examples
+        --------
+        >>> import meshwind as mw
+        >>> tube = mw.shapes.cylinder(radius=1.0, length=3.0)
+        >>> paths = mw.solve(tube, start=[(0.0, 0.0)], end=[(0.5, 1.0)], particles=101)
+        >>> paths.to_dataframe()[["path", "outcome", "max_gap"]]
+           path    outcome  max_gap
+        0     0  converged      0.0
+        """
+        return data_frame(paths_table(self, of))
 
     @cached_property
     def _measured(self) -> Measured:
@@ -130,7 +187,7 @@ class Paths:
         """
         return self._measured.off
 
-    def subset(self, chosen: Bools | Ints) -> "Paths":
+    def subset(self, chosen: Bools | Ints) -> Paths:
         """Select paths.
 
         Parameters
@@ -156,7 +213,7 @@ class Paths:
         asked = self.asked.rows(chosen) if self.asked is not None and len(self.asked) == len(self) else None
         return replace(self, asked=asked, **kept)
 
-    def joined(self, other: "Paths") -> "Paths":
+    def joined(self, other: Paths) -> Paths:
         """Join two batches on one surface.
 
         Parameters

@@ -6,6 +6,7 @@ import numpy as np
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.geometry import Data
 
 TRAVEL = 5
 """Kind of a block in which the fibre is cut, and the eye goes to where the next filament is tied on."""
@@ -82,3 +83,19 @@ class Blocks:
     def chosen(self, which: slice | Ints) -> "Blocks":
         """Some of the blocks."""
         return Blocks(*(getattr(self, each.name)[which] for each in fields(Blocks)))
+
+
+def columns(blocks: Blocks) -> Data:
+    """The columns of program.csv, in their order."""
+    vectors = zip(("x", "t", "n"), (blocks.point, blocks.tangent, blocks.normal), strict=True)
+    apart = {
+        axis if name == "x" else f"{name}{axis}": values[:, k]
+        for name, values in vectors
+        for k, axis in enumerate("xyz")
+    }
+    return {
+        "index": np.arange(len(blocks)), "layer": blocks.layer, "circuit": blocks.circuit, "pass": blocks.passed,
+        "path": blocks.path, "kind": blocks.kind, "arc_length": blocks.arc_length, **apart,
+        "free_length": blocks.free_length, "eye_x": blocks.eye_x, "eye_r": blocks.eye_r, "mandrel_deg": blocks.mandrel,
+        "roll_deg": blocks.roll, "time": blocks.time, "tension": blocks.tension, "slip": blocks.slip,
+    }  # fmt: skip

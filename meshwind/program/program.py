@@ -1,19 +1,21 @@
 """A program from the filaments of a run: eye, blocks, time and what is wrong with it."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
-from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
-from meshwind.core.units import millimetres
-from meshwind.filament.filament import Filament
+from meshwind.core.geometry import Block, Geometric
+from meshwind.core.table import data_frame
 from meshwind.program.axes import limits_of, timing_of
-from meshwind.program.blocks import TRAVEL, Blocks
+from meshwind.program.blocks import TRAVEL, Blocks, columns
 from meshwind.program.body import Body, body_round
-from meshwind.program.clear import Obstacle, Shaft, obstacle
+from meshwind.program.clear import Shaft
 from meshwind.program.eye import LONGEST, Poses, Solver, Spans, at_radius, on_body
 from meshwind.program.faults import EYE, SPAN, Fault, collisions, unreachable
 from meshwind.program.head import frames, head_of, within
@@ -23,9 +25,10 @@ from meshwind.program.mandrel import Mandrel, mandrel_of
 from meshwind.program.stepping import Steps, smooth, stepped
 from meshwind.program.track import Track, track
 from meshwind.program.travel import in_a_row
-from meshwind.results.reading import Results
-from meshwind.surface.grid import Grid, grid
-from meshwind.surface.surface import Surface
+from meshwind.program.work import Work
+
+if TYPE_CHECKING:
+    import pandas
 
 CLEARANCE = 0.05
 """Distance of the eye from part and shaft, over the part's diagonal, where the machine's file gives none."""
@@ -42,68 +45,7 @@ _LONGER = 3.0
 
 
 @dataclass(frozen=True)
-class Work:
-    """What is to be wound.
-
-    Attributes
-    ----------
-    filaments : tuple of Filament
-        The filaments, in order of winding.
-    surface : Surface
-        The bare part.
-    diagonal : float
-        Diagonal of the part.
-    units, name : str
-        Unit of length, "" where it is not known, and the part's name.
-    """
-
-    filaments: tuple[Filament, ...]
-    surface: Surface
-    diagonal: float
-    units: str = ""
-    name: str = ""
-
-    __repr__ = brief
-
-    @staticmethod
-    def of(results: Results) -> "Work":
-        """What a run's folder has to be wound; raises BadInputError if it holds no filament."""
-        if not results.filaments:
-            raise BadInputError(f"{results.folder} holds no filament; wind it with `meshwind wind MESH --continuous`")
-        return Work(results.filaments, results.surface, results.diagonal, results.units, results.name)
-
-    @cached_property
-    def skin(self) -> Grid:
-        """The bare part on a grid."""
-        return grid(self.surface)
-
-    @cached_property
-    def bare(self) -> Obstacle:
-        """The part as spans may not meet it, without a shaft."""
-        return obstacle(self.skin, self.diagonal)
-
-    def blocked(self, mandrel: Mandrel, shaft: Shaft) -> Obstacle:
-        """The same with a shaft on the axis."""
-        return obstacle(self.skin, self.diagonal, (mandrel, shaft)) if shaft.radius > 0.0 else self.bare
-
-    @property
-    def scale(self) -> float:
-        """Millimetres in the unit of length."""
-        return millimetres(self.units)
-
-    @property
-    def layers(self) -> int:
-        """Number of layers."""
-        return 1 + max(int(each.layer.max()) for each in self.filaments)
-
-    @property
-    def turnable(self) -> bool:
-        """Whether each filament may be wound from its end: none holds several layers, of which one lies on another."""
-        return all(int(each.layer.min()) == int(each.layer.max()) for each in self.filaments)
-
-
-@dataclass(frozen=True)
-class Program:
+class Program(Geometric):
     """A program.
 
     Attributes
@@ -158,6 +100,16 @@ class Program:
     backwards: bool = False
 
     __repr__ = brief
+
+    @property
+    def block(self) -> Block:
+        """The way of the eye as a polyline, with the columns of program.csv for each block."""
+        data = {name: values for name, values in columns(self.blocks).items() if name not in ("x", "y", "z")}
+        return Block(self.eyes, np.array([0, len(self.blocks)]), point_data=data)
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """The blocks as a table for pandas, a row each, with the columns of program.csv."""
+        return data_frame(columns(self.blocks))
 
     @property
     def eyes(self) -> Floats:

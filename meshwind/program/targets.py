@@ -15,24 +15,21 @@ from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import nearest
 from meshwind.core.units import UNKNOWN, millimetres
 from meshwind.core.version import version
-from meshwind.program.blocks import TRAVEL
+from meshwind.program.blocks import TRAVEL, columns
 from meshwind.program.machine import DEFAULT, read_machine
 from meshwind.program.posts.dialects import DIALECTS
-from meshwind.program.program import Program, Work, program
+from meshwind.program.program import Program, program
 from meshwind.program.readback.compare import ReadBack
 from meshwind.program.rewinding.rewind import Ground, rewind
 from meshwind.program.robot import HEADER, LEGEND, rows
 from meshwind.program.seen import SECONDS, SEEN, check, write_seen
 from meshwind.program.texts import write_texts
+from meshwind.program.work import Work
 from meshwind.results.folder import beside
 from meshwind.results.reading import read_results
 from meshwind.results.report import plain
 from meshwind.results.schema import POSES, PROGRAM_CSV, PROGRAM_JSON
 
-COLUMNS = (
-    "index,layer,circuit,pass,path,kind,arc_length,x,y,z,tx,ty,tz,nx,ny,nz,free_length,eye_x,eye_r,mandrel_deg,roll_deg,"
-    "time,tension,slip"
-)
 Writer: TypeAlias = Callable[[Path, Program], list[str]]
 """Writes into an existing folder; returns what the user should know."""
 
@@ -156,15 +153,11 @@ def _stretches(back: Any) -> Any:
 
 def _csv(folder: Path, made: Program) -> list[str]:
     """Write program.csv."""
-    blocks = made.blocks
-    table = np.column_stack([
-        np.arange(len(blocks)), blocks.layer, blocks.circuit, blocks.passed, blocks.path, blocks.kind,
-        blocks.arc_length, blocks.point, blocks.tangent, blocks.normal, blocks.free_length, blocks.eye_x, blocks.eye_r,
-        blocks.mandrel, blocks.roll, blocks.time, blocks.tension, blocks.slip,
-    ])  # fmt: skip
+    held = columns(made.blocks)
+    table = np.column_stack(list(held.values()))
     formats = 6 * ["%d"] + (table.shape[1] - 6) * ["%.12g"]
     with (folder / PROGRAM_CSV).open("w", encoding="ascii") as file:
-        np.savetxt(file, table, fmt=formats, delimiter=",", header=COLUMNS, comments="")
+        np.savetxt(file, table, fmt=formats, delimiter=",", header=",".join(held), comments="")
     return []
 
 

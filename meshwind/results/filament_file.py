@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from meshwind.core.cast import Floats, frozen
+from meshwind.core.cast import frozen
 from meshwind.core.errors import BadInputError
 from meshwind.filament.course import Course
-from meshwind.filament.filament import Filament
+from meshwind.filament.filament import Filament, filaments_block
 from meshwind.results import schema
 from meshwind.results.vtk_files import write_lines
 from meshwind.results.vtk_reading import read_lines
@@ -16,27 +16,7 @@ from meshwind.results.vtk_reading import read_lines
 
 def write_filaments(path: Path, filaments: Sequence[Filament], units: str = "") -> None:
     """Write one polyline a filament; angles in degrees, lengths along the polyline from the filament's start."""
-    courses = [each.course for each in filaments]
-    starts = np.concatenate([[0], np.cumsum([len(each) for each in courses])])
-    arc = [each.arc_length for each in courses]
-
-    def all_of(name: str) -> Floats:
-        return np.concatenate([getattr(each, name) for each in courses])
-
-    point_data = {
-        schema.KIND: all_of("kind").astype(np.uint8),
-        schema.LAYER: np.concatenate([each.layer for each in filaments]),
-        schema.CIRCUIT: all_of("circuit"),
-        schema.PASS: all_of("passed"),
-        schema.PATH: all_of("path"),
-        schema.ARC_LENGTH: np.concatenate(arc),
-        schema.WINDING_ANGLE: np.degrees(all_of("angle")),
-        schema.SLIP: all_of("slip"),
-        schema.NORMAL: all_of("normal"),
-        schema.THICKNESS: np.concatenate([each.thickness for each in filaments]),
-    }
-    cell_data = {schema.FILAMENT_ID: np.arange(len(filaments)), schema.LENGTH: np.array([each[-1] for each in arc])}
-    write_lines(path, all_of("points"), starts, point_data, cell_data, units)
+    write_lines(path, schema.FILAMENT, filaments_block(filaments), units)
 
 
 def read_filaments(path: Path) -> list[Filament]:

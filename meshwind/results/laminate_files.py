@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshwind.core.cast import Floats
+from meshwind.core.geometry import Block
 from meshwind.core.units import MILLIMETRES, millimetres
 from meshwind.filament.joins import Strand
 from meshwind.filament.laminate import LaidLayer, Laminate
@@ -58,7 +59,7 @@ def _write_maps(path: Path, laminate: Laminate, units: str) -> None:
         fields = schema.layer_fields(number)
         data[fields.thickness] = thickness
         data[fields.angle] = np.degrees(_angle(layer, on))
-    write_faces(path, on.points, on.quads, np.zeros((0, 3), dtype=np.int64), data, units)
+    write_faces(path, schema.LAMINATE, Block(on.points, quads=on.quads, point_data=data), units)
 
 
 def _angle(layer: LaidLayer, on: Grid) -> Floats:
@@ -90,7 +91,8 @@ def _write_fibres(path: Path, laminate: Laminate, units: str) -> None:
     starts = np.concatenate([[0], np.cumsum(np.concatenate(sizes))])
     point_data = {schema.UV: np.concatenate(uv), schema.NORMAL: np.concatenate(normals)}
     cell_data = {schema.LAYER: np.concatenate(layers), schema.FAMILY: np.concatenate(families)}
-    write_lines(path, np.concatenate(points), starts, point_data, cell_data, units)
+    block = Block(np.concatenate(points), starts, point_data=point_data, line_data=cell_data)
+    write_lines(path, schema.LAYER_FIBRES, block, units)
 
 
 def laminate_figures(laminate: Laminate, units: str = "") -> list[LayerFigures]:

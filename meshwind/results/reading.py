@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, floats, frozen
 from meshwind.core.errors import BadInputError
+from meshwind.core.geometry import Block
 from meshwind.core.units import reported_unit
 from meshwind.filament.filament import Filament
 from meshwind.layup.layup import Layup, assess
@@ -28,7 +29,7 @@ from meshwind.results.redesign_report_types import RedesignReport
 from meshwind.results.report_types import Report
 from meshwind.results.schema import EDITED, FILAMENT, PATHS, REPORT, SPLINE, SURFACE
 from meshwind.results.staging import settle
-from meshwind.results.vtk_reading import Faces, Lines, read_faces, read_lines
+from meshwind.results.vtk_reading import read_faces, read_lines
 from meshwind.results.wound_layers import WoundLayers, read_wound_layers
 from meshwind.surface.grid import grid
 from meshwind.surface.surface import FitError, Surface
@@ -46,8 +47,8 @@ _OFF, _OFF_GRID = 1e-5, 1e-9
 class Results:
     """Results of a run in `folder`: its paths on their fitted surface, and its report.
 
-    The files lack some fields of `paths`: `residual` is the report's largest for paths at rest and infinite for
-    others, and nothing is known of what was asked for, so that their advice names no numbers.
+    The files lack some fields of `paths`: nothing is known of what was asked for, so that their advice names no
+    numbers.
     """
 
     folder: Path
@@ -162,7 +163,7 @@ def read_report(folder: str | PathLike[str]) -> Report | RedesignReport:
     return _report(_folder(folder, (REPORT,)) / REPORT)
 
 
-def read_surface_grid(folder: Path, surface: Surface, trusted: bool = False) -> Faces:
+def read_surface_grid(folder: Path, surface: Surface, trusted: bool = False) -> Block:
     """Read surface.vtu, the grid of a folder's surface with its maps.
 
     trusted: the file was written by this process.  Raises BadInputError if it is damaged or of another surface.
@@ -264,7 +265,7 @@ def _paths(path: Path, surface: Surface, report: Report) -> Paths:
     lines = read_lines(path)
     sizes = np.diff(lines.starts)
     lacking: list[str] = [name for name in _AT_PARTICLES if name not in lines.point_data]
-    lacking += [name for name in _OF_PATHS if name not in lines.cell_data]
+    lacking += [name for name in _OF_PATHS if name not in lines.line_data]
     if lacking or not len(sizes) or (sizes != sizes[0]).any():
         raise _spoilt(path, f"no {' or '.join(lacking)} in it" if lacking else "its lines are not the paths of one run")
     held = {name: _shaped(lines, name, len(sizes)) for name in _AT_PARTICLES}
@@ -277,9 +278,10 @@ def _paths(path: Path, surface: Surface, report: Report) -> Paths:
         _OFF * surface.size
     ):
         raise _spoilt(path, f"its paths do not lie on the surface of {SPLINE}")
-    status = lines.cell_data[schema.STATUS].astype(np.int64)
+    status = lines.line_data[schema.STATUS].astype(np.int64)
     worst = _under(report, "paths", "max_residual")
-    residual = np.where(status == Status.CONVERGED, np.inf if worst is None else float(worst), np.inf)
+    known_for_all = np.where(status == Status.CONVERGED, np.inf if worst is None else float(worst), np.inf)
+    residual = np.asarray(lines.line_data.get(schema.RESIDUAL, known_for_all), dtype=np.float64)  # old runs have none
     return Paths(
         surface=surface,
         points=frozen(lines.points.reshape(len(sizes), -1, 3)),
@@ -288,7 +290,7 @@ def _paths(path: Path, surface: Surface, report: Report) -> Paths:
         gap=held[schema.GAP],
         normal=held[schema.NORMAL],
         slip=held[schema.SLIP],
-        family=frozen(lines.cell_data[schema.FAMILY].astype(np.int64)),
+        family=frozen(lines.line_data[schema.FAMILY].astype(np.int64)),
         status=frozen(status),
         residual=frozen(residual),
         friction=float(_under(report, "winding", "friction") or 0.0),
@@ -296,7 +298,7 @@ def _paths(path: Path, surface: Surface, report: Report) -> Paths:
     )
 
 
-def _shaped(lines: Lines, field: schema.Field, count: int) -> NDArray[Any]:
+def _shaped(lines: Block, field: schema.Field, count: int) -> NDArray[Any]:
     shape = (field.columns,) if field.columns > 1 else ()
     return frozen(lines.point_data[field].reshape(count, len(lines.points) // count, *shape))
 

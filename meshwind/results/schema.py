@@ -77,10 +77,11 @@ FIBRE_LENGTH = Field("fibre_length", LENGTHS)
 BRIDGED_LENGTH = Field("bridged_length", LENGTHS)
 MAX_SLIP = Field("max_slip")
 STATUS = Field("status", dtype="int64")
+RESIDUAL = Field("residual")
 PATHS = File(
     "paths.vtp",
     point_data=(UV, ON_SURFACE, GAP, NORMAL, SLIP, ARC_LENGTH),
-    cell_data=(PATH, FAMILY, LENGTH, FIBRE_LENGTH, BRIDGED_LENGTH, MAX_GAP, MAX_SLIP, STATUS),
+    cell_data=(PATH, FAMILY, LENGTH, FIBRE_LENGTH, BRIDGED_LENGTH, MAX_GAP, MAX_SLIP, STATUS, RESIDUAL),
 )
 RESOLVED = Field("resolved", dtype="uint8")
 """Whether a bridge lies further off the surface somewhere than the threshold, or than this may lie off the part."""

@@ -4,38 +4,37 @@ Points and fields carry the name of their unit as VTK's own key UNITS_LABEL; `un
 not known.
 """
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshwind.core.cast import Floats, Ints
-from meshwind.results.schema import Field
-
-Data: TypeAlias = Mapping[Field, NDArray[Any]]
+from meshwind.core.geometry import Block, Data
+from meshwind.results.schema import Field, File
 
 VERTEX, TRIANGLE, QUAD = 1, 5, 9
 """VTK's numbers of the cell types."""
 
 
-def write_lines(path: Path, points: Floats, starts: Ints, point_data: Data, cell_data: Data, units: str) -> None:
-    """Write polylines over consecutive points: line k holds points starts[k] to starts[k + 1] (l + 1,)."""
-    poly = _polydata(points, point_data, cell_data, units)
-    poly.SetLines(_cells(starts, np.arange(len(points))))
+def write_lines(path: Path, fields: File, block: Block, units: str) -> None:
+    """Write polylines; fields: what the file holds."""
+    poly = _polydata(fields, block, units)
+    poly.SetLines(_cells(block.starts, np.arange(len(block.points))))
     _write_polydata(path, poly)
 
 
-def write_vertices(path: Path, points: Floats, point_data: Data, units: str) -> None:
+def write_vertices(path: Path, fields: File, block: Block, units: str) -> None:
     """Write points, each with a vertex cell."""
-    poly = _polydata(points, point_data, {}, units)
-    poly.SetVerts(_cells(np.arange(len(points) + 1), np.arange(len(points))))
+    poly = _polydata(fields, block, units)
+    poly.SetVerts(_cells(np.arange(len(block.points) + 1), np.arange(len(block.points))))
     _write_polydata(path, poly)
 
 
-def write_faces(path: Path, points: Floats, quads: Ints, triangles: Ints, point_data: Data, units: str) -> None:
-    """Write an unstructured grid of quads (q, 4) and triangles (t, 3), in this order.
+def write_faces(path: Path, fields: File, block: Block, units: str) -> None:
+    """Write an unstructured grid of quads and triangles, in this order.
 
     Without faces the points become vertex cells: meshio cannot read a grid that has no cell.
     """
@@ -43,25 +42,25 @@ def write_faces(path: Path, points: Floats, quads: Ints, triangles: Ints, point_
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
     grid = vtkUnstructuredGrid()
-    grid.SetPoints(_points(points, units))
-    _add(grid.GetPointData(), point_data, units)
-    blocks = [(QUAD, quads), (TRIANGLE, triangles)]
-    if not len(quads) + len(triangles):
-        blocks = [(VERTEX, np.arange(len(points))[:, None])]
-    kinds = np.concatenate([np.full(len(block), kind, dtype=np.uint8) for kind, block in blocks])
-    sizes = np.concatenate([np.full(len(block), block.shape[1]) for _, block in blocks])
-    corners = np.concatenate([block.ravel() for _, block in blocks])
+    grid.SetPoints(_points(block.points, units))
+    _add(grid.GetPointData(), fields.point_data, block.point_data, units)
+    cells = [(QUAD, block.quads), (TRIANGLE, block.triangles)]
+    if not len(block.quads) + len(block.triangles):
+        cells = [(VERTEX, np.arange(len(block.points))[:, None])]
+    kinds = np.concatenate([np.full(len(corners), kind, dtype=np.uint8) for kind, corners in cells])
+    sizes = np.concatenate([np.full(len(corners), corners.shape[1]) for _, corners in cells])
+    corners = np.concatenate([corners.ravel() for _, corners in cells])
     grid.SetCells(_array(kinds), _cells(np.concatenate([[0], np.cumsum(sizes)]), corners))
     _write(vtkXMLUnstructuredGridWriter(), path, grid)
 
 
-def _polydata(points: Floats, point_data: Data, cell_data: Data, units: str) -> Any:
+def _polydata(fields: File, block: Block, units: str) -> Any:
     from vtkmodules.vtkCommonDataModel import vtkPolyData
 
     poly = vtkPolyData()
-    poly.SetPoints(_points(points, units))
-    _add(poly.GetPointData(), point_data, units)
-    _add(poly.GetCellData(), cell_data, units)
+    poly.SetPoints(_points(block.points, units))
+    _add(poly.GetPointData(), fields.point_data, block.point_data, units)
+    _add(poly.GetCellData(), fields.cell_data, block.line_data, units)
     return poly
 
 
@@ -101,9 +100,13 @@ def _cells(starts: Ints, corners: Ints) -> Any:
     return out
 
 
-def _add(attributes: Any, data: Data, units: str) -> None:
-    for field, values in data.items():
-        array = _array(values)
+def _add(attributes: Any, fields: Sequence[Field], data: Data, units: str) -> None:
+    """Add the arrays of the fields, in this order, and then those of other fields that the data are named by."""
+    others = [name for name in data if name not in fields and isinstance(name, Field)]
+    for field in (*fields, *others):
+        if field not in data:  # a surface that is exact has no uncertainty, one without a mesh no error
+            continue
+        array = _array(data[field])
         array.SetName(str(field))
         attributes.AddArray(_labelled(array, field.unit_in(units)))
 

@@ -1,7 +1,6 @@
 """VTK's XML files to arrays."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -10,41 +9,22 @@ from numpy.typing import NDArray
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
+from meshwind.core.geometry import Block
 from meshwind.mesh.io.in_subprocess import Arrays, in_subprocess
 
 POINT, CELL = "point: ", "cell: "
 """Prefixes of the names of point data and cell data among the arrays of a file."""
 
 
-@dataclass(frozen=True)
-class Lines:
-    """Polylines: line k goes through points starts[k] to starts[k + 1], with data of the points and of the lines."""
-
-    points: Floats
-    starts: Ints
-    point_data: dict[str, NDArray[Any]]
-    cell_data: dict[str, NDArray[Any]]
-
-
-@dataclass(frozen=True)
-class Faces:
-    """Quads (q, 4) and triangles (t, 3) between points (n, 3), with data of the points."""
-
-    points: Floats
-    quads: Ints
-    triangles: Ints
-    point_data: dict[str, NDArray[Any]]
-
-
-def read_lines(path: Path) -> Lines:
+def read_lines(path: Path) -> Block:
     """Read the polylines of a .vtp file; raises BadInputError if it cannot be read."""
     held = _held(lines_by_vtk, path)
     starts, corners, points = held["starts"], held["corners"], held["points"]
     if len(starts) < 2 or len(corners) == 0:
-        return Lines(points[:0], np.zeros(1, np.int64), _named(held, POINT), {})
+        return Block(points[:0], point_data=_named(held, POINT))
     if not np.array_equal(corners, np.arange(len(points))):
         raise BadInputError(f"{path} cannot be used (its lines share points); run `meshwind wind` again")
-    return Lines(points, starts, _named(held, POINT), _named(held, CELL))
+    return Block(points, starts, point_data=_named(held, POINT), line_data=_named(held, CELL))
 
 
 def read_vertices(path: Path) -> tuple[Floats, dict[str, NDArray[Any]]]:
@@ -53,7 +33,7 @@ def read_vertices(path: Path) -> tuple[Floats, dict[str, NDArray[Any]]]:
     return held["points"], _named(held, POINT)
 
 
-def read_faces(path: Path, trusted: bool = False) -> Faces:
+def read_faces(path: Path, trusted: bool = False) -> Block:
     """Read the quads and triangles of a .vtu file; raises BadInputError if it cannot be read.
 
     trusted: read it in this process, which saves starting another one.
@@ -64,7 +44,7 @@ def read_faces(path: Path, trusted: bool = False) -> Faces:
     fours, threes = (
         corners[starts[:-1][sizes == size][:, None] + np.arange(size)].reshape(-1, size) for size in (4, 3)
     )
-    return Faces(held["points"], fours, threes, _named(held, POINT))
+    return Block(held["points"], quads=fours, triangles=threes, point_data=_named(held, POINT))
 
 
 def _held(work: Callable[[Path], Arrays], path: Path) -> Arrays:

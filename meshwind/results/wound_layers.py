@@ -8,10 +8,11 @@ import numpy as np
 
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
+from meshwind.core.geometry import Block
 from meshwind.path.paths import Counters, Paths, Status
 from meshwind.results import schema
 from meshwind.results.laminate_types import LayerFigures
-from meshwind.results.vtk_reading import Lines, read_faces, read_lines
+from meshwind.results.vtk_reading import read_faces, read_lines
 from meshwind.surface.grid import grid
 from meshwind.surface.surface import Surface
 
@@ -100,10 +101,10 @@ def _nets(path: Path) -> Floats:
     return nets
 
 
-def _paths(folder: Path, lines: Lines, number: int, surface: Surface) -> Paths:
+def _paths(folder: Path, lines: Block, number: int, surface: Surface) -> Paths:
     """The fibres of layer `number`, from 0, on the surface below it."""
     source = folder / schema.LAYER_FIBRES
-    data: dict[str, Any] = {**lines.point_data, **lines.cell_data}
+    data: dict[str, Any] = {**lines.point_data, **lines.line_data}
     lacking = [name for name in (*schema.LAYER_FIBRES.point_data, *schema.LAYER_FIBRES.cell_data) if name not in data]
     if lacking:
         raise spoilt(source, f"no {' or '.join(lacking)} in it")

@@ -1,13 +1,19 @@
 """Grids of points in the parametric plane, and a surface sampled on one: for files, pictures and measurements."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.vectors import unit
 from meshwind.surface.evaluate import SU, SV
-from meshwind.surface.surface import Surface
+
+if TYPE_CHECKING:
+    from meshwind.surface.surface import Surface
 
 PER_SPAN, MOST = 4, 200
 """Samples per span of the spline, and at most in each direction, of the grid that files and pictures have."""
@@ -49,6 +55,11 @@ class Grid:
     def points(self) -> Floats:
         """Positions (k, 3)."""
         return np.ascontiguousarray(self.frames[:, 0])
+
+    @property
+    def normals(self) -> Floats:
+        """Outward unit normals (k, 3)."""
+        return unit(np.cross(self.frames[:, SU], self.frames[:, SV]))
 
 
 def grid(surface: Surface, per_span: int = PER_SPAN, most: int = MOST) -> Grid:

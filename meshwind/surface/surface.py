@@ -10,10 +10,12 @@ from numpy.typing import ArrayLike
 from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, PicklableRecord, floats, frozen
 from meshwind.core.errors import BadInputError
+from meshwind.core.geometry import Block, Geometric
 from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import unit
 from meshwind.surface import evaluate, tree
 from meshwind.surface.evaluate import DEGREE, SU, SV, Spline
+from meshwind.surface.grid import grid
 from meshwind.surface.tree import NO_TREE, Body, SearchTree
 
 if TYPE_CHECKING:
@@ -78,7 +80,7 @@ class FitError:
 
 
 @dataclass(frozen=True)
-class Surface(PicklableRecord):
+class Surface(PicklableRecord, Geometric):
     """Uniform bicubic B-spline surface s(u, v), with u in turns and v in [0, 1] from end to end.
 
     All surfaces are of this type: those that `fit` makes from a mesh, the analytic ones of `shapes`, and those read
@@ -135,6 +137,12 @@ class Surface(PicklableRecord):
         if extent and not _LEAST < extent < _MOST:
             raise BadInputError(f"a surface {extent:g} across is out of range; scale it to ordinary units")
         object.__setattr__(self, "control_points", frozen(points))
+
+    @property
+    def block(self) -> Block:
+        """The surface as the grid of quads that surface.vtu has, with parameters and outward unit normals."""
+        on = grid(self)
+        return Block(on.points, quads=on.quads, point_data={"uv": on.uv, "normal": on.normals})
 
     @property
     def spans(self) -> tuple[int, int]:

@@ -6,11 +6,12 @@ import numpy as np
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, PicklableRecord
+from meshwind.core.geometry import Block, Geometric
 from meshwind.core.units import BY_DEFAULT, GIVEN, Unit
 
 
 @dataclass(frozen=True)
-class Mesh(PicklableRecord):
+class Mesh(PicklableRecord, Geometric):
     """Triangle mesh of a part: manifold, in one piece, oriented outwards.
 
     `read` makes one and repairs it.  A mesh that is built from arrays must be sound already.
@@ -57,6 +58,11 @@ class Mesh(PicklableRecord):
     notes: tuple[str, ...] = ()
 
     __repr__ = brief
+
+    @property
+    def block(self) -> Block:
+        """The triangles."""
+        return Block(self.vertices, triangles=self.faces)
 
     @property
     def size(self) -> tuple[float, float, float]:
