@@ -123,7 +123,9 @@ if TYPE_CHECKING:
     from meshwind.path import solve as solve
     from meshwind.path.friction import Friction as Friction
     from meshwind.path.friction import friction_from as friction_from
+    from meshwind.path.one_path import OnePath as OnePath
     from meshwind.pictures.page import Page as Page
+    from meshwind.pictures.picture import Picture as Picture
     from meshwind.pictures.redesign_scene import draw_redesign as draw_redesign
     from meshwind.pictures.render import render as render
     from meshwind.planning import Families as Families
@@ -132,6 +134,8 @@ if TYPE_CHECKING:
     from meshwind.planning import read_pins as read_pins
     from meshwind.planning import space_out as space_out
     from meshwind.results.image_files import read_image as read_image
+    from meshwind.run.loaded import LoadedResult as LoadedResult
+    from meshwind.run.loaded import load as load
     from meshwind.run.redesign import write_redesign as write_redesign
     from meshwind.run.result import Result as Result
     from meshwind.run.wind import wind as wind
@@ -151,15 +155,16 @@ _HOME = {
     "Surface": "surface", "FitError": "surface", "fit": "surface", "shapes": "surface",
     "surface_image": "surface", "from_image": "surface", "read_image": "results.image_files",
     "trace": "march", "traces": "march", "Trace": "march", "Stop": "march",
-    "Paths": "path", "Status": "path", "solve": "path", "drag": "path",
+    "Paths": "path", "Status": "path", "solve": "path", "drag": "path", "OnePath": "path.one_path",
     "Friction": "path.friction", "friction_from": "path.friction",
     "Families": "planning", "families": "planning", "choose_revolutions": "planning", "read_pins": "planning",
     "space_out": "planning",
     "Layup": "layup", "assess": "layup", "windability": "layup",
     "read_cad": "exporting.cad_surface",
     "Redesign": "editing.redesign", "redesign": "editing.redesign", "write_redesign": "run.redesign",
-    "Result": "run.result", "wind": "run.wind",
-    "render": "pictures.render", "Page": "pictures.page", "draw_redesign": "pictures.redesign_scene",
+    "Result": "run.result", "wind": "run.wind", "load": "run.loaded", "LoadedResult": "run.loaded",
+    "render": "pictures.render", "Page": "pictures.page", "Picture": "pictures.picture",
+    "draw_redesign": "pictures.redesign_scene",
 }  # fmt: skip
 
 __all__ = sorted(_HOME)

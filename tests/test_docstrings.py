@@ -50,7 +50,7 @@ def _as_property(value: object) -> Any:
     return value.fget if isinstance(value, property) else value.func if isinstance(value, cached_property) else None
 
 
-DRAWS = {"render", "draw_redesign"}
+DRAWS = {"render", "draw_redesign", "Views.plot", "Picture", "Picture.save"}
 PUBLIC = dict(documented())
 WHOLE = [name for name, shown in PUBLIC.items() if not _as_property(shown)]
 """What has sections: classes, functions and methods."""

@@ -8,11 +8,11 @@ import pytest
 from scipy.spatial import cKDTree
 
 import meshwind as mw
-from meshwind.cli.summary import run_lines
 from meshwind.core.cast import Floats
 from meshwind.path import Paths
 from meshwind.path.other_rests import ASIDE, FAR, LOOSER
 from meshwind.path.paths import SLID
+from meshwind.run.summary import run_lines
 from meshwind.workflow.notes import about_other_rests
 
 DATA = Path(__file__).parents[1] / "data"

@@ -11,7 +11,6 @@ from test_workflow_notes import horned
 
 import meshwind as mw
 from meshwind.appearance.view import around, merit_view
-from meshwind.cli.summary import run_lines
 from meshwind.core.cast import Floats, frozen
 from meshwind.layup.layup import assess
 from meshwind.mesh import mesh_from
@@ -22,6 +21,7 @@ from meshwind.pictures.fit_scene import fit_scene
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.results.schema import FIT_PICTURE
+from meshwind.run.summary import run_lines
 from meshwind.surface import shapes
 from meshwind.surface.fitting.deviation import Deviation, deviation
 from meshwind.workflow.notes import Note

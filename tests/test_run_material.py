@@ -9,11 +9,11 @@ from layup_shapes import drawn
 from scipy.integrate import quad
 
 import meshwind as mw
-from meshwind.cli.layer_table import layer_table
-from meshwind.cli.summary import run_lines
 from meshwind.core.errors import BadInputError
 from meshwind.filament.levels import levels, station
 from meshwind.filament.stations import circuits_to_cover, covers, to_cover
+from meshwind.run.layer_table import layer_table
+from meshwind.run.summary import run_lines
 from meshwind.surface.interpolate import interpolate
 from meshwind.workflow.band_plan import band_plan
 from meshwind.workflow.covering import Laid, lay_until_covered

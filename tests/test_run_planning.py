@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import meshwind as mw
-from meshwind.cli.summary import run_lines
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import turns
 from meshwind.pictures.layup_scenes import unrolled_scene
@@ -16,6 +15,7 @@ from meshwind.pictures.revolutions_picture import draw_revolutions
 from meshwind.pictures.subject import subject_of
 from meshwind.planning.revolutions import choose_revolutions
 from meshwind.results.reading import read_results
+from meshwind.run.summary import run_lines
 from meshwind.surface import shapes
 
 DATA = Path(__file__).parents[1] / "data"

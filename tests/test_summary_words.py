@@ -7,14 +7,14 @@ import pytest
 from mesh_shapes import tube
 
 import meshwind as mw
-from meshwind.cli.layer_table import _covered
-from meshwind.cli.summary import _not_converged
 from meshwind.core.errors import BadInputError
 from meshwind.mesh import mesh_from
 from meshwind.mesh.geometry.fill_holes import fill_hole
 from meshwind.mesh.geometry.topology import loops
 from meshwind.mesh.opening.flat_ends import has_flat_ends
 from meshwind.results.report_types import Failure
+from meshwind.run.layer_table import _covered
+from meshwind.run.summary import _not_converged
 from meshwind.surface import FitError
 from meshwind.workflow.notes import about_fit
 

@@ -9,8 +9,8 @@ import pytest
 
 import meshwind as mw
 from meshwind.appearance.words import power, quantity, ratio
-from meshwind.cli.summary import run_lines
 from meshwind.core.cast import Floats, frozen
+from meshwind.run.summary import run_lines
 from meshwind.workflow.notes import about_fit
 
 DIAGONAL = 10.0

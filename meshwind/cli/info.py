@@ -69,8 +69,8 @@ def info(
 
 
 def _run(folder: Path) -> tuple[list[str], Mapping[str, object]]:
-    from meshwind.cli.summary import redesign_lines, run_lines
     from meshwind.results.reading import read_report
+    from meshwind.run.summary import redesign_lines, run_lines
 
     report = read_report(folder)
     try:

@@ -11,10 +11,10 @@ from meshwind.cli.arguments import Files, MeshFile, Printed
 from meshwind.cli.help import FILES
 from meshwind.cli.output import print_report, stages
 from meshwind.cli.signature import Pick, with_records
-from meshwind.cli.summary import redesign_lines
 from meshwind.cli.wind import NOT_CONVERGED, command_line
 from meshwind.core.option import Option
 from meshwind.editing.options import EditOptions, WindingOptions
+from meshwind.run.summary import redesign_lines
 from meshwind.workflow.options import FIBRES, Options
 
 EXAMPLES = """

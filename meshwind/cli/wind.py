@@ -12,7 +12,7 @@ from meshwind.cli.arguments import Files, MeshFile, Printed
 from meshwind.cli.help import FILES
 from meshwind.cli.output import print_report, stages
 from meshwind.cli.signature import with_records
-from meshwind.cli.summary import run_lines
+from meshwind.run.summary import run_lines
 from meshwind.workflow.options import FIBRES, Options
 
 NOT_CONVERGED = 3

@@ -102,7 +102,10 @@ class Block:
 
         line = self.segments[1]
         data = {name: [np.asarray(values)[line]] for name, values in self.line_data.items()} if len(line) else {}
-        points = {name: np.array(values) for name, values in self.point_data.items()}
+        points = {
+            str(name): np.array(values, dtype=np.uint8 if values.dtype == np.bool_ else None)  # meshio has no booleans
+            for name, values in self.point_data.items()
+        }
         return meshio.Mesh(np.array(self.points), self.cells, point_data=points, cell_data=data)
 
     def columns(self) -> Data:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from meshwind.core.cast import Floats
-from meshwind.core.geometry import Block
+from meshwind.core.geometry import Block, Data
 from meshwind.core.units import lengths_in
 from meshwind.layup.layup import Layup
 from meshwind.layup.quads import QuadMesh
@@ -23,20 +23,24 @@ from meshwind.surface.grid import Grid, grid
 from meshwind.surface.surface import Surface
 
 
+def surface_maps(layup: Layup, mesh: Mesh | None = None) -> Data:
+    """The maps of surface.vtu; with the mesh also the fit error, the distance of each point of the grid to it."""
+    on = grid(layup.paths.surface)
+    fit_error = None if mesh is None else Triangles(mesh.vertices, mesh.faces).distances(on.points)
+    return maps(on, layup, fit_error)
+
+
 def write_files(out: Path, layup: Layup, mesh: Mesh | None = None, units: str = "") -> None:
     """Write the fibres, the quad mesh and the surface into an existing folder.
 
-    With the mesh, surface.vtu has the fit error: the distance of each of its points to the mesh.  units: the name of
-    the unit of length, which each file carries.
+    units: the name of the unit of length, which each file carries.
     """
     write_lines(out / schema.PATHS, schema.PATHS, paths_block(layup.paths), units)
     write_lines(out / schema.BRIDGES, schema.BRIDGES, bridges_block(layup.paths), units)
     write_vertices(out / schema.CROSSINGS, schema.CROSSINGS, layup.crossings.block, units)
     write_faces(out / schema.QUADS, schema.QUADS, layup.quads.block, units)
     write_obj(out / schema.QUADS_OBJ, layup.quads, units)
-    on = grid(layup.paths.surface)
-    fit_error = None if mesh is None else Triangles(mesh.vertices, mesh.faces).distances(on.points)
-    write_surface(out / schema.SURFACE, on, maps(on, layup, fit_error), units)
+    write_surface(out / schema.SURFACE, grid(layup.paths.surface), surface_maps(layup, mesh), units)
     write_spline(out / schema.SPLINE, layup.paths.surface, units)
     write_chart_image(out / schema.CHART, layup.paths.surface, units)
 
@@ -50,7 +54,7 @@ def write_obj(path: Path, mesh: QuadMesh, units: str = "") -> None:
         np.savetxt(file, mesh.triangles + 1, fmt="f %d %d %d")
 
 
-def write_surface(path: Path, on: Grid, data: dict[schema.Field, Floats], units: str = "") -> None:
+def write_surface(path: Path, on: Grid, data: Data, units: str = "") -> None:
     """Write the grid with its maps as point data."""
     write_faces(path, schema.SURFACE, Block(on.points, quads=on.quads, point_data=data), units)
 

@@ -1,11 +1,17 @@
 """The result of a winding, and its files with their pictures."""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
 from os import PathLike
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from meshwind.core.geometry import Data
 from meshwind.core.version import version
+from meshwind.mesh import Mesh
 from meshwind.path import Paths, Status
 from meshwind.pictures import driver
 from meshwind.pictures.drawings import Drawing
@@ -33,7 +39,8 @@ from meshwind.results.schema import (
     WINDING,
     picture,
 )
-from meshwind.results.write import write_files
+from meshwind.results.write import surface_maps, write_files
+from meshwind.run.views import Views
 from meshwind.surface import Surface
 from meshwind.workflow.clock import Clock
 from meshwind.workflow.notes import Note
@@ -41,7 +48,7 @@ from meshwind.workflow.winding import Winding
 
 
 @dataclass(frozen=True, repr=False)
-class Result(Winding):
+class Result(Winding, Views):
     """A wound part: the results of all stages.
 
     Attributes
@@ -87,13 +94,47 @@ class Result(Winding):
     """
 
     @classmethod
-    def of(cls, winding: Winding) -> "Result":
+    def of(cls, winding: Winding) -> Result:
         """The result whose winding is given."""
         return cls(**{each.name: getattr(winding, each.name) for each in fields(winding)})
 
     def __repr__(self) -> str:
         at_rest = int((self.paths.status == Status.CONVERGED).sum())
         return f"<meshwind Result: {self.mesh.name}, {at_rest} of {len(self.paths)} paths at rest>"
+
+    @property
+    def name(self) -> str:
+        """Name of the part."""
+        return self.mesh.name
+
+    @property
+    def units(self) -> str:
+        """Name of the unit of length, "" where it is not known."""
+        return self.mesh.units
+
+    @property
+    def diagonal(self) -> float:
+        """Diagonal of the part, in the mesh's units."""
+        return self.mesh.diagonal
+
+    @property
+    def maps(self) -> Data:
+        """The maps of surface.vtu, by name, at the points of its grid."""
+        return surface_maps(self.layup, self.measured)
+
+    @property
+    def measured(self) -> Mesh:
+        """The mesh that the surface's error is measured to."""
+        wall = self.chart.annulus.wall
+        return self.mesh if wall is None else wall.skin
+
+    @contextmanager
+    def in_folder(self) -> Iterator[Path]:
+        """Yield a folder for a while, with the files of the run but its pictures."""
+        with TemporaryDirectory() as folder:
+            out = Path(folder) / "run"
+            write_result(self, out, False, False, Clock())
+            yield out
 
     @property
     def surface(self) -> Surface:
@@ -145,7 +186,7 @@ class Result(Winding):
         )
         return report(self.layup, self.mesh, self.chart, run)
 
-    def write(self, out: str | PathLike[str], render: bool = True, overwrite: bool = False) -> "Result":
+    def write(self, out: str | PathLike[str], render: bool = True, overwrite: bool = False) -> Result:
         """Write all files of the run into a folder; all appear, or none.
 
         `fit_error.png` is drawn where a note warns of the fit.
@@ -186,9 +227,7 @@ def write_result(result: Result, out: Path, render: bool, overwrite: bool, clock
     notes = result.notes
     with folder.writing(out, overwrite) as staging:
         with clock.stage("write"):
-            wall = result.chart.annulus.wall
-            measured = result.mesh if wall is None else wall.skin
-            write_files(staging, result.layup, measured, result.mesh.units)
+            write_files(staging, result.layup, result.measured, result.mesh.units)
             if result.filaments:
                 write_filaments(staging / FILAMENT, result.filaments, result.mesh.units)
             if result.layered is not None:

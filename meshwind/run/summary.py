@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 from meshwind.appearance.words import quantity, ratio, size
-from meshwind.cli.layer_table import layer_table
 from meshwind.core.units import reported_unit
 from meshwind.results.pattern_types import AlternativeFigures, PatternFigures
 from meshwind.results.redesign_report_types import (
@@ -14,6 +13,7 @@ from meshwind.results.redesign_report_types import (
     RoundFigures,
 )
 from meshwind.results.report_types import Failure, PathsFigures, Report, StationFigures, SurfaceFigures
+from meshwind.run.layer_table import layer_table
 
 
 def run_lines(report: Report) -> list[str]:

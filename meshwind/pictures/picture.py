@@ -1,0 +1,65 @@
+"""A picture in memory."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from PIL import Image
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture in memory, which a notebook shows.
+
+    Attributes
+    ----------
+    png : bytes
+        The picture as a PNG file.
+    title : str
+        What it shows.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> picture = mw.wind("data/tank.ply", paths=3, particles=51).plot(page=mw.Page(400, 300), interactive=False)
+    >>> picture.image.size
+    (400, 300)
+    """
+
+    png: bytes
+    title: str = ""
+
+    def __repr__(self) -> str:
+        width, height = self.image.size
+        return f"<meshwind Picture: {self.title}, {width} x {height}>"
+
+    def _repr_png_(self) -> bytes:
+        return self.png
+
+    @property
+    def image(self) -> Image.Image:
+        """The picture for Pillow."""
+        from PIL import Image
+
+        return Image.open(io.BytesIO(self.png))
+
+    def save(self, file: str | PathLike[str]) -> None:
+        """Write the picture into a file.
+
+        Parameters
+        ----------
+        file : str or PathLike
+            File, which should end with .png.
+
+        Examples
+        --------
+        >>> import meshwind as mw
+        >>> picture = mw.wind("data/tank.ply", paths=3, particles=51).plot(page=mw.Page(400, 300), interactive=False)
+        >>> picture.save("tank.png")
+        """
+        Path(file).write_bytes(self.png)
