@@ -106,6 +106,7 @@ if TYPE_CHECKING:
     from meshwind.editing.redesign import Redesign as Redesign
     from meshwind.editing.redesign import redesign as redesign
     from meshwind.exporting.cad_surface import read_cad as read_cad
+    from meshwind.exporting.targets import Exported as Exported
     from meshwind.layup import Layup as Layup
     from meshwind.layup import assess as assess
     from meshwind.layup import windability as windability
@@ -114,8 +115,10 @@ if TYPE_CHECKING:
     from meshwind.march import trace as trace
     from meshwind.march import traces as traces
     from meshwind.mesh import Annulus as Annulus
+    from meshwind.mesh import Findings as Findings
     from meshwind.mesh import Mesh as Mesh
     from meshwind.mesh import annulus as annulus
+    from meshwind.mesh import check as check
     from meshwind.mesh import read as read
     from meshwind.path import Paths as Paths
     from meshwind.path import Status as Status
@@ -134,11 +137,14 @@ if TYPE_CHECKING:
     from meshwind.planning import read_pins as read_pins
     from meshwind.planning import space_out as space_out
     from meshwind.results.image_files import read_image as read_image
+    from meshwind.run.export import export as export
     from meshwind.run.loaded import LoadedResult as LoadedResult
     from meshwind.run.loaded import load as load
     from meshwind.run.redesign import write_redesign as write_redesign
     from meshwind.run.result import Result as Result
     from meshwind.run.wind import wind as wind
+    from meshwind.studies.run import Swept as Swept
+    from meshwind.studies.run import sweep as sweep
     from meshwind.surface import FitError as FitError
     from meshwind.surface import Surface as Surface
     from meshwind.surface import fit as fit
@@ -151,6 +157,7 @@ if TYPE_CHECKING:
 _HOME = {
     "BadInputError": "core.errors",
     "Mesh": "mesh", "Annulus": "mesh", "read": "mesh", "annulus": "mesh",
+    "check": "mesh", "Findings": "mesh",
     "Chart": "chart", "flatten": "chart",
     "Surface": "surface", "FitError": "surface", "fit": "surface", "shapes": "surface",
     "surface_image": "surface", "from_image": "surface", "read_image": "results.image_files",
@@ -163,6 +170,7 @@ _HOME = {
     "read_cad": "exporting.cad_surface",
     "Redesign": "editing.redesign", "redesign": "editing.redesign", "write_redesign": "run.redesign",
     "Result": "run.result", "wind": "run.wind", "load": "run.loaded", "LoadedResult": "run.loaded",
+    "export": "run.export", "Exported": "exporting.targets", "sweep": "studies.run", "Swept": "studies.run",
     "render": "pictures.render", "Page": "pictures.page", "Picture": "pictures.picture",
     "draw_redesign": "pictures.redesign_scene",
 }  # fmt: skip

@@ -19,7 +19,7 @@ from meshwind.mesh import mesh_from
 from meshwind.mesh.geometry.fill_holes import fill_hole
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.mesh.geometry.topology import loops
-from meshwind.mesh.inspection import inspect
+from meshwind.mesh.inspection import check
 from meshwind.surface import FitError
 from meshwind.workflow.notes import about_fit, about_opening
 
@@ -182,7 +182,7 @@ def test_check_warns_of_a_branch(tmp_path: Path) -> None:
     vertices, faces = pipes(TEE)
     lines = [f"v {x} {y} {z}" for x, y, z in vertices] + [f"f {a} {b} {c}" for a, b, c in faces + 1]
     (tmp_path / "tee.obj").write_text("\n".join(lines))
-    assert inspect(tmp_path / "tee.obj").warnings[-1].startswith("the part branches")
+    assert check(tmp_path / "tee.obj").warnings[-1].startswith("the part branches")
     command = [sys.executable, "-m", "meshwind", "check", "tee.obj"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, cwd=tmp_path)
     assert done.returncode == 0 and "warning   the part branches: it has 1 more wide end" in done.stdout

@@ -11,7 +11,7 @@ import pytest
 
 import meshwind as mw
 from meshwind.core.brief import brief
-from meshwind.mesh import inspect
+from meshwind.mesh import check
 from meshwind.program.targets import write_program
 from meshwind.results.reading import read_results
 
@@ -49,7 +49,7 @@ def shown(tmp_path_factory: pytest.TempPathFactory) -> list[Any]:
     tube = mw.shapes.cylinder(1.0, 3.0)
     return [
         wound, mw.redesign(DATA / "tank.ply", revolutions=0.3, paths=3, particles=51), mw.families(tube, 3, 0.5),
-        mw.trace(tube, (0.0, 0.0), 0.5, 1.0), inspect(DATA / "vase.stl"), write_program(folder / "out", again=False),
+        mw.trace(tube, (0.0, 0.0), 0.5, 1.0), check(DATA / "vase.stl"), write_program(folder / "out", again=False),
         read_results(folder / "out"),
     ]  # fmt: skip
 

@@ -11,7 +11,7 @@ import pytest
 
 import meshwind as mw
 from meshwind.exporting.formats import FORMATS
-from meshwind.exporting.targets import TARGETS, ExportOptions, export
+from meshwind.exporting.targets import TARGETS, ExportOptions, write_exports
 
 DATA = Path(__file__).parents[1] / "data"
 RUNS: dict[str, dict[str, float | str | None]] = {
@@ -30,7 +30,7 @@ def leave(folder: Path) -> None:
         for name, options in RUNS.items():
             out = folder / f"{name}-{threads}"
             mw.wind(DATA / name, out=out, render=False, paths=3, **{"particles": 101, **options})  # type: ignore[arg-type]
-    export(folder / "vase.stl-1", tuple(TARGETS), folder / "exports", ExportOptions(formats=tuple(FORMATS)))
+    write_exports(folder / "vase.stl-1", tuple(TARGETS), folder / "exports", ExportOptions(formats=tuple(FORMATS)))
 
 
 def hashes(folder: Path) -> dict[str, str]:

@@ -17,7 +17,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.exporting.elements import on_crossings, regular
 from meshwind.exporting.plies import laid_on, plies
 from meshwind.exporting.shell_deck import Deck, Material, thicknesses
-from meshwind.exporting.targets import ExportOptions, export
+from meshwind.exporting.targets import ExportOptions, write_exports
 from meshwind.filament.laminate import Laminate
 from meshwind.results.reading import Results, read_results
 
@@ -55,7 +55,7 @@ def wound() -> Laminate:
 def written(wound: Laminate, tmp_path_factory: pytest.TempPathFactory) -> Results:
     out = tmp_path_factory.mktemp("layers")
     results = layered_results(out, wound)
-    export(out, ("inp", "fibers", "frames"), options=ExportOptions(count=400, pressure=PRESSURE))
+    write_exports(out, ("inp", "fibers", "frames"), options=ExportOptions(count=400, pressure=PRESSURE))
     return results
 
 
@@ -216,7 +216,7 @@ def test_layers_have_frames(written: Results, wound: Laminate) -> None:
 
 def test_a_filament_has_frames_in_order(tmp_path: Path) -> None:
     results = filament_results(tmp_path)
-    export(tmp_path, ("frames",), options=ExportOptions(step=0.1))
+    write_exports(tmp_path, ("frames",), options=ExportOptions(step=0.1))
     assert not (tmp_path / "frames" / "layer_000.csv").exists()
     read = rows(tmp_path / "frames" / "filament.csv")
     course = results.filaments[0].course
@@ -243,7 +243,7 @@ def test_a_filament_has_frames_in_order(tmp_path: Path) -> None:
     assert read["width"] == pytest.approx(widths[read["layer"].astype(int)])
     edges = np.stack([read[f"left_{axis}"] - read[f"right_{axis}"] for axis in "xyz"])
     assert np.linalg.norm(edges, axis=0) == pytest.approx(read["width"])
-    export(tmp_path, ("frames",), tmp_path / "wider", ExportOptions(width=0.7))
+    write_exports(tmp_path, ("frames",), tmp_path / "wider", ExportOptions(width=0.7))
     assert set(rows(tmp_path / "wider" / "frames" / "filament.csv")["width"]) == {0.7}
 
 
@@ -264,7 +264,7 @@ def test_a_tank_of_three_layers_strains_as_laminate_theory_says(tmp_path: Path) 
     (tmp_path / "layers.toml").write_text(TANK)
     out = tmp_path / "out"
     mw.wind("data/tank.ply", layers=tmp_path / "layers.toml", out=out, render=False)
-    export(out, ("inp",), options=ExportOptions(count=1000, pressure=PRESSURE))
+    write_exports(out, ("inp",), options=ExportOptions(count=1000, pressure=PRESSURE))
     text = (out / "shell.inp").read_text()
     (out / "shell.inp").write_text(text.replace("*NODE PRINT, NSET=END", "*NODE PRINT, NSET=NALL"))
     done = subprocess.run(["ccx", "shell"], cwd=out, capture_output=True, text=True, timeout=240, check=True)

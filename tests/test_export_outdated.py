@@ -9,7 +9,7 @@ from export_results import waisted_results
 
 from meshwind.core.errors import BadInputError
 from meshwind.exporting.formats import FORMATS
-from meshwind.exporting.targets import TARGETS, ExportOptions, export
+from meshwind.exporting.targets import TARGETS, ExportOptions, write_exports
 from meshwind.results.folder import exports_in, writing
 from meshwind.results.schema import RESULTS
 
@@ -26,7 +26,7 @@ def everything(folder: Path) -> set[str]:
 
 def exported(folder: Path) -> None:
     waisted_results(folder)
-    export(folder, tuple(TARGETS), options=ExportOptions(formats=tuple(FORMATS)))
+    write_exports(folder, tuple(TARGETS), options=ExportOptions(formats=tuple(FORMATS)))
 
 
 def test_all_that_an_export_writes_is_known(tmp_path: Path) -> None:

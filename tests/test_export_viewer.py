@@ -16,7 +16,7 @@ from viewer_browser import opened, settled
 
 from meshwind.appearance.looks import MAPS
 from meshwind.core.cast import Floats
-from meshwind.exporting.targets import export
+from meshwind.exporting.targets import write_exports
 from meshwind.exporting.viewer import page_data
 from meshwind.path.paths import Status
 
@@ -31,7 +31,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     status[5] = Status.STALLED
     object.__setattr__(paths, "status", status)
     leave(folder, paths)
-    (file,) = export(folder, ["viewer"]).files
+    (file,) = write_exports(folder, ["viewer"]).files
     assert [each.name for each in folder.glob("viewer*")] == ["viewer.html"]
     return file
 

@@ -13,7 +13,7 @@ from viewer_browser import opened, settled
 import meshwind as mw
 from meshwind.core.cast import Floats, Ints
 from meshwind.exporting.packing import packed
-from meshwind.exporting.targets import export
+from meshwind.exporting.targets import write_exports
 from meshwind.exporting.viewer import page_data
 from meshwind.exporting.viewer_filament import FilamentData
 from meshwind.filament.course import Kind
@@ -25,7 +25,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("viewer") / "out"
     mw.wind("data/tank.ply", paths=5, particles=101, band_width=9.0, continuous=True, turn_end="shaft", out=out,
             render=False)  # fmt: skip
-    export(out, ["viewer"])
+    write_exports(out, ["viewer"])
     return out
 
 

@@ -15,7 +15,7 @@ import meshwind as mw
 from meshwind.cli import main
 from meshwind.core.errors import BadInputError
 from meshwind.exporting.formats import FORMATS
-from meshwind.exporting.targets import ExportOptions, export
+from meshwind.exporting.targets import ExportOptions, write_exports
 
 STRANGE = [
     "", " ", "nan", "inf", "-1", "0", "1e308", "1e-308", "-0.0", "1/0", "0x10", "--", "-", "\0", "\n", "ü", "\ud800",
@@ -97,7 +97,7 @@ def test_whatever_a_results_folder_holds(
     shutil.copytree(results, folder)
     (folder / name).write_bytes(changed((folder / name).read_bytes(), edits))
     try:
-        export(folder, ("fibers", "frames", "viewer"), out, ExportOptions(formats=tuple(FORMATS), shell="quads"))
+        write_exports(folder, ("fibers", "frames", "viewer"), out, ExportOptions(formats=tuple(FORMATS), shell="quads"))
     except BadInputError as error:
         assert "\n" not in str(error) and not out.exists()
     else:

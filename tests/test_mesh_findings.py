@@ -12,7 +12,7 @@ from broken_meshes import MESHES, branch, double_skin, fin, flipped, klein, save
 from mesh_shapes import Part, cone, joined, pear
 
 from meshwind.core.errors import BadInputError
-from meshwind.mesh import Findings, annulus, inspect, mesh_from, read
+from meshwind.mesh import Findings, annulus, check, mesh_from, read
 from meshwind.mesh.geometry.areas_and_volumes import areas, perimeter
 
 DATA = Path(__file__).parents[1] / "data"
@@ -20,7 +20,7 @@ DATA = Path(__file__).parents[1] / "data"
 
 def found(part: Part, folder: Path, ends: str = "auto", component: int = 0) -> Findings:
     save_obj(folder / "part.obj", part)
-    return inspect(folder / "part.obj", ends, component=component)
+    return check(folder / "part.obj", ends=ends, component=component)
 
 
 def test_a_tube_with_a_hole_in_its_side(tmp_path: Path) -> None:
@@ -40,11 +40,11 @@ def test_a_tube_with_a_hole_in_its_side(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["vase.stl", "tank.ply", "elbow.obj"])
 def test_it_agrees_with_what_winding_does(name: str) -> None:
-    result, trimmed = inspect(DATA / name), annulus(read(DATA / name))
+    result, trimmed = check(DATA / name), annulus(read(DATA / name))
     assert result.problem == "" and result.ends == trimmed.ends and result.repairs == trimmed.mesh.repairs
     assert (result.annulus_vertices, result.annulus_faces) == (len(trimmed.vertices), len(trimmed.faces))
     assert result.rim_lengths == tuple(perimeter(trimmed.vertices, rim) for rim in trimmed.rims)
-    same = inspect(read(DATA / name))
+    same = check(read(DATA / name))
     assert (same.ends, same.rim_lengths, same.pieces) == (result.ends, result.rim_lengths, result.pieces)
 
 
@@ -77,7 +77,7 @@ def test_a_part_that_cannot_be_wound_is_described_as_far_as_possible(tmp_path: P
 def test_every_broken_mesh_has_the_problem_that_winding_raises(name: str, tmp_path: Path) -> None:
     save_obj(tmp_path / "part.obj", MESHES[name]())
     try:
-        problem = inspect(tmp_path / "part.obj").problem
+        problem = check(tmp_path / "part.obj").problem
     except BadInputError as error:
         problem = str(error)
     try:
@@ -89,20 +89,20 @@ def test_every_broken_mesh_has_the_problem_that_winding_raises(name: str, tmp_pa
 
 
 def test_findings_are_frozen_and_plain() -> None:
-    result = inspect(mesh_from(*cone()))
+    result = check(mesh_from(*cone()))
     with pytest.raises(FrozenInstanceError):
         result.name = "other"  # type: ignore[misc]
     assert json.loads(json.dumps(asdict(result), allow_nan=False))["rims"][0]["use"] == "start"
 
 
-def check(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+def checked(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "meshwind", "check", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, timeout=120)
 
 
 def test_the_command_prints_the_findings_and_writes_nothing(tmp_path: Path) -> None:
     save_obj(tmp_path / "part.obj", branch())
-    done = check(tmp_path / "part.obj", "--ends", "loops 0 2")
+    done = checked(tmp_path / "part.obj", "--ends", "loops 0 2")
     assert (done.returncode, done.stderr) == (0, "")
     lines = done.stdout.splitlines()
     assert lines[:2] == [
@@ -112,8 +112,8 @@ def test_the_command_prints_the_findings_and_writes_nothing(tmp_path: Path) -> N
     assert lines[-1] == "verdict   can be opened and wound; how well a surface fits it, only wind tests"
     assert "rim       0: at (0, 0, 0), 6.279 long, 48 vertices, start" in lines
     assert [path.name for path in tmp_path.iterdir()] == ["part.obj"]
-    as_json = check(tmp_path / "part.obj", "--ends", "loops 0 2", "--json")
-    plain = asdict(inspect(tmp_path / "part.obj", "loops 0 2"))
+    as_json = checked(tmp_path / "part.obj", "--ends", "loops 0 2", "--json")
+    plain = asdict(check(tmp_path / "part.obj", ends="loops 0 2"))
     assert json.loads(as_json.stdout) == json.loads(json.dumps(plain))
 
 
@@ -125,6 +125,6 @@ def test_the_command_refuses_in_one_line(tmp_path: Path) -> None:
         ([DATA / "tank.ply", "--opening", "-1"], "opening is -1"),
         ([DATA / "tank.ply", "--component", "1"], "1 piece; give 0"),
     ):
-        done = check(*arguments)
+        done = checked(*arguments)
         assert done.returncode == 2 and len(done.stderr.splitlines()) == 1
         assert done.stderr.startswith("meshwind: error: ") and says in done.stderr

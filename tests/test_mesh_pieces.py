@@ -10,7 +10,7 @@ from mesh_shapes import Part, assert_annulus, ball, cone, joined, moved, pear, r
 
 from meshwind.cli.check import described
 from meshwind.core.errors import BadInputError
-from meshwind.mesh import Mesh, annulus, inspect, mesh_from, read
+from meshwind.mesh import Mesh, annulus, check, mesh_from, read
 from meshwind.mesh.geometry.areas_and_volumes import perimeter, volume
 from meshwind.mesh.geometry.topology import loops
 from meshwind.mesh.opening.choose_ends import position_text
@@ -45,20 +45,20 @@ def test_a_large_dropped_piece_is_a_warning_and_a_small_one_is_not() -> None:
 def test_a_piece_that_the_user_chose_needs_no_warning(component: int, tmp_path: Path) -> None:
     save_obj(tmp_path / "three.obj", three())
     assert read(tmp_path / "three.obj", component).warnings == ()
-    assert "pieces" not in " ".join(inspect(tmp_path / "three.obj", component=component).warnings)
+    assert "pieces" not in " ".join(check(tmp_path / "three.obj", component=component).warnings)
     (warning,) = read(tmp_path / "three.obj").warnings
-    assert warning in inspect(tmp_path / "three.obj").warnings
+    assert warning in check(tmp_path / "three.obj").warnings
     assert mesh_from(*three(), component=2).repairs == ("dropped 2 pieces beside number 2 by area (640 faces)",)
 
 
 def test_check_gives_the_size_of_the_piece_that_is_taken(tmp_path: Path) -> None:
     save_obj(tmp_path / "three.obj", three())
-    largest = inspect(tmp_path / "three.obj")
+    largest = check(tmp_path / "three.obj")
     assert largest.part_size == pytest.approx(read(tmp_path / "three.obj").size) and largest.size[0] > 18.0
     first, _, third, *_ = described(largest)
     long = max(largest.part_size)
     assert first.startswith(f"mesh      three.obj: {long:.4g} mm long") and "of all 3 pieces: 21 x 6 x 6" in third
-    smallest = inspect(tmp_path / "three.obj", component=2)
+    smallest = check(tmp_path / "three.obj", component=2)
     assert smallest.part_size == pytest.approx(np.array(largest.part_size) / 3.0)
 
 

@@ -29,7 +29,7 @@ from walled_shapes import (
 
 import meshwind as mw
 from meshwind.core.cast import Floats, Ints
-from meshwind.mesh import inspect, mesh_from
+from meshwind.mesh import check, mesh_from
 from meshwind.mesh.geometry.areas_and_volumes import areas, loop_area, volume
 from meshwind.mesh.walls.handles import genus, without_small_handles
 
@@ -180,7 +180,7 @@ def test_parts_without_a_wall_are_wound_as_they_are() -> None:
 def test_check_lists_the_rims_of_the_wound_skin() -> None:
     part = flanged(grid=COARSE)
     for side, radius in (("outer", 45.0), ("inner", 27.0)):
-        findings = inspect(mesh_of(part), side=side)
+        findings = check(mesh_of(part), side=side)
         assert findings.closed and findings.genus == 1 and findings.problem == ""
         assert findings.side == side and findings.wall == pytest.approx(3.0, rel=0.01)
         assert [rim.use for rim in findings.rims] in (["start", "end"], ["end", "start"])

@@ -10,7 +10,7 @@ from mesh_shapes import Part, box
 
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.inspection import inspect
+from meshwind.mesh.inspection import check
 from meshwind.mesh.io.read import load, read
 
 FAR = np.array([5.4e6, 4.4e5, 312.5])
@@ -70,7 +70,7 @@ def test_a_part_that_it_resolves_coarsely_is_read_with_a_warning(suffix: str, tm
     assert warning.startswith(
         "lies 5.4e+06 from the origin, where single precision resolves steps of 0.5 of a part 1.2e+02 long"
     )
-    assert inspect(path).warnings[0] == warning
+    assert check(path).warnings[0] == warning
 
 
 @pytest.mark.parametrize("shift", [0.0, 100.0, 3e3, 1.2e4])

@@ -154,13 +154,13 @@ def test_the_unit_of_an_iges_file(unit: str, named: str, tmp_path: Path) -> None
 def test_the_converted_unit_is_said_and_not_to_be_changed(name: str, unit: str, tmp_path: Path) -> None:
     path = save(tmp_path / name, cylinder(), unit)
     for mesh in (path, read(path)):
-        assert mw.mesh.inspect(mesh).units_from == f"converted from {unit.lower()[:2]}"
+        assert mw.check(mesh).units_from == f"converted from {unit.lower()[:2]}"
     assert read(path, units="MM").warnings == ()
     for words in ("in", "meters"):
         with pytest.raises(
             BadInputError, match=r"but the lengths of the file are 'mm', 'converted from .*; leave --un"
         ):
-            mw.mesh.inspect(path, units=words)
+            mw.check(path, units=words)
         with pytest.raises(BadInputError, match="leave --units out"):
             read(path).in_units(words)
 
@@ -215,8 +215,8 @@ def test_an_iges_file_without_its_last_lines(tmp_path: Path) -> None:
 def test_how_cad_is_cut_is_noted(tmp_path: Path) -> None:
     path = save(tmp_path / "part.step", frustum())
     note = "its 3 CAD faces are cut into triangles within 1e-4 of the diagonal of each solid"
-    assert read(path).notes == mw.mesh.inspect(path).notes[:1] == (note,)
-    assert mw.mesh.inspect(read(path)).notes[:1] == (note,)
+    assert read(path).notes == mw.check(path).notes[:1] == (note,)
+    assert mw.check(read(path)).notes[:1] == (note,)
     assert str(about_file(read(path))[0]) == note
     assert read(save(tmp_path / "part.igs", frustum())).notes == (note.replace("each solid", "all of them"),)
 
@@ -239,7 +239,7 @@ def test_a_part_of_an_assembly_is_cut_as_finely_as_alone(tmp_path: Path) -> None
 def test_an_assembly_has_pieces_in_their_places(tmp_path: Path) -> None:
     one = cylinder(10.0, 60.0)
     path = save(tmp_path / "part.step", together(frustum(), moved(one, 200.0), moved(one, 300.0)))
-    found = mw.mesh.inspect(path)
+    found = mw.check(path)
     assert found.piece_count == 3 and found.units == "mm"
     boss = read(path, component=2)
     centre = boss.vertices.mean(axis=0)[0]

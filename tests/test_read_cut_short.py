@@ -8,7 +8,7 @@ from mesh_shapes import Part, tube
 
 import meshwind as mw
 from meshwind.core.errors import BadInputError
-from meshwind.mesh.inspection import inspect
+from meshwind.mesh.inspection import check
 
 
 def barrel() -> Part:
@@ -38,7 +38,7 @@ def test_many_vertices_in_no_face_are_a_warning(name: str, lines: list[str], tmp
     cut = save(tmp_path / name, lines[: int(0.7 * len(lines))])
     (warning,) = mw.read(cut).warnings
     assert "% of the " in warning and warning.endswith(": is the file cut short?")
-    assert warning in inspect(cut).warnings
+    assert warning in check(cut).warnings
 
 
 def test_the_share_is_named(tmp_path: Path) -> None:

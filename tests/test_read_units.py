@@ -60,7 +60,7 @@ def test_units_that_are_not_known_are_named(word: str, tmp_path: Path) -> None:
         assert (found.units, found.units_from, len(found.warnings)) == ("", "", 1)
         assert found.warnings[0].casefold() == words.casefold()  # trimesh keeps it in lower case
         assert mw.read(mesh, units="in").warnings == ()
-    assert mw.mesh.inspect(tmp_path / "part.vtp").warnings == (words,)
+    assert mw.check(tmp_path / "part.vtp").warnings == (words,)
     assert read_source(tmp_path / "part.vtp", Options()).mesh.warnings == (words,)
     assert read_source(tmp_path / "part.vtp", Options(units="inches")).mesh.warnings == ()
 
@@ -72,9 +72,9 @@ def test_labels_in_files(label: str, unit: str, ending: str, tmp_path: Path) -> 
     grid = made.cast_to_unstructured_grid()
     grid.SetPoints(made.GetPoints())  # with its label
     (made if ending == ".vtp" else grid).save(tmp_path / f"part{ending}")
-    found = mw.mesh.inspect(tmp_path / f"part{ending}")
+    found = mw.check(tmp_path / f"part{ending}")
     assert (found.units, found.units_from) == (unit, "file")
-    assert mw.mesh.inspect(tmp_path / f"part{ending}", units=label).warnings == found.warnings
+    assert mw.check(tmp_path / f"part{ending}", units=label).warnings == found.warnings
     assert size(found.size, found.units, found.units_from).endswith(f"; {unit} as the file says")
 
 
@@ -101,10 +101,10 @@ def test_who_named_the_unit_is_said(tmp_path: Path) -> None:
         (tmp_path / "part.glb", "; m, as glTF always is"),
         (tmp_path / "part.stl", "; mm assumed; see --units"),
     ):
-        found = mw.mesh.inspect(path)
+        found = mw.check(path)
         assert size(found.size, found.units, found.units_from).endswith(words)
         assert found.warnings == ()
-    found = mw.mesh.inspect(packed(tmp_path, "inch"))
+    found = mw.check(packed(tmp_path, "inch"))
     assert size(found.size, found.units, found.units_from).endswith("; in as the file says")
     assert size((3.0, 2.0, 1.0), "", "unknown") == size((3.0, 2.0, 1.0), "", "") == "3 long, 2 x 1 across; unit unknown"
 
@@ -137,13 +137,13 @@ def test_implausible_sizes(kind: str, scale: float, unit: str | None, words: str
         path.write_text("\n".join([*rows, *("f {} {} {}".format(*(np.array(face) + 1)) for face in TRIANGLES)]))
     else:
         trimesh.Trimesh(scale * POINTS, TRIANGLES, process=False).export(path)
-    for warnings in (mw.mesh.inspect(path, units=unit).warnings, read_source(path, Options(units=unit)).mesh.warnings):
+    for warnings in (mw.check(path, units=unit).warnings, read_source(path, Options(units=unit)).mesh.warnings):
         assert len(warnings) == bool(words) and words in "".join(warnings)
 
 
 def test_a_mesh_of_no_named_unit_is_not_doubted() -> None:
     assert Unit().doubt(1e-9) == Unit("mm", "given").doubt(1e-9) == Unit("mm", "file").doubt(1e-9) == ""
-    assert mw.mesh.inspect(mw.read((1e-6 * POINTS, np.array(TRIANGLES)))).warnings == ()
+    assert mw.check(mw.read((1e-6 * POINTS, np.array(TRIANGLES)))).warnings == ()
 
 
 @pytest.mark.parametrize("place", [0.0, 7.0])
@@ -181,7 +181,7 @@ def test_the_home_of_the_user(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setenv("USERPROFILE", str(tmp_path))
     written(tmp_path, "part.stl", trimesh.Trimesh(POINTS, TRIANGLES, process=False).export(file_type="stl"))
-    assert mw.read("~/part.stl").name == mw.mesh.inspect(Path("~/part.stl")).name == "part.stl"
+    assert mw.read("~/part.stl").name == mw.check(Path("~/part.stl")).name == "part.stl"
     assert read_source("~/part.stl", Options()).file == tmp_path / "part.stl"
     with pytest.raises(BadInputError, match=r"^pat\.stl: file not found; did you mean part\.stl"):
         mw.read("~/pat.stl")

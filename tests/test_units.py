@@ -17,7 +17,7 @@ from PIL import Image
 from meshwind.cli.wind import wind
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import MILLIMETRES, check_units, lengths_in, millimetres
-from meshwind.exporting.targets import ExportOptions, export
+from meshwind.exporting.targets import ExportOptions, write_exports
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.results.write import write_edited
 
@@ -37,7 +37,9 @@ def inches(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("inches")
     waisted_results(folder, "in")
     formats = "vtu", "vtk", "xdmf", "ply", "obj", "gmsh"
-    notes = export(folder, ["inp", "fibers", "frames", "step", "viewer"], options=ExportOptions(formats=formats)).notes
+    notes = write_exports(
+        folder, ["inp", "fibers", "frames", "step", "viewer"], options=ExportOptions(formats=formats)
+    ).notes
     assert "gmsh: no entry for the unit of length; lengths in in" in notes
     return folder
 

@@ -26,6 +26,8 @@ EXAMPLES = """
     # the numbers, for a script
     meshwind check part.stl --json
 """
+_TAKEN = "component", "ends", "opening", "side", "opening_by", "units"
+"""Options of `wind` that a check takes."""
 _MOST = 12
 """Pieces or rims that are listed one by one."""
 
@@ -33,18 +35,16 @@ _MOST = 12
 @with_records
 def check(
     mesh: MeshFile,
-    options: Annotated[Options, Pick(("component", "ends", "opening", "side", "opening_by", "units"))],
+    options: Annotated[Options, Pick(_TAKEN)],
     printed: Printed,
 ) -> int:
     """Describe MESH, its pieces, rims and faults, and what `wind` would do with it.  Writes nothing.
 
     Exit status: 0 it can be opened at two ends and wound; 2 it cannot, and one line says why.
     """
-    from meshwind.mesh import inspect
+    from meshwind.mesh import check as look_at
 
-    findings = inspect(
-        mesh, options.ends, options.opening, options.component, options.side, options.opening_by, options.units
-    )
+    findings = look_at(mesh, **{name: getattr(options, name) for name in _TAKEN})
     print_report(_lines(findings), asdict(findings), printed)
     if findings.problem:
         raise BadInputError(findings.problem)

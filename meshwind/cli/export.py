@@ -1,6 +1,6 @@
 """`meshwind export`: from a results folder to files for solvers, robots and CAD."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Annotated
 
 import typer
@@ -133,14 +133,11 @@ def export(
     step: surface.step for CAD (needs meshwind[cad]).
     viewer: viewer.html, a page for any browser, without a network (needs meshwind[viewer]).
     """
-    from meshwind.exporting.targets import ExportOptions
-    from meshwind.exporting.targets import export as write
+    from meshwind.run.export import export as write
 
-    formats = split_names(what.formats)
-    options = ExportOptions(
-        shell.thickness, what.band_width, frames.step, frames.angle, shell.shell, shell.elements, formats,
-        shell.pressure,
+    done = write(
+        folder, split_names(what.to), formats=split_names(what.formats), out=out, band_width=what.band_width,
+        **asdict(shell), **asdict(frames),
     )  # fmt: skip
-    done = write(folder, split_names(what.to), out, options)
     print_files(done.files, done.notes, printed)
     return 0

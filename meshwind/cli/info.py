@@ -83,10 +83,10 @@ def _run(folder: Path) -> tuple[list[str], Mapping[str, object]]:
 
 def _mesh(file: Path) -> tuple[list[str], Mapping[str, object]]:
     from meshwind.cli.check import described
-    from meshwind.mesh import inspect
+    from meshwind.mesh import check
     from meshwind.mesh.io.scalars import scalar_names
 
-    found = inspect(file)
+    found = check(file)
     fields = scalar_names(file)
     named = ", ".join(fields) or "none"
     return [*described(found), f"fields    {named}"], asdict(found) | {"fields": list(fields)}

@@ -107,10 +107,11 @@ def render(*, folder: ResultsFolder, what: What, look: Look, out: OtherFolder = 
     """
     from meshwind.pictures.page import Page, parse_size
     from meshwind.pictures.render import render as draw
+    from meshwind.pictures.render import usual_page
 
     kinds, names = split_names(what.animate), split_names(what.only)
-    usual = (960, 720) if kinds and not names else (1600, 1200)
-    width, height = parse_size(look.size) if look.size else usual
+    usual = usual_page(names, kinds)
+    width, height = parse_size(look.size) if look.size else (usual.width, usual.height)
     page = Page(width, height, look.transparent, not look.parallel, look.scale_bar, look.view.strip().lower())
     with counter("drawing", printed) as progress:
         done = draw(folder, names, page, kinds, what.seconds, out, progress)

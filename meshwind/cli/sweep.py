@@ -73,11 +73,10 @@ def sweep(
     # the numerical libraries are imported late: --help and usage errors must not wait for them
     from meshwind.studies.run import sweep as run
 
-    folder = out if out is not None else Path(f"{study.stem}-swept")
     with counter("cases", printed) as progress:
         swept = run(
             study,
-            folder,
+            out,
             processes=where.processes,
             scheduler=where.scheduler,
             overwrite=overwrite,
@@ -89,7 +88,7 @@ def sweep(
         f"cases     {len(swept.rows)}: " + ", ".join(f"{many} {status}" for status, many in states.items()),
         f"done      {swept.anew} in this run, {len(swept.rows) - swept.anew} before",
         *(f"warning   {many} x {reason}" for reason, many in reasons.most_common(5)),
-        f"table     {folder / 'results.csv'}, {folder / 'results.parquet'}",
+        f"table     {swept.folder / 'results.csv'}, {swept.folder / 'results.parquet'}",
     ]
-    print_report(lines, {"folder": str(folder), "anew": swept.anew, "rows": list(swept.rows)}, printed)
+    print_report(lines, {"folder": str(swept.folder), "anew": swept.anew, "rows": list(swept.rows)}, printed)
     return 0 if swept.settled else NOT_CONVERGED

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,3 +23,19 @@ def data_frame(columns: Mapping[str, Array]) -> pandas.DataFrame:
     except ModuleNotFoundError as error:
         raise BadInputError(MISSING) from error
     return pandas.DataFrame({name: np.array(values) for name, values in columns.items()})
+
+
+def as_columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, Array]:
+    """Rows as columns; a figure that a row lacks is None, or NaN among numbers."""
+    columns: dict[str, Any] = {}
+    for name in dict.fromkeys(key for row in rows for key in row):
+        values = [row.get(name) for row in rows]
+        plain = all(value is None or isinstance(value, int | float) for value in values)
+        if plain and not all(isinstance(value, int) for value in values):
+            columns[name] = np.array([np.nan if value is None else value for value in values])
+        elif plain:
+            columns[name] = np.array(values)
+        else:
+            columns[name] = np.empty(len(values), dtype=object)
+            columns[name][:] = values
+    return columns

@@ -14,9 +14,10 @@ from meshwind.editing.region import SAMPLES_PER_SPAN
 from meshwind.editing.stencil import lattice, weights
 from meshwind.editing.symmetry import Group
 from meshwind.mesh import Annulus, Mesh
+from meshwind.mesh.io.read import MeshLike
 from meshwind.surface.surface import Surface
 from meshwind.workflow.option_checks import FIELD
-from meshwind.workflow.part import MeshLike, on_wound_skin, read_field
+from meshwind.workflow.part import on_wound_skin, read_field
 
 LEAST_LEFT = 0.02
 """Of the bound: what a later stage may always move, as the sum is cut down to the bound afterwards."""

@@ -13,9 +13,10 @@ from meshwind.editing.freedom import Frozen
 from meshwind.editing.region import FACES, SAMPLES_PER_SPAN, Region, parse
 from meshwind.editing.stencil import pitches
 from meshwind.mesh import Annulus, Mesh
+from meshwind.mesh.io.read import MeshLike
 from meshwind.mesh.io.scalars import Scalars
 from meshwind.surface.surface import Surface
-from meshwind.workflow.part import MeshLike, on_wound_skin, read_field
+from meshwind.workflow.part import on_wound_skin, read_field
 
 _FINEST = 24
 """Most parts of an edge of a picked face between points of it that are looked at."""

@@ -25,11 +25,12 @@ from meshwind.editing.symmetry import axis_of, mesh_group, planes
 from meshwind.editing.windings import Course, courses
 from meshwind.mesh import Mesh
 from meshwind.mesh.geometry.areas_and_volumes import volume
+from meshwind.mesh.io.read import MeshLike
 from meshwind.path import Paths, Status
 from meshwind.planning.revolutions import Revolutions
 from meshwind.workflow.clock import Clock
 from meshwind.workflow.options import Options
-from meshwind.workflow.part import MeshLike, fit_part, read_source
+from meshwind.workflow.part import fit_part, read_source
 from meshwind.workflow.winding import chosen_revolutions
 
 

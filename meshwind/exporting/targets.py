@@ -51,7 +51,22 @@ class ExportOptions:
 
 @dataclass(frozen=True)
 class Exported:
-    """The files that an export wrote, and notes for the user."""
+    """What an export wrote.
+
+    Attributes
+    ----------
+    files : tuple of Path
+        The files.
+    notes : tuple of str
+        What a user should know of them.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> result = mw.wind("data/tank.ply", paths=4, revolutions=0.3, particles=51)
+    >>> [file.name for file in mw.export(result, formats="obj", out="files").files][:2]
+    ['crossings.obj', 'paths.obj']
+    """
 
     files: tuple[Path, ...]
     notes: tuple[str, ...]
@@ -61,7 +76,7 @@ Writer: TypeAlias = Callable[[Path, Results, ExportOptions], list[str]]
 """Writes into an existing folder; returns what the user should know."""
 
 
-def export(
+def write_exports(
     folder: str | PathLike[str],
     to: Sequence[str],
     out: str | PathLike[str] | None = None,

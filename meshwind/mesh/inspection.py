@@ -14,7 +14,7 @@ from meshwind.mesh.geometry.areas_and_volumes import loop_centroid, perimeter
 from meshwind.mesh.geometry.mesh import Annulus, Mesh
 from meshwind.mesh.geometry.topology import boundary, edges, euler, loops
 from meshwind.mesh.io.file_mesh import FileMesh
-from meshwind.mesh.io.read import load
+from meshwind.mesh.io.read import MeshLike, load, read
 from meshwind.mesh.opening.choose_ends import rims_by_number
 from meshwind.mesh.opening.trim import annulus
 from meshwind.mesh.repair.manifold import disagreements
@@ -60,18 +60,60 @@ class Rim:
 
 @dataclass(frozen=True)
 class Findings:
-    """What a mesh is, and how it would be wound; lengths in the mesh's units.
+    """What a mesh is, and how it would be wound, as `check` finds it; lengths in the mesh's units.
 
-    vertices and faces are those of the file, size its extents along x, y and z, part_size those of the chosen piece,
-    which is the largest by default; crowded_edges have more than two
-    faces, turned_edges two that face opposite ways; pieces lists the 100 largest.  component is the chosen piece,
-    one_sided, closed, genus (None if it is unknown) and rims are its own, or the rims of its skin if it has a wall that
-    can be wound; repairs says what is changed
-    and what was noticed, ends how the ends are chosen, what is filled and how wide the openings are.
-    annulus_vertices, annulus_faces and rim_lengths are those of the mesh that is wound; wall is the median thickness
-    of a part's wall, 0 if it has none, side the skin that is wound, empty if it has none; notes says what was decided
-    in reading and opening it; problem is why it cannot be wound, empty if it can; units, units_from and warnings are as
-    in `Mesh`.
+    Attributes
+    ----------
+    name, format : str
+        Name of the file and kind of it; "" for a mesh in memory.
+    vertices, faces : int
+        How many the file holds.
+    size : tuple of three floats
+        Extents along x, y and z of all that it holds.
+    diagonal : float
+        Diagonal of the same.
+    crowded_edges, turned_edges : int
+        Edges with more than two faces, and edges between two faces that face opposite ways.
+    piece_count : int
+        Number of connected pieces.
+    pieces : tuple of Piece
+        The 100 largest of them.
+    component : int
+        The chosen one, which what follows is about.
+    one_sided, closed : bool
+        Whether it has but one side, and no rim.
+    genus : int or None
+        Number of its handles, None if that is unknown.
+    rims : tuple of Rim
+        Its open rims, or those of its skin if it has a wall that can be wound.
+    repairs : tuple of str
+        What would be repaired, and what was noticed.
+    ends : str
+        How the ends are chosen, what is filled and how wide the openings are.
+    annulus_vertices, annulus_faces : int
+        Of the mesh that would be wound.
+    rim_lengths : tuple of float
+        Lengths of its two rims.
+    wall : float
+        Median thickness of a part's wall, 0 if it has none.
+    side : str
+        Skin that would be wound of a part with a wall, "" if it has none.
+    notes : tuple of str
+        What was decided in reading and opening it.
+    problem : str
+        Why it cannot be wound, "" if it can.
+    units, units_from : str
+        As in `Mesh`.
+    warnings : tuple of str
+        As in `Mesh`, and of the branches of the part.
+    part_size : tuple of three floats
+        Extents of the chosen piece.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> mw.check("data/elbow.obj").problem
+    ''
     """
 
     name: str
@@ -106,20 +148,58 @@ class Findings:
     __repr__ = brief
 
 
-def inspect(
-    mesh: str | PathLike[str] | Mesh,
+def check(
+    mesh: MeshLike,
+    *,
+    component: int | None = None,
     ends: str = "auto",
     opening: float | None = None,
-    component: int | None = None,
     side: str = "outer",
     opening_by: str = "auto",
     units: str | None = None,
 ) -> Findings:
-    """Inspect a mesh in a file or in memory: what it is, and how it would be wound.
+    """Look at a mesh: what it is, and how it would be wound; nothing is changed or written.
 
-    ends, opening, component, side, opening_by and units are as in `annulus` and `wind`.  Raises BadInputError only if
-    there is no surface; any other reason why the mesh cannot be wound is in `Findings.problem`.
+    Parameters
+    ----------
+    mesh : str, PathLike, Mesh, trimesh.Trimesh, pyvista.PolyData, meshio.Mesh or tuple of two arrays
+        Mesh, or the path of its file; see `read` for those of other libraries.
+    component : int, optional
+        Piece of the mesh file to take, by decreasing area; 0 is the largest.  By default the largest.
+    ends : str, default "auto"
+        Where the ends are: "auto", "x", "y", "z", two points "x,y,z x,y,z", or two open rims "loops 0 1"; see
+        `annulus`.
+    opening : float, optional
+        Radius of the opening at a closed end, in the mesh's units.  By default it follows from the part.
+    side : {"outer", "inner"}, default "outer"
+        Skin of a part with a wall that would be wound.
+    opening_by : {"auto", "level", "plane"}, default "auto"
+        How a closed end would be opened; see `annulus`.
+    units : str, optional
+        Unit of the mesh; nothing is converted.  By default that of the file, or "mm".
+
+    Returns
+    -------
+    Findings
+        Pieces, rims, faults and repairs, how it would be opened, and in `problem` why it cannot be wound.
+
+    Raises
+    ------
+    BadInputError
+        If there is no surface; any other reason why the mesh cannot be wound is in `problem`.
+
+    See Also
+    --------
+    wind : Wind a part.
+
+    Examples
+    --------
+    >>> import meshwind as mw
+    >>> found = mw.check("data/tank.ply")
+    >>> found.closed, found.problem, [round(length) for length in found.rim_lengths]
+    (True, '', [153, 153])
     """
+    mesh = mesh if isinstance(mesh, str | PathLike | Mesh) else read(mesh)
     if isinstance(mesh, Mesh):
         name, kind = mesh.name, ""
         held = FileMesh(mesh.vertices, mesh.faces, mesh.units, mesh.warnings, mesh.units_from, mesh.notes)

@@ -83,7 +83,7 @@ class OnePath(Geometric):
 
     @property
     def family(self) -> int:
-        """+1 or -1, the sense of turning."""
+        """Sense of turning, +1 or -1."""
         return int(self.paths.family[self.number])
 
     @property

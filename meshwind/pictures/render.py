@@ -25,6 +25,9 @@ from meshwind.results.schema import MOVIES, PATHS, PICTURES, REDESIGN, SHEET, mo
 PictureProgress = Callable[[str, int, int], None]
 """Called with the name of a picture, the number of pictures and frames drawn, and their total."""
 
+MOVIE = 960, 720
+"""Width and height of a movie in pixels, where none are given."""
+
 
 @dataclass(frozen=True)
 class Rendered:
@@ -83,7 +86,7 @@ def render(
     >>> [file.name for file in drawn.files]
     ['coverage.png']
     """
-    paper = page or Page()
+    paper = page or usual_page(only, animate)
     _check(only, animate, paper)
     ffmpeg = encoder() if "mp4" in animate else ""
     source, target = Path(folder), Path(folder if out is None else out)
@@ -107,6 +110,11 @@ def render(
     finally:
         driver.stop()
     return Rendered(tuple(target / name for name in names))
+
+
+def usual_page(only: Sequence[str], animate: Sequence[str]) -> Page:
+    """The page where none is given: a smaller one for movies."""
+    return Page(*MOVIE) if animate and not only else Page()
 
 
 def _check(only: Sequence[str], animate: Sequence[str], page: Page) -> None:

@@ -164,7 +164,21 @@ class LoadedResult(Views):
 
     @contextmanager
     def in_folder(self) -> Iterator[Path]:
-        """Yield the folder of the run."""
+        """Yield the folder of the run.
+
+        Yields
+        ------
+        Path
+            The folder.
+
+        Examples
+        --------
+        >>> import meshwind as mw
+        >>> result = mw.wind("data/tank.ply", paths=3, particles=51, out="out", render=False)
+        >>> with mw.load("out").in_folder() as folder:
+        ...     (folder / "report.json").is_file()
+        True
+        """
         yield self.folder
 
 

@@ -130,7 +130,21 @@ class Result(Winding, Views):
 
     @contextmanager
     def in_folder(self) -> Iterator[Path]:
-        """Yield a folder for a while, with the files of the run but its pictures."""
+        """Yield a folder for a while, with the files of the run but its pictures.
+
+        Yields
+        ------
+        Path
+            The folder.
+
+        Examples
+        --------
+        >>> import meshwind as mw
+        >>> result = mw.wind("data/tank.ply", paths=3, particles=51)
+        >>> with result.in_folder() as folder:
+        ...     (folder / "report.json").is_file()
+        True
+        """
         with TemporaryDirectory() as folder:
             out = Path(folder) / "run"
             write_result(self, out, False, False, Clock())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from html import escape
 from pathlib import Path
@@ -14,7 +14,7 @@ import numpy as np
 
 from meshwind.core.errors import BadInputError
 from meshwind.core.geometry import Block, Data
-from meshwind.core.table import data_frame
+from meshwind.core.table import as_columns, data_frame
 from meshwind.filament.filament import Filament, filaments_block
 from meshwind.layup.layup import Layup
 from meshwind.path.blocks import bridges_block, paths_block, paths_table
@@ -313,7 +313,7 @@ def _table(of: Wound, what: str) -> Data:
     rows = report.get("angle_stations" if what == "stations" else "laminate", [])
     if not rows:
         raise BadInputError(f"{of.name} has no {what}; wind it with layers" if what == "layers" else "no stations")
-    return _columns([_flat(row) for row in rows])
+    return as_columns([_flat(row) for row in rows])
 
 
 def _flat(figures: Mapping[str, Any], before: str = "") -> dict[str, Any]:
@@ -322,19 +322,3 @@ def _flat(figures: Mapping[str, Any], before: str = "") -> dict[str, Any]:
     for key, value in figures.items():
         row |= _flat(value, f"{before}{key}_") if isinstance(value, Mapping) else {f"{before}{key}": value}
     return row
-
-
-def _columns(rows: Sequence[Mapping[str, Any]]) -> Data:
-    """Rows as columns; a figure that a row lacks is None, or NaN among numbers."""
-    columns: dict[str, Any] = {}
-    for name in dict.fromkeys(key for row in rows for key in row):
-        values = [row.get(name) for row in rows]
-        plain = all(value is None or isinstance(value, int | float) for value in values)
-        if plain and not all(isinstance(value, int) for value in values):
-            columns[name] = np.array([np.nan if value is None else value for value in values])
-        elif plain:
-            columns[name] = np.array(values)
-        else:
-            columns[name] = np.empty(len(values), dtype=object)
-            columns[name][:] = values
-    return columns

@@ -4,6 +4,7 @@ from os import PathLike, fspath
 
 from meshwind.core.progress import Progress
 from meshwind.mesh import check_file
+from meshwind.mesh.io.read import MeshLike
 from meshwind.pictures import driver
 from meshwind.planning.pins import check_pins
 from meshwind.results import folder
@@ -13,7 +14,7 @@ from meshwind.workflow.clock import Clock
 from meshwind.workflow.compiling import compile_for
 from meshwind.workflow.layer_plans import read_layers
 from meshwind.workflow.options import Options
-from meshwind.workflow.part import MeshLike, fit_part, read_source
+from meshwind.workflow.part import fit_part, read_source
 from meshwind.workflow.winding import wind_part
 
 

@@ -7,6 +7,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from enum import StrEnum
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -86,15 +87,18 @@ class Study:
         return len(self.cases)
 
 
-def read_study(file: str | Path) -> Study:
-    """Read a study; paths in it are relative to its folder.
+def read_study(study: str | PathLike[str] | Mapping[str, Any]) -> Study:
+    """Read a study from a file, to whose folder paths in it are relative, or from what it would hold.
 
     Its top level holds options of `meshwind wind` by their long names, and mesh; all combinations of the values in
     lists become cases.  Each table [[case]] makes cases of its own, and takes what it does not name from the top level.
     Raises BadInputError, with one line, where anything is wrong with any case.
     """
-    path = Path(file)
-    common = read_toml(path, "study")
+    if isinstance(study, Mapping):
+        path, common = Path("study"), {str(key).replace("_", "-"): value for key, value in study.items()}
+    else:
+        path = Path(study)
+        common = read_toml(path, "study")
     tables = common.pop("case", None)
     if tables is not None and not (isinstance(tables, list) and all(isinstance(table, dict) for table in tables)):
         raise BadInputError(f"{path}: case is not a table; write each list of values under a line [[case]]")
@@ -116,7 +120,7 @@ def _combined(path: Path, given: Mapping[str, Any]) -> list[dict[str, Any]]:
     for key in given:
         if key not in (*_NAMES, "mesh", "render"):
             raise BadInputError(f"{path}: {key!r} is no option; {nearest(key, ('mesh', 'render', 'case', *_NAMES))}")
-    lists = [value if isinstance(value, list) else [value] for value in given.values()]
+    lists = [list(value) if isinstance(value, list | tuple) else [value] for value in given.values()]
     many = 1
     for values in lists:
         many *= len(values)
@@ -130,6 +134,7 @@ def _case(path: Path, values: Mapping[str, Any], hashes: dict[Path, str]) -> Cas
     given = dict(values)
     for name in _FILES:
         if name in given:
+            given[name] = str(given[name]) if isinstance(given[name], PathLike) else given[name]
             if not isinstance(given[name], str) or not given[name].strip():
                 raise BadInputError(f"{path}: {name} is {given[name]!r}; give the path of a file, in quotes")
             given[name] = str(path.parent / given[name])

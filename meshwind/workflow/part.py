@@ -3,22 +3,18 @@
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
-from typing import Any, TypeAlias
 
 from meshwind.chart import Chart, flatten
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import ASSUMED, Unit
 from meshwind.mesh import Annulus, Mesh, annulus, read
 from meshwind.mesh.geometry.facet_tree import FacetTree
-from meshwind.mesh.io.read import path_of
+from meshwind.mesh.io.read import MeshLike, path_of
 from meshwind.mesh.io.scalars import Scalars, read_scalars
 from meshwind.surface import Surface, fit
 from meshwind.workflow.clock import Clock
 from meshwind.workflow.option_checks import FIELD
 from meshwind.workflow.options import Options
-
-MeshLike: TypeAlias = str | PathLike[str] | Mesh | Any
-"""A mesh, the path of its file, or a mesh of another library as `read` takes it."""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 from xml.etree.ElementTree import ParseError
 
 from meshwind.core.errors import BadInputError
@@ -35,6 +35,8 @@ from meshwind.mesh.io.threemf.threemf import read_3mf
 from meshwind.mesh.io.vtk.vtk import read_vtk
 from meshwind.mesh.repair.repair import mesh_from
 
+MeshLike: TypeAlias = str | PathLike[str] | Mesh | Any
+"""A mesh, the path of its file, or a mesh of another library as `read` takes it."""
 _Reader = Callable[[Path], FileMesh]
 
 
