@@ -119,7 +119,7 @@ def test_an_end_at_the_knee_of_a_bend_leaves_a_leg() -> None:
     part = mesh_from(*pipes(BEND, 1))
     (warning,) = mw.annulus(part).warnings  # the pole across the open rim is at the knee
     assert warning.startswith("the part branches: it has 1 more wide end, ")
-    assert warning.endswith("choose other ends with --ends 'x,y,z x,y,z'")
+    assert warning.endswith("choose other ends with ends='x,y,z x,y,z'")
     assert mw.annulus(part, "-60,0,0 0,0,70").warnings == ()
 
 
@@ -141,7 +141,7 @@ def test_a_branch_is_told_where_the_ends_are_chosen_too() -> None:
     assert warning.startswith("the part branches: it has 1 more wide end, ") and "--ends" not in warning
     (warning,) = mw.annulus(drilled(0.7), "loops 0 1").warnings
     assert warning.startswith("1 open rim nearly as wide") and "--ends" not in warning
-    assert "meshwind check lists" in mw.annulus(drilled(0.7)).warnings[0]
+    assert "`meshwind.check` lists" in mw.annulus(drilled(0.7)).warnings[0]
 
 
 def cut_at(part: Mesh, place: float, closed: bool) -> tuple[Mesh, Mesh]:

@@ -124,7 +124,7 @@ def test_a_wall_that_becomes_thin_or_is_pierced_has_a_warning(edited: mw.Redesig
     for depth, says in ((1.0, None), (2.5, "of the wall near"), (6.0, "through the other one near")):
         notes = about_wall(replace(edited, displacement=depth * inward), "mm")
         assert [note.warning for note in notes] == ([False] if says is None else [False, True])
-        assert says is None or (says in notes[1].text and "give a --bound" in notes[1].text)
+        assert says is None or (says in notes[1].text and "give a bound" in notes[1].text)
 
 
 def test_an_edit_that_would_pierce_the_wall_ends_with_advice() -> None:

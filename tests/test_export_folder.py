@@ -113,7 +113,7 @@ def test_a_folder_where_a_file_belongs_stops_all(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("to", "given", "says"), [
     (["inp", "wings"], {}, "target 'wings' is not known; give inp, fibers, frames, step, viewer"),
-    ([], {}, "nothing to export; give --to inp,"), (["inp"], {"shell": "hex"}, "shell is 'hex'; give grid or quads"),
+    ([], {}, "nothing to export; give to \\(inp,"), (["inp"], {"shell": "hex"}, "shell is 'hex'; give grid or quads"),
     (["inp"], {"count": 3}, "elements is 3; give"), ([], {"formats": ["stl"]}, "format 'stl' is not known; give vtu"),
 ])  # fmt: skip
 def test_what_cannot_be_exported_is_refused(tmp_path: Path, to: list[str], given: dict[str, object], says: str) -> None:

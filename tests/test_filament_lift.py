@@ -28,7 +28,7 @@ from meshwind.program.program import program
 from meshwind.program.work import Work
 from meshwind.surface import Surface
 from meshwind.surface.interpolate import interpolate
-from meshwind.workflow.notes import about_filament
+from meshwind.workflow.filament_notes import about_filament
 
 property_test = settings(max_examples=8, deadline=None, derandomize=True, database=None, phases=[Phase.generate])
 WIDE, NARROW, HIGH, TURNS = 98.0, 54.0, 120.0, 0.35

@@ -34,7 +34,7 @@ def test_a_large_dropped_piece_is_a_warning_and_a_small_one_is_not() -> None:
     mesh = mesh_from(*three())
     assert mesh.repairs == ("dropped 2 pieces beside the largest (640 faces)",)
     assert mesh.warnings == (
-        "3 pieces: the largest is taken; the next one has 44 % of its area, and --component 1 takes that instead",
+        "3 pieces: the largest is taken; the next one has 44 % of its area, and component=1 takes that instead",
     )
     small = mesh_from(*joined(pear(), moved(ball(1), np.eye(3), np.full(3, 9.0), 0.1)))
     assert len(small.repairs) == 1 and small.warnings == ()
@@ -98,7 +98,7 @@ def test_a_missing_face_is_an_end_if_requested() -> None:
 
 
 @pytest.mark.parametrize(("ends", "words"), [
-    ("loops 0 3", r"the part has 3 open rims, 0 to 2; `meshwind check` lists them"),
+    ("loops 0 3", r"the part has 3 open rims, 0 to 2; `meshwind.check` lists them"),
     ("loops 1 1", "both are the same rim; give two numbers"), ("loops 1", "give auto, x, y, z or two points"),
     ("loops 0 -1", "give auto"), ("loops a b", "give auto"), ("loops 0 1 2", "or two open rims as in 'loops 0 1'"),
 ])  # fmt: skip
@@ -108,7 +108,7 @@ def test_numbers_of_rims_that_do_not_exist_are_refused(ends: str, words: str) ->
 
 
 def test_loops_of_a_closed_part_are_refused() -> None:
-    with pytest.raises(BadInputError, match="the part has no open rims; `meshwind check`"):
+    with pytest.raises(BadInputError, match="the part has no open rims; `meshwind.check`"):
         annulus(mesh_from(*pear()), "loops 0 1")
 
 

@@ -161,7 +161,7 @@ def test_the_converted_unit_is_said_and_not_to_be_changed(name: str, unit: str, 
             BadInputError, match=r"but the lengths of the file are 'mm', 'converted from .*; leave --un"
         ):
             mw.check(path, units=words)
-        with pytest.raises(BadInputError, match="leave --units out"):
+        with pytest.raises(BadInputError, match="leave units out"):
             read(path).in_units(words)
 
 

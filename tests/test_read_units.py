@@ -54,7 +54,7 @@ def test_usual_spellings(name: str, word: str) -> None:
 @pytest.mark.parametrize("word", NAMES_NONE)
 def test_units_that_are_not_known_are_named(word: str, tmp_path: Path) -> None:
     labelled(word).save(tmp_path / "part.vtp")
-    words = f"names the unit {word!r}, which is not known; give --units"
+    words = f"names the unit {word!r}, which is not known; give units"
     for mesh in (tmp_path / "part.vtp", labelled(word), in_units(word)):
         found = mw.read(mesh)
         assert (found.units, found.units_from, len(found.warnings)) == ("", "", 1)
@@ -99,7 +99,7 @@ def test_who_named_the_unit_is_said(tmp_path: Path) -> None:
     for path, words in (
         (packed(tmp_path, ""), "; mm, the default of 3MF"),
         (tmp_path / "part.glb", "; m, as glTF always is"),
-        (tmp_path / "part.stl", "; mm assumed; see --units"),
+        (tmp_path / "part.stl", "; mm assumed; see units"),
     ):
         found = mw.check(path)
         assert size(found.size, found.units, found.units_from).endswith(words)
@@ -114,7 +114,7 @@ def test_a_unit_that_outranks_another_says_what_to_leave_out(tmp_path: Path) -> 
     assert mw.read(path, units="Inches").warnings == ()
     assert mw.read(path, units="mm").warnings == (
         "lengths are taken in 'mm', as given, though the file says 'in'; nothing is converted; "
-        "leave --units out for 'in'",
+        "leave units out for 'in'",
     )
     assert "in an unknown unit, as given, though the file says 'in'" in mw.read(path, units="").warnings[0]
     assert mw.read(packed(tmp_path, ""), units="cm").warnings == (
@@ -123,11 +123,11 @@ def test_a_unit_that_outranks_another_says_what_to_leave_out(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(("kind", "scale", "unit", "words"), [
-    ("stl", 1e-3, None, "0.09 mm long, where mm is assumed; give --units if"),
+    ("stl", 1e-3, None, "0.09 mm long, where mm is assumed; give units if"),
     ("stl", 0.99 / 90.0, None, "0.99 mm long"), ("stl", 1.01 / 90.0, None, ""),
     ("stl", 1e5 / 90.0, None, ""), ("stl", 1.1e5 / 90.0, None, "1.1e+05 mm long"),
     ("obj", 1e30, None, "9e+31 mm long"), ("stl", 1e-3, "mm", ""), ("stl", 1e-3, "m", ""),
-    ("glb", 10.0, None, "900 m long, where m is the unit of glTF; give --units"), ("glb", 1e-3, None, ""),
+    ("glb", 10.0, None, "900 m long, where m is the unit of glTF; give units"), ("glb", 1e-3, None, ""),
     ("glb", 1e-6, None, "9e-05 m long"), ("glb", 10.0, "mm", "though the file is in 'm', as glTF always is"),
 ])  # fmt: skip
 def test_implausible_sizes(kind: str, scale: float, unit: str | None, words: str, tmp_path: Path) -> None:

@@ -85,7 +85,7 @@ def test_results_are_replaced_only_on_demand(results: Path) -> None:
     assert (status, printed) == (2, [])
     assert complaints == [
         "meshwind: error: out holds results already (bridges.vtp, chart.png, ...); "
-        "give another folder, or overwrite=True (--overwrite) to replace them"
+        "give another folder, or --overwrite to replace them"
     ]
     assert held(results) == before
     assert run(f"{WIND} --paths 3 --out out --overwrite", results, apart=False)[0] == 0

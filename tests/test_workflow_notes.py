@@ -40,7 +40,7 @@ def test_a_missed_tolerance_has_a_note(
     notes = about_fit(surface, fitted[1], tolerance, 0.1, "mm")
     assert [("note", "warning")[note.warning] for note in notes] == ([] if kind is None else [kind])
     for note in notes:
-        for words in (ratio(tolerance), ratio(relative), "mm", f"--tolerance {power(relative)}"):
+        for words in (ratio(tolerance), ratio(relative), "mm", f"tolerance={power(relative)}"):
             assert words in note.text
         assert str(note).startswith("warning: ") == note.warning
 
@@ -79,7 +79,7 @@ def test_an_unresolved_part_has_a_warning_with_coordinates() -> None:
 
 def test_past_a_limit_the_part_is_refused() -> None:
     surface, chart, _ = dented(0.2)
-    with pytest.raises(mw.BadInputError, match=r"--worst-fit\), now 0\.1"):
+    with pytest.raises(mw.BadInputError, match=r"worst_fit, now 0\.1"):
         about_fit(surface, chart, 1e-5, 0.1)
     assert about_fit(surface, chart, 1e-5, 0.3)[0].warning
     with pytest.raises(mw.BadInputError, match=r"now 0\.001"):

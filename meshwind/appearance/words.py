@@ -3,12 +3,13 @@
 import math
 from collections.abc import Sequence
 
+from meshwind.core.spoken import argument
 from meshwind.core.units import BY_DEFAULT, BY_FILE, GIVEN, UNKNOWN, millimetres
 
 _NAMED = {
     GIVEN: " as given",
     BY_FILE: " as the file says",
-    BY_DEFAULT: " assumed; see --units",
+    BY_DEFAULT: " assumed; see {units}",
 }
 """Who named the unit."""
 
@@ -34,7 +35,7 @@ def size(extents: Sequence[float], units: str, units_from: str) -> str:
     words = f"{long}, {' x '.join(quantity(each) for each in across)}{f' {units}' if units else ''} across"
     if units_from in ("", UNKNOWN):
         return f"{words}; unit unknown"
-    return f"{words}; {units}{_NAMED.get(units_from, f', {units_from}')}"
+    return f"{words}; {units}{_NAMED.get(units_from, f', {units_from}').format(units=argument('units'))}"
 
 
 def power(value: float) -> str:

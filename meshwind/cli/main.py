@@ -14,6 +14,7 @@ import typer
 from meshwind.cli import check, compile, export, info, program, redesign, render, sweep, wind
 from meshwind.cli.help import Command, Group
 from meshwind.core.errors import BadInputError
+from meshwind.core.spoken import as_command
 
 NOT_PRINTED = 1
 BAD_INPUT = 2
@@ -85,7 +86,8 @@ def main() -> None:
     but not every path converged.
     """
     try:
-        code = app(standalone_mode=False)
+        with as_command():
+            code = app(standalone_mode=False)
         if sys.stdout is not None:
             sys.stdout.flush()
     except typer.TyperException as error:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import shortened
+from meshwind.core.spoken import argument
 
 UNKNOWN = "unknown"
 """Unit in a report if it is not known."""
@@ -56,7 +57,7 @@ class Unit:
         in_file = unit_named(held.name)
         if given is None:
             unit = cls(in_file, held.named_by) if in_file else cls(assumed, BY_DEFAULT if assumed else "")
-            unknown = f"names the unit {shortened(repr(held.name))}, which is not known; give --units"
+            unknown = f"names the unit {shortened(repr(held.name))}, which is not known; give {argument('units')}"
             return replace(unit, warning=unknown) if held.name and not in_file else unit
         check_units(given)
         unit = cls(unit_named(given), GIVEN if given else "")
@@ -64,10 +65,11 @@ class Unit:
             return unit
         if given and held.named_by.startswith(_CONVERTED):
             raise BadInputError(
-                f"units is {given!r}, but the lengths of the file are {in_file!r}, {held.named_by!r}; leave --units out"
+                f"units is {given!r}, but the lengths of the file are {in_file!r}, {held.named_by!r}; leave "
+                f"{argument('units')} out"
             )
         taken = repr(unit.name) if given else "an unknown unit"
-        says, instead = f"the file says {in_file!r}", f"; leave --units out for {in_file!r}"
+        says, instead = f"the file says {in_file!r}", f"; leave {argument('units')} out for {in_file!r}"
         if held.named_by != BY_FILE:  # where programs often write another unit than the format's
             says, instead = f"the file is in {in_file!r}, {held.named_by}", ""
         text = f"lengths are taken in {taken}, as given, though {says}; nothing is converted{instead}"
@@ -78,8 +80,8 @@ class Unit:
         if self.named_by not in _DOUBTED or _LEAST <= length * millimetres(self.name) <= _MOST:
             return ""
         return (
-            f"the part is {length:.3g} {self.name} long, where {self.name} {_DOUBTED[self.named_by]}; give --units if "
-            "its lengths are in another unit"
+            f"the part is {length:.3g} {self.name} long, where {self.name} {_DOUBTED[self.named_by]}; give "
+            f"{argument('units')} if its lengths are in another unit"
         )
 
 
@@ -108,7 +110,8 @@ def millimetres(units: str) -> float:
     name = unit_named(units)
     if not name:
         raise BadInputError(
-            f"the run's unit {units!r} has no known length; wind with --units {' or '.join(sorted(MILLIMETRES))}"
+            f"the run's unit {units!r} has no known length; wind with {argument('units')} "
+            f"{' or '.join(sorted(MILLIMETRES))}"
         )
     return MILLIMETRES[name]
 

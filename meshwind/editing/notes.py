@@ -3,6 +3,7 @@
 import numpy as np
 
 from meshwind.appearance.words import quantity
+from meshwind.core.spoken import argument
 from meshwind.editing.redesign import Redesign
 from meshwind.editing.wall_left import wall_left
 from meshwind.mesh.opening.choose_ends import position_text
@@ -32,4 +33,4 @@ def about_wall(edited: Redesign, units: str = "") -> tuple[Note, ...]:
         if left.after[k] > 0.0
         else f"moves the {wall.side} skin through the other one near {place}, where the wall was {was} thick"
     )
-    return Note(text), Note(f"the edit {thin}; give a --bound", True)
+    return Note(text), Note(f"the edit {thin}; give a {argument('bound')}", True)

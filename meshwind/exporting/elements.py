@@ -6,6 +6,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
+from meshwind.core.spoken import argument, called
 from meshwind.layup.quads import edge_counts
 from meshwind.results.reading import Results
 from meshwind.results.schema import QUADS, UV
@@ -111,12 +112,12 @@ def on_crossings(results: Results, surface: Surface | None = None) -> Elements:
     """
     mesh = read_faces(results.folder / QUADS)
     if not len(mesh.quads) + len(mesh.triangles) or UV not in mesh.point_data:
-        raise BadInputError(f"{QUADS} of {results.folder} has no faces; take the grid: --shell grid")
+        raise BadInputError(f"{QUADS} of {results.folder} has no faces; take the grid: {argument('shell', 'grid')}")
     used, corner = np.unique(np.concatenate([mesh.quads.ravel(), mesh.triangles.ravel()]), return_inverse=True)
     split = mesh.quads.size
     uv = mesh.point_data[UV][used].astype(np.float64)
     if uv.ndim != 2 or not (np.isfinite(uv).all() and np.abs(uv).max() < 1e6):
-        raise BadInputError(f"{QUADS} of {results.folder} is damaged; run `meshwind wind` again")
+        raise BadInputError(f"{QUADS} of {results.folder} is damaged; run {called('wind')} again")
     both = surface or results.surface, results.surface
     return _elements(both, uv, corner[:split].reshape(-1, 4), corner[split:].reshape(-1, 3))
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from meshwind.core.errors import BadInputError
+from meshwind.core.spoken import argument
 from meshwind.exporting.elements import Elements, on_crossings, regular
 from meshwind.exporting.fibers import write_fibers
 from meshwind.exporting.formats import FORMATS, write_formats
@@ -90,7 +91,8 @@ def write_exports(
     given = options or ExportOptions()
     _known("target", to, TARGETS)
     if not (to or given.formats):
-        raise BadInputError(f"nothing to export; give --to {','.join(TARGETS)} or --formats {','.join(FORMATS)}")
+        targets, formats = f"{argument('to')} ({', '.join(TARGETS)})", f"{argument('formats')} ({', '.join(FORMATS)})"
+        raise BadInputError(f"nothing to export; give {targets} or {formats}")
     results = read_results(folder)
     target = Path(folder if out is None else out)
     notes: list[str] = []

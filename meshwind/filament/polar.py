@@ -14,6 +14,7 @@ import numpy as np
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
+from meshwind.core.spoken import argument
 from meshwind.filament.pattern import Pattern
 from meshwind.filament.polar_hollow import hollows
 from meshwind.filament.polar_legs import End, Half, halves, opening
@@ -262,8 +263,8 @@ def passes_over_a_cap(
     if lost.any():
         raise BadInputError(
             f"a fibre that touches the opening at the {cap} at u={touch[np.argmax(lost)] % 1.0:.3f} does not reach the"
-            " rim across from it: it turns back before; give an --opening that is, with half a band's width, as "
-            "narrow as the part at its narrowest"
+            f" rim across from it: it turns back before; give an {argument('opening')} that is, with half a band's "
+            "width, as narrow as the part at its narrowest"
         )
     fibres = (Stretch(there.marched.with_more(back.marched), end.half, at_end),)
     paths, angle = _as_paths(surface, (end,), fibres, particles, friction)

@@ -16,6 +16,7 @@ from scipy.interpolate import CubicSpline
 
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
+from meshwind.core.spoken import argument
 from meshwind.filament.half_leg_table import follow, look_up
 from meshwind.filament.polar_legs import End
 
@@ -161,8 +162,8 @@ def _stays(end: End, u: float) -> NoReturn:
     """Say that a fibre does not get away from its opening."""
     raise BadInputError(
         f"a fibre that touches the opening at the {end.name} does not get from there to the middle of the part, at "
-        f"u={u:.3f}: that end is no dome, as at a neck; let it turn by --turn-{end.name} pins, collar or shaft, or "
-        "give another --opening"
+        f"u={u:.3f}: that end is no dome, as at a neck; let it turn by {argument(f'turn_{end.name}', 'pins')}, "
+        f"collar or shaft, or give another {argument('opening')}"
     )
 
 

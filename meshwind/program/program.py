@@ -11,6 +11,7 @@ from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.geometry import Block, Geometric
+from meshwind.core.spoken import argument
 from meshwind.core.table import data_frame
 from meshwind.program.axes import limits_of, timing_of
 from meshwind.program.blocks import TRAVEL, Blocks, columns
@@ -167,7 +168,7 @@ def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
         if value is not None and value > _FARTHEST * work.diagonal * work.scale:
             raise BadInputError(
                 f"{name} of {machine.name} is {value:g} mm, and the diagonal of the part is only "
-                f"{work.diagonal * work.scale:.4g} mm; give less, or wind with other --units"
+                f"{work.diagonal * work.scale:.4g} mm; give less, or wind with other {argument('units')}"
             )
     share = CLEARANCE * work.diagonal
     way = Way(share if machine.clearance is None else machine.clearance / work.scale)

@@ -5,6 +5,7 @@ from functools import cached_property
 
 from meshwind.core.brief import brief
 from meshwind.core.errors import BadInputError
+from meshwind.core.spoken import called
 from meshwind.core.units import millimetres
 from meshwind.filament.filament import Filament
 from meshwind.program.clear import Obstacle, Shaft, obstacle
@@ -42,7 +43,9 @@ class Work:
     def of(results: Results) -> "Work":
         """What a run's folder has to be wound; raises BadInputError if it holds no filament."""
         if not results.filaments:
-            raise BadInputError(f"{results.folder} holds no filament; wind it with `meshwind wind MESH --continuous`")
+            raise BadInputError(
+                f"{results.folder} holds no filament; wind it with {called('wind', 'MESH', continuous=True)}"
+            )
         return Work(results.filaments, results.surface, results.diagonal, results.units, results.name)
 
     @cached_property

@@ -7,6 +7,7 @@ import numpy as np
 
 from meshwind.core.cast import frozen
 from meshwind.core.errors import BadInputError
+from meshwind.core.spoken import called
 from meshwind.filament.course import Course
 from meshwind.filament.filament import Filament, filaments_block
 from meshwind.results import schema
@@ -25,12 +26,12 @@ def read_filaments(path: Path) -> list[Filament]:
     lacking = [name for name in schema.FILAMENT.point_data if name not in read.point_data]
     if lacking or len(read.starts) < 2:
         why = f"no {' or '.join(lacking)} in it" if lacking else "no filament in it"
-        raise BadInputError(f"{path} cannot be used ({why}); run `meshwind wind --continuous` again")
+        raise BadInputError(f"{path} cannot be used ({why}); run {called('wind', continuous=True)} again")
     normal, angle = read.point_data[schema.NORMAL], read.point_data[schema.WINDING_ANGLE]
     known = read.points, normal, angle, read.point_data[schema.ARC_LENGTH]
     if normal.shape != read.points.shape or not all(np.isfinite(values).all() for values in known):
         raise BadInputError(
-            f"{path} cannot be used (it holds no finite numbers); run `meshwind wind --continuous` again"
+            f"{path} cannot be used (it holds no finite numbers); run {called('wind', continuous=True)} again"
         )
     counts = [
         read.point_data[name].astype(np.int64)

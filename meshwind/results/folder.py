@@ -6,6 +6,7 @@ from os import PathLike, fsencode, fspath
 from pathlib import Path
 
 from meshwind.core.errors import BadInputError
+from meshwind.core.spoken import argument
 from meshwind.results.schema import EXPORT_FOLDERS, EXPORTS, RESULTS
 from meshwind.results.staging import staged
 
@@ -86,8 +87,8 @@ def _held(out: Path, overwrite: bool) -> list[str]:
     if held and not overwrite:
         what = ", ".join(held[:2]) + ", ..." * (len(held) > 2)
         raise BadInputError(
-            f"{out} holds results already ({what}); give another folder, or overwrite=True (--overwrite) to replace "
-            "them"
+            f"{out} holds results already ({what}); give another folder, or "
+            f"{argument('overwrite', True)} to replace them"
         )
     return held
 

@@ -16,6 +16,7 @@ from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.geometry import Block
+from meshwind.core.spoken import called
 from meshwind.core.units import reported_unit
 from meshwind.filament.filament import Filament
 from meshwind.layup.layup import Layup, assess
@@ -194,7 +195,7 @@ def read_edited(folder: Path) -> tuple[Floats, Floats, Ints]:
     read = read_faces(folder / EDITED)
     moves = read.point_data.get(schema.DISPLACEMENT)
     if moves is None or not len(read.triangles):
-        raise BadInputError(f"{folder / EDITED} holds no triangles with a displacement; run `meshwind redesign` again")
+        raise BadInputError(f"{folder / EDITED} holds no triangles with a displacement; run {called('redesign')} again")
     return read.points - moves, moves, read.triangles
 
 
@@ -202,13 +203,13 @@ def _folder(folder: str | PathLike[str], needed: tuple[str, ...]) -> Path:
     """Path of a folder, checked to exist and to hold the needed files."""
     path = Path(folder)
     if not path.is_dir():
-        raise BadInputError(f"{path} is no folder; give one that `meshwind wind MESH --out DIR` left")
+        raise BadInputError(f"{path} is no folder; give one that {called('wind', 'MESH', out='DIR')} left")
     with suppress(OSError):  # a folder that cannot be written is read as it is
         settle(path)
     missing = [name for name in needed if not (path / name).is_file()]
     if missing:
         raise BadInputError(
-            f"{path} holds no {' and no '.join(missing)}; give a folder that `meshwind wind MESH --out DIR` left"
+            f"{path} holds no {' and no '.join(missing)}; give a folder that {called('wind', 'MESH', out='DIR')} left"
         )
     return path
 
@@ -317,4 +318,4 @@ def _under(report: Report, *names: str) -> Any:
 
 
 def _spoilt(path: Path, why: object) -> BadInputError:
-    return BadInputError(f"{path} cannot be used ({why}); run `meshwind wind` again")
+    return BadInputError(f"{path} cannot be used ({why}); run {called('wind')} again")

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.core.geometry import Block
+from meshwind.core.spoken import called
 from meshwind.mesh.io.in_subprocess import Arrays, in_subprocess
 
 POINT, CELL = "point: ", "cell: "
@@ -23,7 +24,7 @@ def read_lines(path: Path) -> Block:
     if len(starts) < 2 or len(corners) == 0:
         return Block(points[:0], point_data=_named(held, POINT))
     if not np.array_equal(corners, np.arange(len(points))):
-        raise BadInputError(f"{path} cannot be used (its lines share points); run `meshwind wind` again")
+        raise BadInputError(f"{path} cannot be used (its lines share points); run {called('wind')} again")
     return Block(points, starts, point_data=_named(held, POINT), line_data=_named(held, CELL))
 
 
@@ -50,16 +51,16 @@ def read_faces(path: Path, trusted: bool = False) -> Block:
 def _held(work: Callable[[Path], Arrays], path: Path) -> Arrays:
     """Arrays of a file, read in another process, as a damaged file can end it."""
     if not path.is_file():
-        raise BadInputError(f"{path} is missing; run `meshwind wind` again")
+        raise BadInputError(f"{path} is missing; run {called('wind')} again")
     try:
         held = in_subprocess(work, path)
     except (OSError, ValueError) as error:
-        raise BadInputError(f"{path} cannot be used (VTK cannot read it); run `meshwind wind` again") from error
+        raise BadInputError(f"{path} cannot be used (VTK cannot read it); run {called('wind')} again") from error
     starts, corners = held["starts"], held["corners"]
     if len(starts) and (starts[0] != 0 or (np.diff(starts) < 0).any() or starts[-1] != len(corners)):
-        raise BadInputError(f"{path} cannot be used (its cells are damaged); run `meshwind wind` again")
+        raise BadInputError(f"{path} cannot be used (its cells are damaged); run {called('wind')} again")
     if len(corners) and (corners.min() < 0 or corners.max() >= len(held["points"])):
-        raise BadInputError(f"{path} cannot be used (its cells name points that it lacks); run `meshwind wind` again")
+        raise BadInputError(f"{path} cannot be used (its cells name points that it lacks); run {called('wind')} again")
     return held
 
 

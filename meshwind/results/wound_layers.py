@@ -9,6 +9,7 @@ import numpy as np
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.geometry import Block
+from meshwind.core.spoken import argument
 from meshwind.path.paths import Counters, Paths, Status
 from meshwind.results import schema
 from meshwind.results.laminate_types import LayerFigures
@@ -133,4 +134,4 @@ def _paths(folder: Path, lines: Block, number: int, surface: Surface) -> Paths:
 
 def spoilt(path: Path, why: object) -> BadInputError:
     """The error of a laminate's file that cannot be used."""
-    return BadInputError(f"{path} cannot be used ({why}); run `meshwind wind --layers` again")
+    return BadInputError(f"{path} cannot be used ({why}); wind it with {argument('layers')} again")

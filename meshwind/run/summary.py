@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from meshwind.appearance.words import quantity, ratio, size
+from meshwind.core.spoken import argument
 from meshwind.core.units import reported_unit
 from meshwind.results.pattern_types import AlternativeFigures, PatternFigures
 from meshwind.results.redesign_report_types import (
@@ -232,7 +233,7 @@ def _warnings(report: RedesignReport) -> list[str]:
     figures, failed = report["redesign"], report["wound"]["after"]["not_converged"]
     lines = []
     if figures["faces_turned_over"]:
-        lines.append(f"warning   the edit turned {figures['faces_turned_over']} faces over; give a --bound")
+        lines.append(f"warning   the edit turned {figures['faces_turned_over']} faces over; give a {argument('bound')}")
     if failed:
         lines.append(f"warning   {len(failed)} paths do not converge on the edited part: {failed[0]['why']}")
     lines += [note_line(note) for note in report["notes"]]

@@ -4,6 +4,7 @@ from typing import Any, Protocol
 
 from meshwind.appearance.words import quantity
 from meshwind.core.errors import BadInputError
+from meshwind.core.spoken import argument
 from meshwind.core.units import millimetres
 from meshwind.filament.band import Roving
 from meshwind.filament.plain_layer import Band
@@ -39,7 +40,10 @@ def band_plan(run: Material, units: str, layer: Material | None = None) -> Band:
     if roving is None:
         return Band(width, _first("band_thickness", both), None, units)
     if not units:
-        raise BadInputError("tex is in g/km, but the part's unit is not known; give --units, or band_thickness")
+        raise BadInputError(
+            f"tex is in g/km, but the part's unit is not known; give {argument('units')}, or "
+            f"{argument('band_thickness')}"
+        )
     scale = millimetres(units)
     return Band(width, None if width is None else roving.thickness(width * scale) / scale, roving, units)
 
@@ -71,7 +75,12 @@ def about_band(band: Band) -> tuple[Note, ...]:
     if band.roving is None:
         return ()
     if band.width is None or band.thickness is None:
-        return (Note("the band's thickness follows from tex and its width, which is not known; give --band-width"),)
+        return (
+            Note(
+                f"the band's thickness follows from tex and its width, which is not known; give "
+                f"{argument('band_width')}"
+            ),
+        )
     roving, tows = band.roving, "1 tow" if band.roving.tows == 1 else f"{band.roving.tows} tows"
     thick, wide = quantity(band.thickness, band.units, 3), quantity(band.width, band.units, 3)
     share = f"{100.0 * roving.fibre_volume:g} % of it fibre"
@@ -82,7 +91,7 @@ def check_band(run: Material) -> None:
     """Raise BadInputError where the values of a run without layers do not belong together."""
     roving_of(run)
     if run.band_thickness is not None and run.band_width is None:
-        raise BadInputError("band_thickness needs the band's width; give band_width (--band-width) as well")
+        raise BadInputError(f"band_thickness needs the band's width; give {argument('band_width')} as well")
 
 
 def _first(name: str, places: tuple[Material, ...]) -> float | None:

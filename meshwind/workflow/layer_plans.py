@@ -10,6 +10,7 @@ from typing import Any
 from meshwind.core.defaults import TURNAROUNDS
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import AUTO, nearest, read_toml, shortened, turns
+from meshwind.core.spoken import argument
 from meshwind.filament.laminate import Ply
 from meshwind.filament.thickness import FLAT, HOLLOW, Laying
 from meshwind.workflow.band_plan import band_plan, roving_of
@@ -90,7 +91,9 @@ class LayerPlan:
         """Its band, with the run's values where it has none of its own; `units` are those of the part."""
         band = band_plan(options, units, self)
         if band.width is None:
-            raise BadInputError("a layer needs the width of its band; give band_width in its table, or --band-width")
+            raise BadInputError(
+                f"a layer needs the width of its band; give band_width in its table, or {argument('band_width')}"
+            )
         if band.thickness is None:
             raise BadInputError("a layer needs the thickness of its band; give band_thickness, or tex")
         friction = self.friction
@@ -170,13 +173,13 @@ def read_layers(file: str | PathLike[str], options: Options) -> LayersFile:
         turned = next((k for k, plan in enumerate(plans, 1) if plan.turn_start or plan.turn_end), None)
         if turned is not None:
             raise BadInputError(
-                f"{path}: layer {turned}: turnarounds are of a filament; set continuous (--continuous), or leave "
+                f"{path}: layer {turned}: turnarounds are of a filament; set {argument('continuous')}, or leave "
                 "them out"
             )
         cut = next((k for k, plan in enumerate(plans, 1) if plan.cut), None)
         if cut is not None:
             raise BadInputError(
-                f"{path}: layer {cut}: only a filament is cut; set continuous (--continuous), or leave cut out"
+                f"{path}: layer {cut}: only a filament is cut; set {argument('continuous')}, or leave cut out"
             )
     if sum(plan.repeat for plan in plans) > _MOST_LAYERS:
         raise BadInputError(f"{path} has more than {_MOST_LAYERS} layers; wind it in several runs")

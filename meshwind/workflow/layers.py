@@ -24,9 +24,10 @@ from meshwind.filament.spiral import Ground
 from meshwind.path import Status
 from meshwind.surface import Surface
 from meshwind.workflow.covering import Laid, lay_until_covered
+from meshwind.workflow.filament_notes import about_filament
 from meshwind.workflow.helices import Helices, Settled
 from meshwind.workflow.layer_plans import HOOP, LayerPlan, LayersFile
-from meshwind.workflow.notes import Note, about_filament
+from meshwind.workflow.notes import Note
 from meshwind.workflow.options import Options
 
 _HANGING = 0.05

@@ -7,11 +7,7 @@ import numpy as np
 from meshwind.appearance.words import power, quantity, ratio
 from meshwind.chart import Chart
 from meshwind.core.errors import BadInputError
-from meshwind.filament.closing import ClosedLayer
-from meshwind.filament.ends import CAP
-from meshwind.filament.lift import leaning
-from meshwind.filament.part_turn import Bend
-from meshwind.filament.pin_turn import Pins
+from meshwind.core.spoken import argument
 from meshwind.layup.layup import Layup
 from meshwind.mesh import Annulus, Mesh
 from meshwind.mesh.opening.branches import BRANCHES, CUT
@@ -48,18 +44,8 @@ _LEGS = f"{BRANCHES}; {CUT}"
 _COARSE = "its edges there are too sharp for the mesh; give a finer mesh, or round them"
 _CAPS = (
     "its flat ends meet the flank at sharp edges; leave the flat ends off the mesh, or open them up to the edge by "
-    "--opening"
+    "{opening}"
 )
-_SAME_TURNS = 1e-9
-"""Revolutions that differ by less are the same."""
-_STANDS_UP = 1.0
-"""Degrees by which a turnaround stands up from the part at a rim that are worth a word."""
-_LEANS = 3.0
-"""Degrees at which a fibre may pull along a pin: friction on the pin holds it, as tan 3 is 0.05."""
-_AWAY = 1e-3
-"""Share of the diagonal by which fibres may leave the part before a rim without a note."""
-_HOLLOW = 1e-3
-"""Share of the diagonal by which a rim may be hollow without a note."""
 _HELD = 0.2
 """Vertices that are off the surface by less than this share of what the facets are off by lie on it ..."""
 _ON_PART = 5e-3
@@ -105,7 +91,8 @@ def about_paths(paths: Paths) -> tuple[Note, ...]:
     more = 2 * paths.gap.shape[1] - 1
     return (
         Note(
-            f"{which} over an edge within one segment, exact to its length there; --particles {more} resolves it better"
+            f"{which} over an edge within one segment, exact to its length there; "
+            f"{argument('particles', more)} resolves it better"
         ),
     )
 
@@ -146,67 +133,6 @@ def _elsewhere(rests: OtherRests, path: int, units: str) -> str:
         )
     side = "left" if shift > 0.0 else "right"
     return f"path {path} {where} if it were laid {quantity(abs(shift), units, 2)} further to the {side} at first"
-
-
-def about_filament(layer: ClosedLayer, caps: tuple[bool, bool], units: str = "") -> tuple[Note, ...]:
-    """Notes on how a layer closes, what turns at its ends, and what does not hold; caps: which ends are closed."""
-    asked, wound = layer.plan.revolutions, layer.revolutions
-    notes = []
-    if abs(wound - asked) >= _SAME_TURNS:
-        notes.append(Note(f"revolutions moved from {asked:.6g} to {wound:.6g}, with which the filament closes"))
-    if all(caps) and not any(turn.name == CAP for turn in layer.turnarounds):
-        notes.append(
-            Note("both ends are closed: domes turn fibres by --turn-start cap --turn-end cap, at another angle")
-        )
-    if layer.words:
-        notes.append(Note(layer.words, bool((layer.paths.status != Status.CONVERGED).any())))
-    if layer.left_out:
-        notes.append(
-            Note(f"{layer.left_out} paths are not in the filament, as some are not at rest: the layer has gaps", True)
-        )
-    for name, turn in zip(("start", "end"), layer.turnarounds, strict=True):
-        held = f"at slip {turn.slip:.3g}" if turn.slip > 0.0 else "without friction"
-        notes.append(Note(f"{turn.name} at the {name}{_reach(turn.reach, units)}, {held}: {turn.rule}"))
-        if isinstance(turn, Bend) and turn.slip > turn.steered:
-            needed = f"needs a friction of {turn.slip:.3g}" if np.isfinite(turn.slip) else "lifts off"
-            notes.append(
-                Note(
-                    f"the {turn.name} at the {name} {needed}, and there is {turn.steered:g}: let the layer end where "
-                    "the part is more like a cylinder, or at a rim with pins",
-                    True,
-                )
-            )
-        before = layer.hung.before[turn.edge.end]
-        if before > _AWAY * layer.paths.surface.size:
-            standing = -np.degrees(turn.edge.crease[0])
-            up = f" by up to {standing:.0f} degrees" if standing > _STANDS_UP else ""
-            notes.append(
-                Note(
-                    f"at the {name} the {turn.name} stand{'' if turn.name == 'pins' else 's'} up from the part{up}: "
-                    f"fibres leave it up to {quantity(before, units, 3)} before the rim and go straight over"
-                )
-            )
-        if isinstance(turn, Pins):
-            lean = np.degrees(max(leaning(turn, layer.paths, family) for family in (1, -1)))
-            if lean > _LEANS:
-                notes.append(
-                    Note(
-                        f"the pins at the {name} need heads: fibres come to them from further out, at up to "
-                        f"{lean:.0f} degrees, and would slip off their ends; or lean the pins outwards as much"
-                    )
-                )
-        if turn.edge.hollow > _HOLLOW * layer.paths.surface.size:
-            notes.append(
-                Note(
-                    f"the rim at the {name} is hollow by up to {quantity(turn.edge.hollow, units, 2)}: turnarounds go "
-                    "straight over that"
-                )
-            )
-    return tuple(notes)
-
-
-def _reach(reach: float, units: str) -> str:
-    return f", {quantity(reach, units, 3)} beyond it" if reach > 0.0 else ""
 
 
 def about_layup(layup: Layup) -> tuple[Note, ...]:
@@ -261,7 +187,7 @@ def about_fit(surface: Surface, chart: Chart, tolerance: float, worst_fit: float
         text = _unresolved(surface, chart, error, units)
         if error.relative_max > worst_fit:
             told = "".join(f"; the file: {each}" for each in chart.annulus.mesh.warnings[:1])
-            raise BadInputError(f"{text}, or raise worst_fit (--worst-fit), now {worst_fit:g}{told}")
+            raise BadInputError(f"{text}, or raise {argument('worst_fit')}, now {worst_fit:g}{told}")
         return (Note(text, True, FIT_PICTURE),)
     if error.data != "vertices":
         return _followed(surface, chart, error, units)
@@ -279,7 +205,7 @@ def _followed(surface: Surface, chart: Chart, error: FitError, units: str) -> tu
     notes = list[Note]()
     if error.data == "facets":
         scatter = quantity(error.noise, units, 2)
-        creased = f", for {_CAPS}" if has_flat_ends(chart.annulus) else ""
+        creased = f", for {_CAPS.format(opening=argument('opening'))}" if has_flat_ends(chart.annulus) else ""
         notes.append(
             Note(
                 f"the vertices lie {scatter} off a smooth surface (root mean square), as in a decimated or "
@@ -298,7 +224,7 @@ def _missed(error: FitError, missed: float, tolerance: float, units: str, instea
     return (
         f"the tolerance of {ratio(tolerance)} is missed: vertices lie up to {ratio(missed)} of the part "
         f"({quantity(error.to_surface_max, units, 2)}) off the surface; {instead}, or accept it "
-        f"with --tolerance {power(missed)}"
+        f"with {argument('tolerance', power(missed))}"
     )
 
 
@@ -330,7 +256,7 @@ def _cause(chart: Chart) -> str:
     if _branches(chart):
         return _LEGS
     if has_flat_ends(chart.annulus):
-        return _CAPS
+        return _CAPS.format(opening=argument("opening"))
     squeezed = float(np.quantile(chart.stretch, 0.99)) > SQUEEZED
     return _PROTRUSIONS if squeezed else _COARSE
 

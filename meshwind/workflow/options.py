@@ -11,6 +11,7 @@ from meshwind.core.defaults import FIT_TOLERANCE, OPENED_BY, PARTICLES, PATHS, R
 from meshwind.core.errors import BadInputError
 from meshwind.core.option import option
 from meshwind.core.parsing import AUTO, count, paths, turns
+from meshwind.core.spoken import argument
 from meshwind.core.units import ASSUMED, MILLIMETRES, check_units
 from meshwind.workflow.option_checks import (
     FIELD,
@@ -235,7 +236,7 @@ class Options:
             set_(self, "paths", whole(self.paths, "paths", 1))
         elif self.band_width is None or self.pins is not None or self.spacing is not None:
             raise BadInputError(
-                "paths that are to cover the part need band_width (--band-width), no pins and no spacing"
+                f"paths that are to cover the part need {argument('band_width')}, no pins and no spacing"
             )
         if self.particles is not None:
             set_(self, "particles", whole(self.particles, "particles", 3))
@@ -297,7 +298,7 @@ def _check_turns(options: Options) -> None:
     for name in ("turn_start", "turn_end"):
         check_word(getattr(options, name), name, (AUTO, *TURNAROUNDS))
         if getattr(options, name) != AUTO and not options.continuous:
-            raise BadInputError(f"{name} is given without continuous; set continuous (--continuous) as well")
+            raise BadInputError(f"{name} is given without continuous; set {argument('continuous')} as well")
     for name in ("spacing", "pins"):
         if options.continuous and getattr(options, name) is not None:
             raise BadInputError(

@@ -27,6 +27,7 @@ from meshwind.surface import Surface
 from meshwind.workflow.band_plan import about_band, band_plan
 from meshwind.workflow.clock import Clock
 from meshwind.workflow.covering import Laid, lay_until_covered
+from meshwind.workflow.filament_notes import about_filament
 from meshwind.workflow.helices import Helices, Turned
 from meshwind.workflow.layer_plans import LayersFile
 from meshwind.workflow.layers import Layered, about_layers, first_helical, lay_layers
@@ -34,7 +35,6 @@ from meshwind.workflow.notes import (
     Note,
     about_choice,
     about_contact,
-    about_filament,
     about_file,
     about_fit,
     about_layup,

@@ -7,6 +7,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import KDTree
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.spoken import argument, called
 from meshwind.mesh.geometry.areas_and_volumes import areas, loop_centroid, perimeter
 from meshwind.mesh.geometry.edge_graph import edge_graph
 from meshwind.mesh.geometry.mesh import Annulus
@@ -89,20 +90,17 @@ def branch_warnings(opened: Annulus, rims: OpenRims) -> tuple[str, ...]:
         (ends if rim.tube or of_legs.any() else holes).append(_Place(rim.centre, rim.length))
     tips = [_Place(leg.tip, leg.girth) for leg, at in zip(wide, held, strict=True) if not any(at)]
     diagonal = float(np.linalg.norm(np.ptp(opened.vertices, axis=0)))
-    words = []
+    by_number = "'loops i j'"
+    words, loops = [], f"{argument('ends', by_number)}, which {called('check')} lists"
     if ends or tips:
-        kind = "'x,y,z x,y,z'" if tips else "'loops i j', which meshwind check lists"
-        others = "" if rims.by_number else f", or choose other ends with --ends {kind}"
+        choice = argument("ends", "'x,y,z x,y,z'") if tips else loops
+        others = "" if rims.by_number else f", or choose other ends with {choice}"
         words.append(
             f"{BRANCHES}: it has {_count(len(ends + tips), 'more wide end')}, {_longest(ends + tips, diagonal)}, which "
             f"{_is(ends + tips)} closed, and fibres run over the branch; {CUT}{others}"
         )
     if holes:
-        others = (
-            ""
-            if rims.by_number
-            else "; if it is to be an end, choose it with --ends 'loops i j', which meshwind check lists"
-        )
+        others = "" if rims.by_number else f"; if it is to be an end, choose it with {loops}"
         words.append(
             f"{_count(len(holes), 'open rim')} nearly as wide as the ends, {_longest(holes, diagonal)}, "
             f"{_is(holes)} filled, and fibres cross the hole{others}"

@@ -7,6 +7,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints, floats
 from meshwind.core.errors import BadInputError
+from meshwind.core.spoken import called
 from meshwind.mesh.geometry.areas_and_volumes import loop_area, loop_area_vector, loop_centroid, perimeter
 from meshwind.mesh.geometry.axis import forward, longest_axis, rank
 from meshwind.mesh.opening.poles import Lip, extreme, nearest
@@ -71,7 +72,7 @@ def parse_ends(text: str) -> EndsRequest:
     numbers = re.fullmatch(r"loops\s+(\d{1,9})[\s,]+(\d{1,9})", word)
     if numbers is not None:
         if int(numbers[1]) == int(numbers[2]):
-            raise BadInputError(f"ends {text!r}: both are the same rim; give two numbers that `meshwind check` lists")
+            raise BadInputError(f"ends {text!r}: both are the same rim; give two numbers that {called('check')} lists")
         return EndsRequest(loops=(int(numbers[1]), int(numbers[2])), text=word)
     try:
         points = floats([[float(x) for x in part.split(",")] for part in word.split()], "ends", 2, 3)

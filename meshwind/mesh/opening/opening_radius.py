@@ -7,6 +7,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
+from meshwind.core.spoken import argument
 from meshwind.core.vectors import unit
 from meshwind.mesh.geometry.areas_and_volumes import areas, edge_lengths
 from meshwind.mesh.opening.choose_ends import End
@@ -148,7 +149,7 @@ def _flatness(end: End, wanted: float, wide: float) -> str:
     """Why the opening by a plane is wider than wanted."""
     return (
         f"the end at {end.position} is flat, so that a plane opens it to radius {wide:.4g} instead of {wanted:.4g}; "
-        "--opening-by level keeps to the radius"
+        f"{argument('opening_by', 'level')} keeps to the radius"
     )
 
 
@@ -156,7 +157,7 @@ def _reason(end: End, level: float, plane: float) -> str:
     """Why a plane was taken, from the unevenness of both rims."""
     return (
         f"the end at {end.position} is opened by a plane, whose rim is uneven by {plane:.2g} of its radius; that of a "
-        f"level line is by {level:.2g} (--opening-by level keeps it)"
+        f"level line is by {level:.2g} ({argument('opening_by', 'level')} keeps it)"
     )
 
 

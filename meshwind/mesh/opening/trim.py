@@ -7,6 +7,7 @@ import numpy as np
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.defaults import OPENED_BY
 from meshwind.core.errors import BadInputError
+from meshwind.core.spoken import called
 from meshwind.mesh.geometry.areas_and_volumes import areas, volume
 from meshwind.mesh.geometry.fill_holes import fill_defects, fill_hole
 from meshwind.mesh.geometry.mesh import Annulus, Mesh
@@ -134,7 +135,7 @@ def _requested(rims: list[Ints], request: EndsRequest, name: str) -> list[Ints]:
         return []
     if max(request.loops) >= len(rims):
         count = {0: "no open rims", 1: "1 open rim"}.get(len(rims), f"{len(rims)} open rims, 0 to {len(rims) - 1}")
-        raise BadInputError(f"{name}: ends {request.text!r}: the part has {count}; `meshwind check` lists them")
+        raise BadInputError(f"{name}: ends {request.text!r}: the part has {count}; {called('check')} lists them")
     return [rims[k] for k in request.loops]
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 from meshwind.core.cast import Ints, frozen
 from meshwind.core.defaults import SIDES
 from meshwind.core.errors import BadInputError
+from meshwind.core.spoken import argument
 from meshwind.mesh.geometry.mesh import Mesh, Wall
 from meshwind.mesh.geometry.topology import compact
 from meshwind.mesh.opening.choose_ends import position_text
@@ -18,8 +19,8 @@ _ADVERB = {"outer": "outside", "inner": "inside"}
 def in_words(wall: Wall) -> str:
     """Which skin of a part with a wall is wound, in a sentence."""
     return (
-        f"walled part: wound on its {_ADVERB[wall.side]} (--side), the wall is {wall.thickness:.3g} thick at the "
-        f"median; the rims between the skins, {100.0 * wall.left_out:.2g} % of the surface, are left out"
+        f"walled part: wound on its {_ADVERB[wall.side]} ({argument('side')}), the wall is {wall.thickness:.3g} thick "
+        f"at the median; the rims between the skins, {100.0 * wall.left_out:.2g} % of the surface, are left out"
     )
 
 

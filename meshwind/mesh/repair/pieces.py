@@ -6,6 +6,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
+from meshwind.core.spoken import argument
 from meshwind.mesh.geometry.areas_and_volumes import areas
 from meshwind.mesh.geometry.topology import patches
 
@@ -70,7 +71,7 @@ class Pieces:
         inside = ", within its bounds," if self._within(kept, self.faces[self.rank == 1]) else ""
         warning = (
             f"{count} pieces: the largest is taken; the next one{inside} has {100.0 * share:.2g} % of its area, and "
-            "--component 1 takes that instead"
+            f"{argument('component', 1)} takes that instead"
         )
         return Chosen(kept, notes, (warning,))
 

@@ -2,6 +2,8 @@
 
 from enum import IntEnum
 
+from meshwind.core.spoken import argument
+
 
 class Status(IntEnum):
     """How a path ended.
@@ -48,7 +50,10 @@ class Status(IntEnum):
     @property
     def advice(self) -> str:
         """What the status means and what may help, in one line; `Paths.advice` names what was tried."""
-        return f"{_MEANING[self]}: {_MAY_HELP[self]}" if self in _MAY_HELP else _MEANING[self]
+        if self not in _MAY_HELP:
+            return _MEANING[self]
+        may_help = _MAY_HELP[self].format(particles=argument("particles"), tolerance=argument("tolerance", "1e-3"))
+        return f"{_MEANING[self]}: {may_help}"
 
 
 _MEANING = {
@@ -67,6 +72,6 @@ _MAY_HELP = {
     Status.SLID_OFF_END: "fewer revolutions, more friction, or a wider opening there may hold it",
     Status.UNSTABLE: "fewer revolutions or more friction may hold it",
     Status.LEFT_CHART: "ends further away from it, or more friction, may hold it",
-    Status.TOO_COARSE: "more particles (--particles) may resolve it, or a smoother surface (--tolerance 1e-3)",
-    Status.STALLED: "fewer revolutions, more particles, or a smoother surface (--tolerance 1e-3) may bring it to rest",
+    Status.TOO_COARSE: "more particles ({particles}) may resolve it, or a smoother surface ({tolerance})",
+    Status.STALLED: "fewer revolutions, more particles, or a smoother surface ({tolerance}) may bring it to rest",
 }
