@@ -1,6 +1,7 @@
 """What a machine lacks stops only what needs it, and one line says what to install."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -82,3 +83,16 @@ def test_info_lists_what_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert f"pictures  {NO_DRIVER}" in done.stdout
     for remedy in ("meshwind[viewer]", "meshwind[cad]", "meshwind[movie]"):
         assert f'pip install "{remedy}"' in done.stdout
+
+
+@pytest.mark.parametrize("arguments", [
+    ["wind", "none.stl"], ["redesign", "none.stl"], ["redesign", "part.ply", "--layers", "none.toml"],
+    ["wind", "part.ply", "--pins", "none.csv"], ["wind", "part.ply", "--layers", "none.toml"], ["sweep", "none.toml"],
+])  # fmt: skip
+def test_a_file_that_does_not_exist_is_told_before_the_folder_that_does(arguments: list[str], tmp_path: Path) -> None:
+    shutil.copy(DATA / "tank.ply", tmp_path / "part.ply")
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "report.json").write_text("{}")
+    command = [sys.executable, "-m", "meshwind", *arguments, "--out", "out"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert done.returncode == 2 and "none." in done.stderr and "holds results" not in done.stderr

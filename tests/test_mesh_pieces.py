@@ -108,7 +108,7 @@ def test_numbers_of_rims_that_do_not_exist_are_refused(ends: str, words: str) ->
 
 
 def test_loops_of_a_closed_part_are_refused() -> None:
-    with pytest.raises(BadInputError, match="the part has no open rims; `meshwind.check`"):
+    with pytest.raises(BadInputError, match=r"the part has no open rims; `meshwind\.check`"):
         annulus(mesh_from(*pear()), "loops 0 1")
 
 

@@ -33,11 +33,14 @@ def failure(path: int, name: str = "stalled") -> Failure:
 def test_paths_that_are_not_at_rest_are_told_in_one_line_for_each_kind() -> None:
     many = [failure(k) for k in range(13)]
     (line,) = _not_converged(many, "")
-    assert line == "warning   13 paths not at rest: stopped: fewer may help (path 0, 1, 2, 3, 4, 5, 6, 7, ...)"
+    assert line == "warning   13 paths not at rest, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, ...: stopped: fewer may help"
     assert len(_not_converged([*many, failure(13, "slid_off_end")], "")) == 2
     lines = _not_converged([failure(2), failure(5)], "0.3 revolutions hold all 24 paths")
+    assert lines == ["warning   2 paths not at rest, 2, 5: stopped; 0.3 revolutions hold all 24 paths"]
+    lines = _not_converged([failure(2), failure(5, "slid_off_end")], "0.3 revolutions hold all 24 paths")
     assert lines == [
-        "warning   2 paths not at rest: stopped (path 2, 5)",
+        "warning   1 path not at rest, 2: stopped",
+        "warning   1 path not at rest, 5: stopped",
         "advice    0.3 revolutions hold all 24 paths",
     ]
 

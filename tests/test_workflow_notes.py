@@ -11,7 +11,8 @@ import meshwind as mw
 from meshwind.appearance.words import power, quantity, ratio
 from meshwind.core.cast import Floats, frozen
 from meshwind.run.summary import run_lines
-from meshwind.workflow.notes import about_fit
+from meshwind.workflow.clock import Clock
+from meshwind.workflow.notes import Note, about_fit, of_layers
 
 DIAGONAL = 10.0
 TIP = np.array([-4.5, 0.0, 0.0])
@@ -150,3 +151,23 @@ def test_the_summary_names_the_tolerance_only_where_the_vertices_are_fitted() ->
     )
     report["surface"]["evidence"]["data"] = "facets"
     assert "tolerance" not in run_lines(report)[2]
+
+
+def test_layers_share_a_note_of_each_kind() -> None:
+    notes = [
+        (1, Note("it slips at v=0.5", True)), (2, Note("it slips at v=0.5", True)),
+        (3, Note("it slips at v=0.25", True)),
+        (2, Note("pins need heads")), (4, Note("it slips at v=1e-3", True)),
+    ]  # fmt: skip
+    assert of_layers(notes) == (
+        Note("layers 1, 2 (layers 3, 4 likewise): it slips at v=0.5", True), Note("layer 2: pins need heads"),
+    )  # fmt: skip
+
+
+def test_a_stage_that_goes_on_is_told_once() -> None:
+    told: list[str] = []
+    clock = Clock(told.append)
+    for name in ("fit", "layers", "fit", "wind"):
+        with clock.stage(name):
+            pass
+    assert told == ["fit", "layers", "wind"] and set(clock.seconds) == set(told)

@@ -72,9 +72,12 @@ def redesign(
     from meshwind.mesh import check_file
     from meshwind.results import folder
     from meshwind.run.redesign import write_redesign
+    from meshwind.workflow.layer_plans import read_layers
 
     target = Path(out if out is not None else f"{mesh.stem}-redesigned")
-    check_file(mesh)
+    check_file(mesh)  # what does not exist is told before a folder that does
+    if windings.layers is not None:
+        read_layers(windings.layers, Options())
     folder.prepare(target, files.overwrite)
     begin = perf_counter()
     wound = {name: getattr(winding, name) for name in WINDING} | asdict(windings)

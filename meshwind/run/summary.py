@@ -16,6 +16,9 @@ from meshwind.results.redesign_report_types import (
 from meshwind.results.report_types import Failure, PathsFigures, Report, StationFigures, SurfaceFigures
 from meshwind.run.layer_table import layer_table
 
+_LISTED = 12
+"""Paths that a warning lists by their numbers."""
+
 
 def run_lines(report: Report) -> list[str]:
     """A run's report in a few lines; raises LookupError or TypeError where a figure is missing."""
@@ -142,16 +145,18 @@ def _turn(layer: PatternFigures, k: int) -> str:
 
 
 def _not_converged(failures: Sequence[Failure], holds: str) -> list[str]:
-    """One line per status, with the number of paths that have it and the first ones' numbers; and what holds all."""
+    """One line per status, with the paths that have it; what holds all of them follows on the same line if it can."""
     kinds: dict[str, list[Failure]] = {}
     for failure in failures:
         kinds.setdefault(failure["name"], []).append(failure)
     lines = []
     for alike in kinds.values():
         why = alike[0]["meaning"] if holds else alike[0]["why"]
-        numbers = ", ".join(str(each["path"]) for each in alike[:8]) + ", ..." * (len(alike) > 8)
-        lines.append(f"warning   {len(alike)} path{'s' * (len(alike) > 1)} not at rest: {why} (path {numbers})")
-    return [*lines, f"advice    {holds}"] if holds else lines
+        numbers = ", ".join(str(each["path"]) for each in alike[:_LISTED]) + ", ..." * (len(alike) > _LISTED)
+        lines.append(f"warning   {len(alike)} path{'s' * (len(alike) > 1)} not at rest, {numbers}: {why}")
+    if not holds:
+        return lines
+    return [f"{lines[0]}; {holds}"] if len(lines) == 1 else [*lines, f"advice    {holds}"]
 
 
 def redesign_lines(report: RedesignReport) -> list[str]:

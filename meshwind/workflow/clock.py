@@ -11,7 +11,7 @@ _EVERY = 2.0
 
 
 class Clock:
-    """Reports each stage as it starts and adds up the time that it took."""
+    """Reports each stage as it first starts and adds up the time that it took."""
 
     def __init__(self, progress: Progress | None = None) -> None:
         self.progress = progress
@@ -21,7 +21,7 @@ class Clock:
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Report the stage and time what is done within it."""
-        if self.progress is not None:
+        if self.progress is not None and name not in self.seconds:  # one that goes on later is not told twice
             self.progress(name)
         start = perf_counter()
         self._stage, self._told = name, start

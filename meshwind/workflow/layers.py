@@ -27,7 +27,7 @@ from meshwind.workflow.covering import Laid, lay_until_covered
 from meshwind.workflow.filament_notes import about_filament
 from meshwind.workflow.helices import Helices, Settled
 from meshwind.workflow.layer_plans import HOOP, LayerPlan, LayersFile
-from meshwind.workflow.notes import Note
+from meshwind.workflow.notes import Note, of_layers
 from meshwind.workflow.options import Options
 
 _HANGING = 0.05
@@ -54,7 +54,7 @@ def lay_layers(
     Raises BadInputError, naming the layer, where one cannot be wound.
     """
     layers: list[LaidLayer] = []
-    notes: list[Note] = []
+    notes: list[tuple[int, Note]] = []
     plies = []
     first: Settled | None = None
     for number, plan in enumerate(asked.plans, 1):
@@ -68,8 +68,8 @@ def lay_layers(
                 layer, last = _lay(_Below.of(layers, surface), plan, ply, options, partial(_say_of, say, now))
             first = first if layers else last
             layers.append(layer)
-            notes += [Note(f"layer {len(layers)}: {line}", warning=True) for line in _faults(layer)]
-    return Layered(Laminate(tuple(layers)), asked.file, options, first), tuple(dict.fromkeys(notes))
+            notes += [(len(layers), Note(line, warning=True)) for line in _faults(layer)]
+    return Layered(Laminate(tuple(layers)), asked.file, options, first), of_layers(notes)
 
 
 def _say_of(say: Progress, layer: str, words: str) -> None:
@@ -195,12 +195,13 @@ def first_helical(plans: tuple[LayerPlan, ...], layered: Layered, surface: Surfa
 
 def about_layers(layered: Layered, caps: tuple[bool, bool], units: str) -> tuple[Note, ...]:
     """Notes on how the layers of one filament close and turn; caps: which ends of the part are closed."""
-    notes = [
-        replace(note, text=f"layer {number}: {note.text}")
+    each = [
+        (number, note)
         for number, layer in enumerate(layered.laminate.layers, 1)
         if layer.closed is not None
         for note in about_filament(layer.closed, caps, units)
     ]
+    notes = list(of_layers(each))
     joins = [layer.strand.join for layer in layered.laminate.layers if layer.strand and layer.strand.join]
     if joins:
         length = quantity(sum(float(each.arc_length[-1]) for each in joins), units, 3)

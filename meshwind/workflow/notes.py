@@ -1,5 +1,7 @@
 """Notes and warnings for the user beside the figures of a run."""
 
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -36,6 +38,8 @@ LEFT_OUT = 5e-4
 """Least share of the fibre that is off the surface and not counted, of which a note tells: it shows as 0.1 %."""
 SQUEEZED = 8.0
 """A 99th percentile of the area scale above this, over its mean, is typical of fingers, ears and fins."""
+_FIGURE = re.compile(r"\d[\d.,e+-]*")
+"""A number in a note, by which notes of one kind may differ."""
 _MAX_LISTED = 3
 """Places where surface and mesh lie far apart that are listed with their coordinates."""
 _PROTRUSIONS = "protrusions such as fingers, ears and branches are squeezed by the chart; wind a part without them"
@@ -70,6 +74,28 @@ class Note:
         """The note with a reference to its picture where there is one."""
         reference = f"; see {self.picture}"
         return replace(self, text=self.text.removesuffix(reference) + (reference if there and self.picture else ""))
+
+
+def of_layers(notes: Sequence[tuple[int, Note]]) -> tuple[Note, ...]:
+    """Notes on layers, by their numbers: one of each kind, with the layers it is of.
+
+    Notes of a kind differ in their figures at most, and the first layer's are told.
+    """
+    kinds: dict[str, list[tuple[int, Note]]] = {}
+    for number, note in notes:
+        kinds.setdefault(_FIGURE.sub("#", note.text), []).append((number, note))
+    told = []
+    for alike in kinds.values():
+        note = alike[0][1]
+        same = [number for number, other in alike if other.text == note.text]
+        others = [number for number, other in alike if other.text != note.text]
+        likewise = f" (layer{'s' * (len(others) > 1)} {_listed(others)} likewise)" if others else ""
+        told.append(replace(note, text=f"layer{'s' * (len(same) > 1)} {_listed(same)}{likewise}: {note.text}"))
+    return tuple(told)
+
+
+def _listed(numbers: Sequence[int]) -> str:
+    return ", ".join(map(str, dict.fromkeys(numbers)))
 
 
 def about_file(mesh: Mesh) -> tuple[Note, ...]:
