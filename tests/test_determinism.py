@@ -46,6 +46,7 @@ def left(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     for blas in (1, 4):
         folders.append(tmp_path_factory.mktemp("left"))
         variables = {"NUMBA_NUM_THREADS": "4", "OPENBLAS_NUM_THREADS": f"{blas}", "PYTHONHASHSEED": f"{blas}"}
+        variables |= {"SOURCE_DATE_EPOCH": "1700000000"}  # STEP has the day
         command = [sys.executable, __file__, str(folders[-1])]
         subprocess.run(command, env=os.environ | variables, check=True, timeout=240)
     return folders

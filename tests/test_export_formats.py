@@ -1,6 +1,7 @@
 """Results in other formats: read back by meshio, with a note of what is lost."""
 
 from pathlib import Path
+from typing import Any
 
 import meshio
 import numpy as np
@@ -77,6 +78,17 @@ def test_paraviews_reader_takes_the_xdmf(written: tuple[Path, list[str]]) -> Non
             assert np.array_equal(read.cells_dict[5], faces.triangles)
         if part == "crossings":
             assert read.n_points > 0
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_pyvista_opens_the_xdmf(written: tuple[Path, list[str]], part: str) -> None:
+    read: Any = pv.read(written[0] / "formats" / f"{part}.xdmf")
+    same: Any = pv.read(written[0] / "formats" / f"{part}.vtu")
+    assert np.array_equal(read.points, same.points)
+    assert read.n_cells == same.n_cells
+    assert set(read.point_data) == set(same.point_data) and set(read.cell_data) == set(same.cell_data)
+    for name in same.point_data:
+        assert np.array_equal(read.point_data[name], same.point_data[name], equal_nan=True), name
 
 
 def test_ply_holds_vectors_by_component(written: tuple[Path, list[str]]) -> None:

@@ -1,6 +1,7 @@
 """STEP there and back: the surface, the curves, and what comes from CAD."""
 
 import sys
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from meshwind.core import opencascade
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.core.opencascade import occ
+from meshwind.core.version import version
 from meshwind.exporting.splines import clamped_surface
 from meshwind.exporting.step import write_step
 from meshwind.results.reading import Results
@@ -48,6 +50,21 @@ def written(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     results = (plain_results if request.param == "plain" else waisted_results)(out)
     assert write_step(out, results) == []
     return results, shape_of(out / STEP)
+
+
+def test_the_header_names_part_day_and_program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
+    before = datetime.now(UTC)
+    write_step(tmp_path, plain_results(tmp_path))
+    text = (tmp_path / STEP).read_text(encoding="ascii")
+    header = "".join(text.split("ENDSEC;")[0].split())
+    days = {f"{day:%Y-%m-%d}T00:00:00" for day in (before, datetime.now(UTC))}
+    assert any(f"FILE_NAME('part.stl','{day}'" in header for day in days)
+    assert f"meshwind{version()}" in header and "CASCADE" not in header
+    assert "PRODUCT('part.stl'" in text
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
+    write_step(tmp_path, plain_results(tmp_path))
+    assert "1970-01-02T00:00:00" in (tmp_path / STEP).read_text(encoding="ascii")
 
 
 def xyz(points: list[Any]) -> Floats:

@@ -94,3 +94,29 @@ def test_sweep_takes_what_a_file_would_hold(tmp_path: Path) -> None:
     assert table["band_width"].tolist() == [4.0, 4.0] and table["case"].is_unique
     with pytest.raises(mw.BadInputError, match="'turns' is no option"):
         mw.sweep({"mesh": DATA / "tank.ply", "turns": 1}, tmp_path / "other")
+
+
+def shown() -> list[tuple[str, Any]]:
+    """All public functions and classes, and the methods of these."""
+    found: list[tuple[str, Any]] = []
+    for name in mw.__all__:
+        public = getattr(mw, name)
+        if inspect.ismodule(public):
+            found += [(f"{name}.{key}", each) for key, each in vars(public).items() if inspect.isfunction(each)]
+        else:
+            found.append((name, public))
+        for kind in public.__mro__ if inspect.isclass(public) else ():
+            if kind.__module__.startswith("meshwind"):
+                found += [(f"{name}.{key}", each) for key, each in vars(kind).items() if inspect.isfunction(each)]
+    return [(name, each) for name, each in found if not name.rpartition(".")[2].startswith("_") and callable(each)]
+
+
+def test_signatures_name_types_as_people_do() -> None:
+    """`ArrayLike` and `Floats`, not what they stand for, which fills five lines of an editor's hint."""
+    names = dict(shown())
+    assert {"solve", "Surface.points", "shapes.cone", "Result"} <= set(names)
+    for name, each in names.items():
+        if isinstance(each, type) and issubclass(each, Exception | int):
+            continue
+        said = str(inspect.signature(each))
+        assert not any(word in said for word in ("numpy.", "Union[", "typing.", "meshwind.")), f"{name}{said}"

@@ -1,5 +1,7 @@
 """The annulus laid out on the periodic rectangle, and areas and speeds of its triangles."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Flatten an annulus to the periodic rectangle by sparse harmonic systems whose weights even out the stretch."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 
@@ -121,7 +123,7 @@ class _EdgeGraph:
     cotangents: Floats
 
     @staticmethod
-    def of(annulus: Annulus, jump: Floats) -> "_EdgeGraph":
+    def of(annulus: Annulus, jump: Floats) -> _EdgeGraph:
         found = edges(annulus.faces)
         # both half-edges of an edge have the same gain, but for its sign
         half = found.halves[:, 0]

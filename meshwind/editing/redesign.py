@@ -1,5 +1,7 @@
 """From a mesh to the nearest one that can be wound: the automatic surface editing of section 6.4."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from os import PathLike

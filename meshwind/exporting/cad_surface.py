@@ -1,5 +1,7 @@
 """Surfaces from STEP and IGES files: the faces that close in one direction."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from os import PathLike
@@ -49,12 +51,12 @@ class Patch:
             held = np.moveaxis(BSpline(knots, np.moveaxis(held, axis, 0), degree)(where), 0, axis)
         return np.asarray(held[..., :3] / held[..., 3:])
 
-    def turned(self) -> "Patch":
+    def turned(self) -> Patch:
         """The same patch with u and v exchanged."""
         poles = frozen(self.poles.swapaxes(0, 1))
         return Patch(poles, self.knots[::-1], self.degrees[::-1], self.bounds[::-1], self.periodic[::-1])
 
-    def mirrored(self) -> "Patch":
+    def mirrored(self) -> Patch:
         """The same patch with u reversed."""
         return replace(self, bounds=(self.bounds[0][::-1], self.bounds[1]))
 

@@ -1,5 +1,7 @@
 """surface.step: the fitted surface as one B-spline face and the fibres as curves, for CAD."""
 
+import os
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -9,14 +11,15 @@ from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.core.opencascade import knots_array, need, occ, points_array, quiet
 from meshwind.core.units import millimetres
+from meshwind.core.version import version
 from meshwind.exporting.splines import clamped_surface, curve_through
 from meshwind.results import schema
 from meshwind.results.reading import Results
 from meshwind.surface.evaluate import DEGREE
 from meshwind.surface.surface import Surface
 
-TIME = "1970-01-01T00:00:00"
-"""Written instead of the present time, so that the same run gives the same bytes."""
+EPOCH = "SOURCE_DATE_EPOCH"
+"""Variable of the environment with the seconds since 1970 that stand for now, as in reproducible builds."""
 
 
 def write_step(folder: Path, results: Results) -> list[str]:
@@ -27,11 +30,11 @@ def write_step(folder: Path, results: Results) -> list[str]:
     """
     need()
     scale = millimetres(results.units)
-    shapes = [("surface", face(results.surface, scale))]
+    shapes = [(results.name, face(results.surface, scale))]
     for path in np.flatnonzero(results.at_rest):
         name = f"path {path} family {results.paths.family[path]:+d}"
         shapes.append((name, edge(results.paths.points[path], scale)))
-    _write(folder / schema.STEP, shapes)
+    _write(folder / schema.STEP, shapes, results.name)
     left = int((~results.at_rest).sum())
     notes = [f"{schema.STEP}: left out as not at rest: {left} of {len(results.paths)} paths"] if left else []
     if not results.units:
@@ -39,10 +42,17 @@ def write_step(folder: Path, results: Results) -> list[str]:
     return notes
 
 
-def write_step_of(path: Path, surface: Surface, units: str) -> None:
-    """Write one surface as a face, in mm; raises BadInputError without OpenCASCADE."""
+def write_step_of(path: Path, surface: Surface, units: str, name: str) -> None:
+    """Write one surface as a face of this name, in mm; raises BadInputError without OpenCASCADE."""
     need()
-    _write(path, [("surface", face(surface, millimetres(units)))])
+    _write(path, [(name, face(surface, millimetres(units)))], name)
+
+
+def day() -> str:
+    """The present day, without a time, so that the same run gives the same bytes on a day, as a date of STEP."""
+    given = os.environ.get(EPOCH, "")
+    now = datetime.fromtimestamp(int(given), UTC) if given.isdecimal() else datetime.now(UTC)
+    return f"{now:%Y-%m-%d}T00:00:00"
 
 
 def face(surface: Surface, scale: float = 1.0) -> Any:
@@ -64,7 +74,8 @@ def edge(points: Floats, scale: float = 1.0) -> Any:
     return occ("BRepBuilderAPI").BRepBuilderAPI_MakeEdge(geometry).Edge()
 
 
-def _write(path: Path, shapes: list[tuple[str, Any]]) -> None:
+def _write(path: Path, shapes: list[tuple[str, Any]], product: str) -> None:
+    """Write shapes by their names; product: what the file is of, for its header."""
     strings, control = occ("TCollection"), occ("STEPCAFControl")
     document = occ("TDocStd").TDocStd_Document(strings.TCollection_ExtendedString("meshwind"))
     tool = occ("XCAFDoc").XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
@@ -75,7 +86,15 @@ def _write(path: Path, shapes: list[tuple[str, Any]]) -> None:
         writer = control.STEPCAFControl_Writer()
         done = writer.Transfer(document, occ("STEPControl").STEPControl_StepModelType.STEPControl_AsIs)
         header = occ("APIHeaderSection").APIHeaderSection_MakeHeader(writer.ChangeWriter().Model())
-        header.SetTimeStamp(strings.TCollection_HAsciiString(TIME))
+        text, program = strings.TCollection_HAsciiString, f"meshwind {version()}"
+        header.SetTimeStamp(text(day()))
+        header.SetName(text(product))
+        header.SetPreprocessorVersion(text(program))
+        header.SetOriginatingSystem(text(program))
+        for none in (header.SetAuthorValue, header.SetOrganizationValue):
+            none(1, text(""))
+        header.SetAuthorisation(text(""))
+        header.SetDescriptionValue(1, text(f"winding of {product}"))
         status = writer.Write(str(path)) if done else None
     if status != occ("IFSelect").IFSelect_ReturnStatus.IFSelect_RetDone:
         raise OSError(f"OpenCASCADE could not write {path.name}")

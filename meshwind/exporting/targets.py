@@ -1,5 +1,7 @@
 """Export of a run's folder to named targets."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike

@@ -29,6 +29,7 @@ def write_xdmf(
     raw = path.with_suffix(".raw")
     with path.open("w", encoding="utf-8") as file, raw.open("wb") as numbers:
         file.write('<?xml version="1.0"?>\n<Xdmf Version="3.0"><Domain><Grid Name="Grid">\n')
+        file.write('<Time Value="0"/>\n')  # PyVista reads no file without a time
         file.write(f'<Information Name="units" Value={quoteattr(units)}/>\n')
         file.write(f'<Geometry GeometryType="XYZ">{_item(numbers, points)}</Geometry>\n{_topology(numbers, cells)}')
         for centre, data in (("Node", point_data), ("Cell", cell_data)):

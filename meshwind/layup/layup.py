@@ -1,5 +1,7 @@
 """The assessment of a batch of paths: crossings, coverage, the quad mesh, and all that follows from them."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from functools import cached_property
 

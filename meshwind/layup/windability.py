@@ -1,5 +1,7 @@
 """Where, and in which directions, a taut fibre presses on the surface (Fig. 1.3): from its curvature alone."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -5,6 +5,8 @@ where they touch, and a planner's tool of its own: with a constant slip, kg = sl
 geodesic by as much as a friction of |slip| can hold (3.12).
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
@@ -182,7 +184,7 @@ class Marched:
         """Why each ended (p,), as `Stop`."""
         return np.asarray(self.counts[:, STOP])
 
-    def put(self, at: Ints, by: "Marched", which: Ints) -> "Marched":
+    def put(self, at: Ints, by: Marched, which: Ints) -> Marched:
         """The same with those of numbers `at` (k,) replaced by those that have the numbers `which` (k,) in `by`."""
         rows, slip, counts = list(self.rows), self.slip.copy(), self.counts.copy()
         for old, new in zip(at, which, strict=True):

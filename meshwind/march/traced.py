@@ -1,5 +1,7 @@
 """What a march gives: the fibre and why it stopped."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from enum import IntEnum
 

@@ -1,5 +1,7 @@
 """Inspection of a mesh: its pieces, rims and faults, and how it would be wound."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path

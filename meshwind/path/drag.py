@@ -4,6 +4,8 @@ Each frame starts from the answer of the one before; with friction that answer i
 frame's friction holds, so that the fibre remembers its way.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 
 import numpy as np
@@ -41,7 +43,7 @@ def drag(  # noqa: PLR0913
     end: ArrayLike,
     *,
     particles: int = 201,
-    friction: "float | Friction | Callable[[Floats], Floats] | Floats" = 0.0,
+    friction: float | Friction | Callable[[Floats], Floats] | Floats = 0.0,
     initial: ArrayLike | None = None,
     bridging: bool = True,
     tolerance: float = TOLERANCE,

@@ -1,5 +1,7 @@
 """Friction of fibre on part: a number, a function of position, or a field."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
@@ -110,7 +112,7 @@ def friction_from(surface: Surface, points: Floats, values: Floats, grid: int = 
 
 
 def friction_of(
-    surface: Surface, given: "float | Friction | Callable[[Floats], Floats] | Floats", grid: int = ROWS
+    surface: Surface, given: float | Friction | Callable[[Floats], Floats] | Floats, grid: int = ROWS
 ) -> Friction:
     """Take friction as a number, a table (rows, columns), or a function of points (n, 3) that returns (n,)."""
     if isinstance(given, Friction):

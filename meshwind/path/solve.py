@@ -1,5 +1,7 @@
 """Solve a batch of taut paths on a surface."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 
 import numpy as np
@@ -71,7 +73,7 @@ def solve(  # noqa: PLR0913
     *,
     particles: int | None = PARTICLES,
     family: ArrayLike | None = None,
-    friction: "float | Friction | Callable[[Floats], Floats] | Floats" = 0.0,
+    friction: float | Friction | Callable[[Floats], Floats] | Floats = 0.0,
     initial: ArrayLike | None = None,
     bridging: bool = True,
     accuracy: float = ACCURACY,

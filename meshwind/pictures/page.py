@@ -1,5 +1,7 @@
 """The page that a picture is drawn on: its size in pixels, and how it is drawn."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from meshwind.core.errors import BadInputError

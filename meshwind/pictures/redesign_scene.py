@@ -1,5 +1,7 @@
 """Scene of redesign.png: a part before and after the redesign."""
 
+from __future__ import annotations
+
 from os import PathLike
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """Pictures and movies from a run's folder alone."""
 
+from __future__ import annotations
+
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,5 +1,7 @@
 """Families of paths: where they start and end, and how their revolutions relate to the winding angle (6.1)."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,7 @@
 """End points that a user gives: fixation pins, from a CSV file."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import numpy as np

@@ -1,5 +1,7 @@
 """The choice of the number of revolutions: one that is feasible, bridges least, and presses on most of the surface."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 

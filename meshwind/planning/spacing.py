@@ -5,6 +5,8 @@ neighbours' curves.  On a part with a boss, fibres rest on either side of it but
 the gap stays.  Such a parting is found by bisection, and reported rather than filled.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -68,7 +70,7 @@ class _Pairs(NamedTuple):
     step: Floats
     gap: Floats
 
-    def chosen(self, index: Ints) -> "_Pairs":
+    def chosen(self, index: Ints) -> _Pairs:
         """Some of the pairs, by their numbers."""
         return _Pairs(self.first[index], self.second[index], self.step[index], self.gap[index])
 

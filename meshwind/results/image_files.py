@@ -1,5 +1,7 @@
 """The chart as an image: PNG with 16 bits per channel, or an array in NPZ."""
 
+from __future__ import annotations
+
 import struct
 import zlib
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Write a redesign into a folder: the edited mesh, its pictures and its report, whole or not at all."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import replace
 from os import PathLike
@@ -94,7 +96,7 @@ def write_redesign(
         with clock.stage("write"):
             write_edited(staging, edited.mesh, edited.displacement, units)
             if is_there():
-                write_step_of(staging / EDITED_STEP, edited.after.surface, units)
+                write_step_of(staging / EDITED_STEP, edited.after.surface, units, edited.part.name)
         if render:
             with clock.stage("render"):
                 missing = driver.paint(_pictures(staging, edited, units))

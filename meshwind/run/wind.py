@@ -1,5 +1,7 @@
 """Wind a mesh and write the results with their pictures into a folder."""
 
+from __future__ import annotations
+
 from os import PathLike, fspath
 
 from meshwind.core.progress import Progress

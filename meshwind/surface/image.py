@@ -1,5 +1,7 @@
 """The chart as an image (Fig. 7.7b): a pixel's red, green and blue are the x, y and z of a surface point."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import make_interp_spline

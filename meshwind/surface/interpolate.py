@@ -1,5 +1,7 @@
 """Interpolation by a B-spline surface, of formulas and of grids of points."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from typing import TypeAlias
 

@@ -5,6 +5,8 @@ in whatever unit its arguments have.  `spans` are the polynomial pieces in u and
 fourth power.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 
 import numpy as np

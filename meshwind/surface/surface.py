@@ -1,5 +1,7 @@
 """The one surface type: a uniform bicubic tensor B-spline, periodic in u or not."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -171,7 +173,7 @@ class Surface(PicklableRecord, Geometric):
         return Spline(self.net, self.periodic)
 
     @cached_property
-    def rims(self) -> "dict[float, Rim]":
+    def rims(self) -> dict[float, Rim]:
         """The rings that `rims.rim` has measured, by v."""
         return {}
 
@@ -196,7 +198,7 @@ class Surface(PicklableRecord, Geometric):
         return frozen(self.control_points.reshape(-1, 3).mean(axis=0))
 
     @cached_property
-    def centred(self) -> "Surface":
+    def centred(self) -> Surface:
         """The surface moved to its own middle, where kernels lose no digits far from the origin."""
         return Surface(self.control_points - self.middle, self.periodic)
 

@@ -1,5 +1,7 @@
 """Wind a fitted part and assess what was laid."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path

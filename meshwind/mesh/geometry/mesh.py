@@ -1,5 +1,7 @@
 """The triangle mesh of a part, and the annulus: the mesh with two open ends that is flattened."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -75,7 +77,7 @@ class Mesh(PicklableRecord, Geometric):
         """Diagonal of the bounding box, in the mesh's units."""
         return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
 
-    def in_units(self, given: str | None, assumed: str = "") -> "Mesh":
+    def in_units(self, given: str | None, assumed: str = "") -> Mesh:
         """Name the unit of the mesh; nothing is converted.
 
         Parameters

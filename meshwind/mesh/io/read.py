@@ -1,5 +1,7 @@
 """Reading of a triangle mesh from a file: chooses the reader of its format, and turns errors into one line."""
 
+from __future__ import annotations
+
 import contextlib
 import difflib
 import io

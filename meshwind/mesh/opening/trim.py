@@ -1,5 +1,7 @@
 """Trimming of a mesh to an annulus: ends are chosen, other rims filled, and poles opened."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 
 import numpy as np

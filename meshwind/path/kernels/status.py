@@ -1,5 +1,7 @@
 """How a path ended: the statuses that the solver sets, with advice for the user."""
 
+from __future__ import annotations
+
 from enum import IntEnum
 
 from meshwind.core.spoken import argument

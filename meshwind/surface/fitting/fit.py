@@ -3,6 +3,8 @@
 Which of the two, and how far off they are, is found from the mesh itself (`evidence`).
 """
 
+from __future__ import annotations
+
 from dataclasses import replace
 
 import numpy as np
