@@ -60,7 +60,7 @@ def called(*arguments: object) -> subprocess.CompletedProcess[str]:
 
 def test_the_files_keep_to_their_contract(run: Path, tmp_path: Path) -> None:
     done = write_program(run, to=("poses",), out=tmp_path, tension=20.0)
-    assert [file.name for file in done.files] == ["poses.csv", "program.csv", "program.json"]
+    assert [file.name for file in done.files] == ["poses.csv", "program.csv", "program.json", "program_columns.csv"]
     figures = json.loads((tmp_path / "program.json").read_text())
     assert figures["files"] == [file.name for file in done.files]
     with (tmp_path / "program.csv").open() as file:

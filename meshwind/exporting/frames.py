@@ -8,12 +8,35 @@ import numpy as np
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import millimetres
+from meshwind.results.legends import write_legend
 from meshwind.results.reading import Results
-from meshwind.results.schema import ALL_FRAMES, FRAMES_FOLDER, frames_of
+from meshwind.results.schema import ALL_FRAMES, FRAMES_FOLDER, FRAMES_LEGEND, frames_of
 
-HEADER = (
-    "index,arc_length,parameter_s,x,y,z,tx,ty,tz,nx,ny,nz,sx,sy,sz,width,left_x,left_y,left_z,right_x,right_y,right_z"
-)
+LEGEND = {
+    "index": ("", "number of the frame, from 0"),
+    "arc_length": ("{u}", "length of the fibre from its start"),
+    "parameter_s": ("", "the same over the whole length"),
+    **dict.fromkeys("xyz", ("{u}", "point of the fibre")),
+    **{f"t{axis}": ("", "unit tangent, in the direction of laying") for axis in "xyz"},
+    **{f"n{axis}": ("", "unit normal, out of the part and square to the tangent") for axis in "xyz"},
+    **{f"s{axis}": ("", "normal x tangent: to the left, looking along the fibre") for axis in "xyz"},
+    "width": ("{u}", "width of the band"),
+    **{f"left_{axis}": ("{u}", "left edge of the band") for axis in "xyz"},
+    **{f"right_{axis}": ("{u}", "right edge of the band") for axis in "xyz"},
+}
+"""What the columns of the files are."""
+LABELS = {
+    "filament": ("", "number of the filament, from 0; in files of filaments"),
+    "path": ("", "path in paths.vtp, from 0, -1 where it is none; in all.csv and in files of filaments and layers"),
+    "family": ("", "sense of turning of the path, 1 or -1; in all.csv"),
+    "layer": ("", "number of the layer, from 0; in files of filaments and layers"),
+    "circuit": ("", "number of the circuit, from 0; likewise"),
+    "pass": ("", "number of the pass, from 0; likewise"),
+    "kind": ("", "0 laid on the part, 1 bridge, 2 turnaround, 3 dwell, 4 join between layers; likewise"),
+    "bridge": ("", "1 where the fibre is off the part, 0 where it lies on it; likewise"),
+}
+"""What the columns before these are."""
+HEADER = ",".join(LEGEND)
 STEP, ANGLE = 0.02, 5.0
 """Default of the longest step, over the part's diagonal, and of the largest turn, in degrees."""
 _SHORTEST = 0.02
@@ -143,6 +166,7 @@ def write_frames(
     if not len(rest):
         raise BadInputError(f"no path of {results.folder} came to rest, so there is none to follow; wind it otherwise")
     (folder / FRAMES_FOLDER).mkdir()
+    write_legend(folder / FRAMES_FOLDER / FRAMES_LEGEND, LABELS | LEGEND, "mm")
     paths, sharp = results.paths, 0
     with (folder / FRAMES_FOLDER / ALL_FRAMES).open("w", encoding="ascii") as every:
         every.write(f"path,family,{HEADER}\n")

@@ -85,6 +85,29 @@ class Blocks:
         return Blocks(*(getattr(self, each.name)[which] for each in fields(Blocks)))
 
 
+LEGEND = {
+    "index": ("", "number of the block, from 0"),
+    "layer": ("", "number of the layer, from 0"),
+    "circuit": ("", "number of the circuit, from 0"),
+    "pass": ("", "number of the pass, from 0"),
+    "path": ("", "path in paths.vtp, -1 where it is none"),
+    "kind": ("", "0 laid on the part, 1 bridge, 2 turnaround, 3 dwell, 4 join, 5 travel with the fibre cut"),
+    "arc_length": ("{u}", "length laid since the start"),
+    **dict.fromkeys("xyz", ("{u}", "where the fibre leaves part, collar, pin or shaft")),
+    **{f"t{axis}": ("", "unit tangent of the fibre there, in the direction of laying") for axis in "xyz"},
+    **{f"n{axis}": ("", "outward unit normal there") for axis in "xyz"},
+    "free_length": ("{u}", "length of the free span: the eye is at (x, y, z) + free_length (tx, ty, tz)"),
+    "eye_x": ("{u}", "the eye along the mandrel's axis, from the axis' origin in program.json"),
+    "eye_r": ("{u}", "distance of the eye from the mandrel's axis"),
+    "mandrel_deg": ("degrees", "angle of the mandrel, unwrapped"),
+    "roll_deg": ("degrees", "roll of the eye: atan2 of the tangent along and around the axis"),
+    "time": ("s", "time since the start"),
+    "tension": ("N", "tension of the fibre, 0 where none is set"),
+    "slip": ("", "friction that the fibre needs there; nan in the air"),
+}
+"""What the columns of program.csv are."""
+
+
 def columns(blocks: Blocks) -> Data:
     """The columns of program.csv, in their order."""
     vectors = zip(("x", "t", "n"), (blocks.point, blocks.tangent, blocks.normal), strict=True)

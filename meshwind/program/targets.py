@@ -15,20 +15,22 @@ from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import nearest
 from meshwind.core.units import UNKNOWN, millimetres
 from meshwind.core.version import version
-from meshwind.program.blocks import TRAVEL, columns
+from meshwind.program.blocks import LEGEND, TRAVEL, columns
 from meshwind.program.machine import DEFAULT, read_machine
 from meshwind.program.posts.dialects import DIALECTS
 from meshwind.program.program import Program, program
 from meshwind.program.readback.compare import ReadBack
 from meshwind.program.rewinding.rewind import Ground, rewind
-from meshwind.program.robot import HEADER, LEGEND, rows
+from meshwind.program.robot import HEADER, rows
+from meshwind.program.robot import LEGEND as OF_POSES
 from meshwind.program.seen import SECONDS, SEEN, check, write_seen
 from meshwind.program.texts import write_texts
 from meshwind.program.work import Work
 from meshwind.results.folder import beside
+from meshwind.results.legends import write_legend
 from meshwind.results.reading import read_results
 from meshwind.results.report import plain
-from meshwind.results.schema import POSES, PROGRAM_CSV, PROGRAM_JSON
+from meshwind.results.schema import POSES, PROGRAM_CSV, PROGRAM_JSON, PROGRAM_LEGEND
 
 Writer: TypeAlias = Callable[[Path, Program], list[str]]
 """Writes into an existing folder; returns what the user should know."""
@@ -152,10 +154,11 @@ def _stretches(back: Any) -> Any:
 
 
 def _csv(folder: Path, made: Program) -> list[str]:
-    """Write program.csv."""
+    """Write program.csv and what its columns are."""
     held = columns(made.blocks)
     table = np.column_stack(list(held.values()))
     formats = 6 * ["%d"] + (table.shape[1] - 6) * ["%.12g"]
+    write_legend(folder / PROGRAM_LEGEND, LEGEND, made.work.units)
     with (folder / PROGRAM_CSV).open("w", encoding="ascii") as file:
         np.savetxt(file, table, fmt=formats, delimiter=",", header=",".join(held), comments="")
     return []
@@ -165,7 +168,7 @@ def _poses(folder: Path, made: Program) -> list[str]:
     """Write poses.csv."""
     table = rows(made.blocks, made.mandrel, millimetres(made.work.units))
     formats = 7 * ["%d"] + (table.shape[1] - 7) * ["%.12g"]
-    legend = "".join(f"# {name}: {words}\n" for name, words in LEGEND.items())
+    legend = "".join(f"# {name}: {words}\n" for name, words in OF_POSES.items())
     with (folder / POSES).open("w", encoding="ascii") as file:
         file.write(legend)
         np.savetxt(file, table, fmt=formats, delimiter=",", header=HEADER, comments="")

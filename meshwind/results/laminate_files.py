@@ -17,16 +17,25 @@ from meshwind.filament.thickness import Thickness
 from meshwind.layup.direction import winding_angle
 from meshwind.results import schema
 from meshwind.results.laminate_types import JoinFigures, LayerFigures
+from meshwind.results.legends import write_legend
 from meshwind.results.station_figures import angle_figures, cover_figures, thickness_figures
 from meshwind.results.vtk_files import write_faces, write_lines
 from meshwind.surface.grid import Grid, grid
 
-_HEAD = "v,z,layer,angle,thickness,cover"
+LEGEND = {
+    "v": ("", "place along the part, from 0 at the start rim to 1 at the end rim"),
+    "z": ("{u}", "height along the part's axis"),
+    "layer": ("", "number of the layer, from 0"),
+    "angle": ("degrees", "winding angle, 0 along the part and 90 around it: the median over the paths"),
+    "thickness": ("{u}", "thickness of the layer, the mean around the part; empty where that of the band is not known"),
+    "cover": ("", "layers of band over the surface, the mean around the part"),
+}
+"""The columns of laminate.csv."""
 
 
 def write_laminate(out: Path, laminate: Laminate, units: str = "") -> None:
     """Write laminate.csv, laminate.vtu, laminate.npz and layers.vtp into an existing folder."""
-    write_stations(out / schema.STATIONS, [(layer.stations, layer.thickness) for layer in laminate.layers])
+    write_stations(out, [(layer.stations, layer.thickness) for layer in laminate.layers], units)
     _write_maps(out / schema.LAMINATE, laminate, units)
     _write_fibres(out / schema.LAYER_FIBRES, laminate, units)
     with (out / schema.LAYER_SURFACES).open("wb") as file:
@@ -35,10 +44,14 @@ def write_laminate(out: Path, laminate: Laminate, units: str = "") -> None:
         np.savez(file, **arrays)
 
 
-def write_stations(path: Path, layers: Sequence[tuple[Stations, Thickness | None]]) -> None:
-    """A row for each station and layer; a layer has none where it is not, and no thickness where that is not known."""
-    with path.open("w", encoding="ascii") as file:
-        file.write(f"{_HEAD}\n")
+def write_stations(out: Path, layers: Sequence[tuple[Stations, Thickness | None]], units: str = "") -> None:
+    """Write laminate.csv with its legend into an existing folder.
+
+    It has a row for each station and layer; a layer has none where it is not, and no thickness where that is not known.
+    """
+    write_legend(out / schema.STATIONS_LEGEND, LEGEND, units)
+    with (out / schema.STATIONS).open("w", encoding="ascii") as file:
+        file.write(f"{','.join(LEGEND)}\n")
         for number, (at, over) in enumerate(layers):
             here = np.isfinite(at.angle)
             columns = [at.v, at.height, np.full(len(at.v), number), np.degrees(at.angle), at.cover]

@@ -142,7 +142,7 @@ CHART = File("chart.png")
 # layers on layers
 
 LAYER = Field("layer", dtype="int64")
-STATIONS = File("laminate.csv")
+STATIONS, STATIONS_LEGEND = File("laminate.csv"), File("laminate_columns.csv")
 LAYER_FIBRES = File("layers.vtp", point_data=(UV, NORMAL), cell_data=(LAYER, FAMILY))
 LAYER_SURFACES = File("laminate.npz", point_data=(CONTROL_POINTS, UNITS))
 """The control points (layers + 1, nu, nv, 3) of the surfaces below each layer and above the last."""
@@ -203,6 +203,7 @@ VIEWER = File("viewer.html")
 SHELL, SHELL_S4R = File("shell.inp"), File("shell_s4r.inp")
 STEP = File("surface.step")
 PROGRAM_CSV, PROGRAM_JSON, POSES = File("program.csv"), File("program.json"), File("poses.csv")
+PROGRAM_LEGEND = File("program_columns.csv")
 PROGRAM_PAGE, AXES_PICTURE, HITS_PICTURE = File("program.html"), picture("axes"), picture("hits")
 """The program of a machine; that in the words of a machine has the same stem and another ending."""
 
@@ -265,8 +266,8 @@ _FIBRE_FIELD = (*family_fields(1), *family_fields(-1), THICKNESS, NORMAL)
 FIBERS, FIBERS_LEGACY = (File(name, point_data=(U, V), cell_data=_FIBRE_FIELD) for name in ("fibers.vtu", "fibers.vtk"))
 """Fields of families that the run does not have are missing; a laminate has those of its layers instead."""
 
-FRAMES_FOLDER, ALL_FRAMES, FILAMENT_FRAMES = "frames", "all.csv", "filament.csv"
-"""A folder, and the files in it that hold the frames of all paths, and of the filament in the order of winding."""
+FRAMES_FOLDER, ALL_FRAMES, FILAMENT_FRAMES, FRAMES_LEGEND = "frames", "all.csv", "filament.csv", "columns.csv"
+"""A folder, and in it the frames of all paths, those of the filament in the order of winding, and their legend."""
 
 
 def frames_of(path: int) -> str:
@@ -293,14 +294,26 @@ EXPORTS = re.compile(
         re.escape(name) for name in (SHELL, SHELL_S4R, FIBERS, FIBERS_LEGACY, STEP, POSES, AXES_PICTURE, HITS_PICTURE)
     )
     + rf"|{PROGRAM_CSV.stem}(_\w+)?\.\w+"
-    + rf"|{FRAMES_FOLDER}/(path_\d{{3,}}\.csv|layer_\d{{3,}}\.csv|{re.escape(ALL_FRAMES)}|{re.escape(FILAMENT_FRAMES)})"
+    + rf"|{FRAMES_FOLDER}/(path_\d{{3,}}\.csv|layer_\d{{3,}}\.csv|{re.escape(ALL_FRAMES)}|{re.escape(FILAMENT_FRAMES)}"
+    + rf"|{re.escape(FRAMES_LEGEND)})"
     + rf"|{FORMATS_FOLDER}/({'|'.join(file.stem for file in CONVERTED)})\.({'|'.join(sum(SUFFIXES.values(), ()))})"
 )
 """Names of exported files except VIEWER; they are removed when the run is replaced."""
 
 RESULTS = frozenset(
     (PATHS, BRIDGES, FILAMENT, CROSSINGS, QUADS, QUADS_OBJ, SURFACE, SPLINE, CHART, EDITED, EDITED_PLY, REPORT)
-    + (CONFIG, VIEWER, FIT_PICTURE, REVOLUTIONS_PICTURE, BEFORE, AFTER, STATIONS, LAYER_FIBRES, LAYER_SURFACES)
+    + (
+        CONFIG,
+        VIEWER,
+        FIT_PICTURE,
+        REVOLUTIONS_PICTURE,
+        BEFORE,
+        AFTER,
+        STATIONS,
+        STATIONS_LEGEND,
+        LAYER_FIBRES,
+        LAYER_SURFACES,
+    )
     + (LAMINATE, SLICE, ROUNDS, EDITED_STEP)
     + tuple(picture(name) for name in (*PICTURES, REDESIGN, SHEET))
     + tuple(movie(kind) for kind in MOVIES)

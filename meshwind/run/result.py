@@ -35,7 +35,6 @@ from meshwind.results.schema import (
     REPORT,
     REVOLUTIONS_PICTURE,
     SHEET,
-    STATIONS,
     WINDING,
     picture,
 )
@@ -247,7 +246,7 @@ def write_result(result: Result, out: Path, render: bool, overwrite: bool, clock
             if result.layered is not None:
                 write_laminate(staging, result.layered.laminate, result.mesh.units)
             elif result.plain.band.width is not None and result.plain.stations is not None:
-                write_stations(staging / STATIONS, [(result.plain.stations, result.plain.thickness)])
+                write_stations(staging, [(result.plain.stations, result.plain.thickness)], result.mesh.units)
             if result.chosen is not None and render:
                 draw_revolutions(staging / REVOLUTIONS_PICTURE, result.chosen, result.mesh.name)
         if render:
