@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import pyvista
 
 _THICK = 2e-3
-"""Radius of a fibre over the diagonal of all that is seen."""
+"""Radius of a fibre over the diagonal of the part."""
 
 
 def has_screen() -> bool:
@@ -38,16 +38,17 @@ def window(blocks: Mapping[str, Block], title: str, **options: Any) -> pyvista.P
     from meshwind.pictures import bodies, canvas
 
     made = pyvista.Plotter(title=title, **options)
+    thick = _THICK * float(np.linalg.norm(np.ptp(blocks["part"].points, axis=0)))
     for name, block in blocks.items():
         mesh = block.to_pyvista()
         if name == "part":
             made.add_mesh(mesh, color=canvas.PART, smooth_shading=True, name=name)
         elif name == "fibres":
-            tubes = mesh.tube(radius=_THICK * float(np.linalg.norm(np.ptp(block.points, axis=0))), n_sides=8)
+            tubes = mesh.tube(radius=thick, n_sides=8)
             colours = [bodies.FAMILY[family] for family in (-1, 1)]
             made.add_mesh(tubes, scalars="family", cmap=colours, show_scalar_bar=False, name=name)
         elif name == "bridges":
-            tubes = mesh.tube(radius=1.5 * _THICK * float(np.linalg.norm(np.ptp(block.points, axis=0))), n_sides=8)
+            tubes = mesh.tube(radius=1.5 * thick, n_sides=8)
             made.add_mesh(tubes, scalars="gap", cmap=colour_map("gap"), name=name, scalar_bar_args={"title": "gap"})
     made.add_axes()
     return made
