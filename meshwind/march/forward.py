@@ -192,7 +192,7 @@ class Marched:
         slip[at], counts[at] = by.slip[which], by.counts[which]
         return Marched(self.surface, tuple(rows), slip, counts)
 
-    def beside(self, slip: Floats, most: float) -> tuple["Marched", Bools]:
+    def beside(self, slip: Floats, most: float) -> tuple[Marched, Bools]:
         """The fibres with other slips (p,), little different, and which are good to `most` over the size.
 
         Those end on the rims that these end on.
@@ -207,7 +207,7 @@ class Marched:
         parallel_for(go_beside, len(lengths), 1, self.surface.spline, made)
         return Marched(self.surface, tuple(np.split(made.moved, first[1:-1])), slip, self.counts), good
 
-    def with_more(self, other: "Marched") -> "Marched":
+    def with_more(self, other: Marched) -> Marched:
         """The same and after them those of another march over the same surface."""
         return Marched(
             self.surface, (*self.rows, *other.rows), np.concatenate([self.slip, other.slip]),
