@@ -1,6 +1,7 @@
 """Write `meshwind/core/kernels.json`: the kernels that the commands compile, found by running them all in one process.
 
-Nothing may be compiled yet: the folder of NUMBA_CACHE_DIR must be empty.  Takes some minutes.
+Nothing may be compiled yet: the folder of NUMBA_CACHE_DIR must be empty.  Takes some minutes, in which nothing is
+compiled ahead.
 
     NUMBA_CACHE_DIR=$(mktemp -d) python examples/record_kernels.py
 """
@@ -103,6 +104,7 @@ def main() -> None:
     """Run the jobs and write what they compile."""
     recorder = Recorder()
     event.register("numba:compile", recorder)
+    write([])  # what the table lists is compiled by other processes, unseen
     with TemporaryDirectory() as folder:
         for job in JOBS:
             recorder.job = job
