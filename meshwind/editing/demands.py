@@ -34,13 +34,15 @@ class Demands:
     """Inequalities matrix @ change >= least over the net's coordinates (k, 3m), in the surface's units.
 
     chosen (k,) marks about one per span along each path: the others nearly repeat them; short (k,) marks those of lines
-    that touch further out, which matter beside the chosen ones where not all can be met.
+    that touch further out, which matter beside the chosen ones where not all can be met.  part (k,): of a shortfall
+    that is the same for all, what each may have.
     """
 
     matrix: sparse.csr_array
     least: Floats
     chosen: Bools
     short: Bools
+    part: Floats
 
     def thinned(self, by: int) -> "Demands":
         """The same with only every so many-th of the chosen ones chosen."""
@@ -49,8 +51,8 @@ class Demands:
         return replace(self, chosen=few)
 
 
-def reach(paths: Paths, at_most: float = 0.0) -> Demands:
-    """The surface must come up to every lifted particle, (6.9) to (6.11), or as near as `at_most`.
+def reach(paths: Paths, at_most: float = 0.0, part: Floats | None = None) -> Demands:
+    """The surface must come up to every lifted particle, (6.9) to (6.11), or as near as `at_most`; part: of each path.
 
     The fibre there is a straight line between two points where it touches, and moves as the surface does there: the
     row is the change of the surface below it less that of the line.  Where the surface sinks at such a point, the fibre
@@ -78,7 +80,9 @@ def reach(paths: Paths, at_most: float = 0.0) -> Demands:
         end = _beyond(paths, run, some.path, last[chosen], after)
         demands.append(_above(paths, some, begin, end))
     whole = together(demands)
-    return replace(whole, least=whole.least - at_most)
+    each = np.ones(len(paths)) if part is None else part
+    of_rows = each[np.concatenate([path, *[some.path] * len(BEYOND)])]
+    return replace(whole, least=whole.least - at_most, part=of_rows)
 
 
 def together(demands: Sequence[Demands]) -> Demands:
@@ -88,6 +92,7 @@ def together(demands: Sequence[Demands]) -> Demands:
         np.concatenate([each.least for each in demands]),
         np.concatenate([each.chosen for each in demands]),
         np.concatenate([each.short for each in demands]),
+        np.concatenate([each.part for each in demands]),
     )
 
 
@@ -130,7 +135,8 @@ def _above(paths: Paths, below: _Below, first: Ints, last: Ints, chosen: Bools |
         rows.append(along(found, part * weight[:, None], below.direction, size))
     none = np.zeros(len(least), dtype=bool)
     matrix = sparse.csr_array(rows[0] + rows[1] + rows[2])
-    return Demands(matrix, least, none, ~none) if chosen is None else Demands(matrix, least, chosen, none)
+    short = ~none if chosen is None else none
+    return Demands(matrix, least, none if chosen is None else chosen, short, np.ones(len(least)))
 
 
 def _beyond(paths: Paths, run: Floats, path: Ints, at: Ints, by: float) -> Ints:
@@ -170,7 +176,7 @@ def press(paths: Paths, curvature: float, at_most: float = 0.0, rim: float = 1.0
     firm = np.where(from_rim < 1.0, rim, 1.0) * curvature
     least = length * (np.where(less > 0.0, -less, firm) + (turn * normal).sum(axis=1))
     every = np.ones(len(least), dtype=bool)
-    return Demands(matrix, least, every, ~every)
+    return Demands(matrix, least, every, ~every, np.ones(len(least)))
 
 
 def _pressed(paths: Paths, at_most: float) -> tuple[Floats, Floats, Floats]:

@@ -20,6 +20,7 @@ from meshwind.editing.shape_rows import FINE, Kept, nothing, one_way, same_volum
 from meshwind.editing.stencil import pitches
 from meshwind.editing.step import Demanded, Limits, Step, energy, step
 from meshwind.editing.symmetry import net_group, planes
+from meshwind.editing.trust import Trust
 from meshwind.editing.windings import Course, marked_share
 from meshwind.path import Paths
 from meshwind.path.lengths import tolerated
@@ -44,6 +45,8 @@ The refit of the edited sample cast lifted fibres along its rims, and nowhere el
 """
 SHARES = (1.0, 0.5, 0.25, 0.1)
 """Of a change that leaves fibres out of reach: those that are tried in turn until the largest gap is lower."""
+LEAST_PART = 0.5
+"""Of the largest gap left: what the paths that are asked for may always have."""
 MAX_IDLE_ROUNDS = 2
 """Rounds in succession without a gain after which the edit stops."""
 UNSOLVED = 1e3 * ACCURACY
@@ -91,10 +94,18 @@ class _State:
         """Share of the particles that lie off the surface by more than counts as none."""
         return marked_share([lifted(paths, self.at_most) for paths in self.wound])
 
+    def worst(self, parts: Sequence[Floats]) -> float:
+        """Largest gap beyond what may stay, each over the part (p,) that its path may have."""
+        gaps = [paths.gap.max(axis=1) - self.at_most for paths in self.wound]
+        return max(float((gap / part).max(initial=0.0)) for gap, part in zip(gaps, parts, strict=True))
+
 
 @dataclass(frozen=True)
 class _Problem:
-    """What is the same in all rounds: first surface and largest gap, windings, free moves and cost, limits."""
+    """What is the same in all rounds: first surface and largest gap, windings, free moves and cost, limits.
+
+    parts: of the largest gap left, what the paths (p,) of each winding may have.
+    """
 
     first: Surface
     courses: tuple[Course, ...]
@@ -103,6 +114,7 @@ class _Problem:
     options: EditOptions
     threshold: float
     gap: float
+    parts: tuple[Floats, ...]
 
     @property
     def curvature(self) -> float:
@@ -143,29 +155,45 @@ class _Problem:
         """How far the control points of a surface have been moved (m, 3)."""
         return np.asarray((surface.control_points - self.first.control_points).reshape(-1, 3))
 
-    def step(self, now: _State, total: bool, short: bool) -> Step:
-        """Solve for the change of the control points that the paths demand; total and short: as in `step`."""
+    def step(self, now: _State, total: bool, short: bool, near: float) -> Step:
+        """Solve for the change of the control points that the paths demand; arguments as in `step` and `Limits`."""
         moved, curvature = self.moved(now.surface), self.curvature * (1.0 if total else FINISH)
         at_most = self.options.at_most
-        limits = Limits(self.moves, moved, self.bounds, self.kept(now.surface, moved))
+        limits = Limits(self.moves, moved, self.bounds, self.kept(now.surface, moved), near)
         demands = (
-            together([reach(paths, at_most) for paths in now.wound]),
+            together([reach(*each) for each in zip(now.wound, [at_most] * len(now.wound), self.parts, strict=True)]),
             together([press(paths, curvature, at_most, self.rim) for paths in now.wound]),
         )
         early = total and now.gap > max(LAST * self.gap, self.pitch)
         return step(Demanded(*demands, self.cost, limits, self.threshold, total), short, early)
 
-    def after(self, now: _State, found: Step) -> _State:
-        """Change the control points, and lay the paths again from where they were.
+    def after(self, now: _State, found: Step, near: float) -> tuple[_State, float]:
+        """Change the control points, and lay the paths again from where they were; also the share that was changed.
 
         Where a fibre stays out of reach the paths may leave what the program knows of them.  Then only a share of the
         change is made, if less lowers the largest gap, and none where that does not help.
         """
-        for share in SHARES if found.least > 0.0 else (1.0,):
+        if found.least == 0.0:
+            return self.changed(now, found.change), 1.0
+        worst = now.worst(self.parts)
+        for share in SHARES if np.isinf(near) else (1.0,):
             after = self.changed(now, share * found.change)
-            if found.least == 0.0 or is_better((after.bridged, after.gap), (now.bridged, now.gap)):
-                return after
-        return now
+            if after.worst(self.parts) < worst:
+                return after, share
+        return now, share
+
+    def trust(self, trust: Trust, now: _State, after: _State, found: Step, share: float) -> Trust:
+        """How far the next round may go, when a share of a change was made."""
+        worst = now.worst(self.parts)
+        expected = worst - share * (worst - found.shortfall)
+        change = share * float(np.linalg.norm(found.change, axis=1).max())
+        return trust.after(change, (worst, expected, after.worst(self.parts)))
+
+    def gains(self, now: _State, best: _State, lowest: float, short: bool) -> bool:
+        """Whether a state is better than the best so far; short: whether the largest gap alone counts, as it stays."""
+        if short and now.bridged > 0.0:
+            return now.worst(self.parts) < best.worst(self.parts)
+        return is_better((now.bridged, now.gap), (best.bridged, lowest))
 
     def changed(self, now: _State, change: Floats) -> _State:
         """A state with its control points changed (m, 3)."""
@@ -222,7 +250,7 @@ def edit(
     cost = energy(surface, options.fairness)
     courses = (Course.of(winding),) if isinstance(winding, Options) else tuple(winding)
     now = _State(surface, tuple(each.dense(surface) for each in courses), options.at_most)
-    problem = _Problem(surface, courses, moves, cost, options, limit, now.gap)
+    problem = _Problem(surface, courses, moves, cost, options, limit, now.gap, _parts(courses, now.wound))
     best, outcome, figures = _rounds(problem, now, options.rounds, progress)
     final = tuple(each.own(best.surface, paths) for each, paths in zip(courses, best.wound, strict=True))
     held = Held(problem.moved(best.surface), np.where(still, np.inf, problem.bounds), names)
@@ -233,6 +261,19 @@ def edit(
 def _bounds(surface: Surface, options: EditOptions) -> Floats:
     """Largest displacement of each control point (m,), infinite without one."""
     return np.broadcast_to(np.inf if options.bound is None else options.bound, surface.control_points.size // 3)
+
+
+def _parts(courses: Sequence[Course], wound: Sequence[Paths]) -> tuple[Floats, ...]:
+    """Of the largest gap left, what each path (p,) of each winding may have: 1 for those between the ones asked for.
+
+    Others that bridge more lie between these; when their gaps fall at the cost of the ones asked for, the latter would
+    grow.  So all fall by the same share.
+    """
+    asked = [each.asked(len(paths)) for each, paths in zip(courses, wound, strict=True)]
+    most = max(float(paths.gap.max()) for paths in wound)
+    mine = max(float(paths.gap[which].max()) for which, paths in zip(asked, wound, strict=True))
+    part = max(mine / most, LEAST_PART) if most > 0.0 else 1.0
+    return tuple(np.where(which, part, 1.0) for which in asked)
 
 
 def _named(mask: Bools, frozen: Mapping[str, Bools] | None) -> dict[str, Bools]:
@@ -246,24 +287,26 @@ def _rounds(
     problem: _Problem, now: _State, most: int, progress: Progress | None
 ) -> tuple[_State, Outcome, tuple[Round, ...]]:
     """Do up to so many rounds; returns the best state, the outcome, and the figures of the rounds."""
-    best, idle, total, short, figures = now, 0, True, False, list[Round]()
+    best, idle, total, short, trust, figures = now, 0, True, False, Trust(), list[Round]()
     outcome, lowest = Outcome.ROUNDS_SPENT, best.gap  # against the best gap alone, small losses would add up
     for number in range(most):
         if now.bridged == 0.0 and problem.holds(now):
             break
         if progress is not None:
             progress(f"round {number + 1}: {100 * now.bridged:.2g} % bridged, gap {now.gap:.3g}")
-        found = problem.step(now, total, short)
+        found = problem.step(now, total, short, trust.near)
         short = found.least > 0.0
-        after = problem.after(now, found)
+        after, share = problem.after(now, found, trust.near)
+        trust = problem.trust(trust, now, after, found, share) if short else trust
         total = total and not problem.stalls(after.gap, now.gap)
         figures.append(problem.figures(now, after, found))
-        before, now = now, after
+        now = after
         holds = problem.holds(now)
-        better = holds and is_better((now.bridged, now.gap), (best.bridged, lowest))
+        better = holds and problem.gains(now, best, lowest, short)
         lowest = min(lowest, now.gap) if holds else lowest
-        best, idle = (now, 0) if better else (best, idle + holds if after is not before else MAX_IDLE_ROUNDS)
-        outcome = _outcome(now.bridged == 0.0 and holds, found, idle)
+        best, idle = (now, 0) if better else (best, idle + holds)
+        ended = trust.at_rest if short else idle >= MAX_IDLE_ROUNDS
+        outcome = _outcome(now.bridged == 0.0 and holds, found, ended)
         if outcome != Outcome.ROUNDS_SPENT:
             break
     if short and outcome == Outcome.ROUNDS_SPENT:
@@ -298,11 +341,11 @@ def threshold_of(surface: Surface) -> float:
     return max(doubt, LEAST_GAP * surface.size)
 
 
-def _outcome(windable: bool, found: Step, idle: int) -> Outcome:
+def _outcome(windable: bool, found: Step, ended: bool) -> Outcome:
     if windable:
         return Outcome.WINDABLE
     if max(found.solution.primal, found.solution.dual) > UNSOLVED:
         return Outcome.NOT_SOLVED
-    if idle < MAX_IDLE_ROUNDS:
+    if not ended:
         return Outcome.ROUNDS_SPENT
     return Outcome.OUT_OF_REACH if found.least > 0.0 else Outcome.NO_GAIN

@@ -40,6 +40,10 @@ SLIGHT = 1e-8
 """Weight of the change's energy where the least shortfall is sought."""
 AGAIN = 1.003
 """Of the least shortfall: what may be left when the change is sought; without some room its price has no limit."""
+SPARE, LITTLE = 0.1, 1e-4
+"""Of what the largest gap is lowered by, and of the gap: no more room than the first, and no less than both."""
+FINE = 0.1
+"""Of what rows that are left out may be missed by otherwise: what they may be where not all can be met."""
 FREE = np.inf
 """Shortfall that may be left where none is limited."""
 
@@ -77,22 +81,28 @@ class Limits:
     """What a change may be.
 
     moves (3m, r): span the allowed moves; moved (m, 3): displacements of the control points so far; bound (m,): largest
-    total displacement of each, infinite where there is none; kept: rows that every change keeps.
+    total displacement of each, infinite where there is none; kept: rows that every change keeps; near: largest change
+    of a control point in this round.
     """
 
     moves: sparse.csr_array
     moved: Floats
     bound: Floats
     kept: Kept
+    near: float = np.inf
 
     def balls(self, unit: float) -> Balls | None:
-        """The balls of the bounded control points that may move, by the moves over `unit`; None without any."""
+        """The balls of the control points that may move, by the moves over `unit`; None where nothing bounds them."""
         free = np.diff(self.moves.indptr).reshape(-1, 3).any(axis=1)
-        which = np.flatnonzero(free & np.isfinite(self.bound))
+        bounded = np.flatnonzero(free & np.isfinite(self.bound))
+        near = np.flatnonzero(free & np.isfinite(self.near))
+        which = np.append(bounded, near)
         if not len(which):
             return None
         rows = (3 * which[:, None] + np.arange(3)).ravel()
-        return Balls(self.moves[rows], self.moved[which].ravel() / unit, self.bound[which] / unit)
+        centre = np.append(self.moved[bounded].ravel(), np.zeros(3 * len(near)))
+        radius = np.append(self.bound[bounded], np.full(len(near), self.near))
+        return Balls(self.moves[rows], centre / unit, radius / unit)
 
 
 @dataclass(frozen=True)
@@ -125,7 +135,9 @@ def step(demanded: Demanded, short: bool = False, early: bool = False) -> Step:
     least = _solved(demanded, 0.0).shortfall
     if short and least <= rough:
         return _solved(demanded, FREE)
-    return replace(_solved(demanded, AGAIN * least), least=least)
+    now = float((demanded.reach.least / demanded.reach.part).max())
+    room = min((AGAIN - 1.0) * least, SPARE * max(now - least, LITTLE * least))
+    return replace(_solved(demanded, least + room), least=least)
 
 
 def _thinned(demanded: Demanded) -> Demanded:
@@ -138,12 +150,13 @@ def _solved(demanded: Demanded, most: float) -> Step:
     reach, limits = demanded.reach, demanded.limits
     rough = max(demanded.margin, ROUGH * float(reach.least.max(initial=0.0)))
     kept, solves = reach.chosen | reach.short if most < FREE else reach.chosen.copy(), 0
+    rough *= FINE if most < FREE else 1.0
     while True:
         solves += 1
         rows = rows_of(demanded, kept)
         solution = minimise(levelled(rows) if most == 0.0 else soft(rows, most))
         change = limits.moves @ (solution.x[: limits.moves.shape[1]] * rows.unit)
-        missed = reach.least - reach.matrix @ change
+        missed = (reach.least - reach.matrix @ change) / reach.part
         total = limits.moved.ravel() + change
         found = Step(
             change.reshape(-1, 3), float(total @ (demanded.cost @ total)), max(0.0, float(missed.max(initial=0.0))),
@@ -161,8 +174,8 @@ class Rows:
     """The rows of a program, scaled to length 1, and what is common to its forms.
 
     free (k, r): by the moves; least (k,): what they must be at least, and beyond it (k,), over `unit`; reaching: number
-    of the rows of `reach`, which come first; length (k,): that they had; cost (r, r) and slope (r,): of the moves;
-    hard, hard_least: rows that do not give way.
+    of the rows of `reach`, which come first; length (k,): that they had; part (k,): as in `Demands`; cost (r, r) and
+    slope (r,): of the moves; hard, hard_least: rows that do not give way.
     """
 
     free: sparse.csr_array
@@ -170,6 +183,7 @@ class Rows:
     beyond: Floats
     reaching: int
     length: Floats
+    part: Floats
     cost: sparse.csr_array
     slope: Floats
     balls: Balls | None
@@ -191,13 +205,14 @@ def rows_of(demanded: Demanded, kept: Bools) -> Rows:
     first = int(kept.sum())
     usable = free_length > np.where(np.arange(len(length)) < first, *LEAST_FREE) * length
     free, least, beyond, length = free[usable], least[usable], beyond[usable], length[usable]
+    part = np.concatenate([reach.part[kept], press.part[pressing]])[usable]
     unit = max(float(reach.least.max(initial=margin)), float(np.abs(limits.moved).max(initial=0.0)))
     cost = moves.T @ demanded.cost @ moves
     mean = float(cost.diagonal().mean())
     slope = moves.T @ (demanded.cost @ limits.moved.ravel()) / (unit * mean) * demanded.total
     return Rows(
         sparse.diags_array(1.0 / length) @ free, least / length / unit, beyond / unit, int(usable[:first].sum()),
-        length, cost / mean, slope, limits.balls(unit), unit, *_hard(limits, unit),
+        length, part, cost / mean, slope, limits.balls(unit), unit, *_hard(limits, unit),
     )  # fmt: skip
 
 
@@ -223,7 +238,7 @@ def soft(rows: Rows, most: float = FREE) -> Program:
     if most < FREE:
         give[:n] /= rows.length[:n]
         limits = sparse.csr_array((-give[:n], (np.arange(n), size + np.arange(n))), shape=(n, size + count))
-        low = np.append(low, -(rows.beyond[:n] + most / rows.unit / rows.length[:n]))
+        low = np.append(low, -(rows.beyond[:n] + most * rows.part[:n] / rows.unit / rows.length[:n]))
     A = sparse.vstack([sparse.hstack([rows.free, sparse.diags_array(give)]), limits, _padded_rows(rows.hard, count)])
     low = np.append(low, rows.hard_least)
     P = sparse.block_diag([rows.cost, sparse.eye_array(count)])
@@ -235,7 +250,7 @@ def levelled(rows: Rows) -> Program:
     """That of the least largest shortfall, the last of its unknowns beside the moves."""
     n = rows.reaching
     P = sparse.block_diag([SLIGHT * rows.cost, sparse.eye_array(1)])
-    A = sparse.hstack([rows.free[:n], sparse.csr_array(1.0 / rows.length[:n, None])])
+    A = sparse.hstack([rows.free[:n], sparse.csr_array((rows.part / rows.length)[:n, None])])
     A, low = sparse.vstack([A, _padded_rows(rows.hard, 1)]), np.append(rows.least[:n], rows.hard_least)
     q = np.append(SLIGHT * rows.slope, 0.0)
     return Program(sparse.csc_array(P), q, sparse.csc_array(A), low, _padded(rows.balls, 1))

@@ -72,8 +72,12 @@ class Course:
         """Its paths on a surface, laid from where the `dense` ones lie there."""
         if self.is_hoop:
             return self.laid(surface)
-        curves = np.array(dense.uv[np.arange(2 * self.paths) * self._per_gap(surface)])
+        curves = np.array(dense.uv[self.asked(len(dense))])
         return self._helices(surface, self.paths, curves)
+
+    def asked(self, dense: int) -> Bools:
+        """Mask of the dense paths, so many, that start where its own paths do; all of a hoop."""
+        return np.ones(dense, dtype=bool) if self.is_hoop else np.arange(dense) % (dense // (2 * self.paths)) == 0
 
     def _per_gap(self, surface: Surface) -> int:
         return -(-surface.control_points.shape[0] // self.paths)
