@@ -167,7 +167,7 @@ class _Problem:
         early = total and now.gap > max(LAST * self.gap, self.pitch)
         return step(Demanded(*demands, self.cost, limits, self.threshold, total), short, early)
 
-    def after(self, now: _State, found: Step, near: float) -> tuple[_State, float]:
+    def after(self, now: _State, found: Step) -> tuple[_State, float]:
         """Change the control points, and lay the paths again from where they were; also the share that was changed.
 
         Where a fibre stays out of reach the paths may leave what the program knows of them.  Then only a share of the
@@ -176,7 +176,7 @@ class _Problem:
         if found.least == 0.0:
             return self.changed(now, found.change), 1.0
         worst = now.worst(self.parts)
-        for share in SHARES if np.isinf(near) else (1.0,):
+        for share in SHARES:
             after = self.changed(now, share * found.change)
             if after.worst(self.parts) < worst:
                 return after, share
@@ -184,10 +184,8 @@ class _Problem:
 
     def trust(self, trust: Trust, now: _State, after: _State, found: Step, share: float) -> Trust:
         """How far the next round may go, when a share of a change was made."""
-        worst = now.worst(self.parts)
-        expected = worst - share * (worst - found.shortfall)
-        change = share * float(np.linalg.norm(found.change, axis=1).max())
-        return trust.after(change, (worst, expected, after.worst(self.parts)))
+        change = float(np.linalg.norm(found.change, axis=1).max())
+        return trust.after(change, share, (now.worst(self.parts), found.shortfall, after.worst(self.parts)))
 
     def gains(self, now: _State, best: _State, lowest: float, short: bool) -> bool:
         """Whether a state is better than the best so far; short: whether the largest gap alone counts, as it stays."""
@@ -296,7 +294,7 @@ def _rounds(
             progress(f"round {number + 1}: {100 * now.bridged:.2g} % bridged, gap {now.gap:.3g}")
         found = problem.step(now, total, short, trust.near)
         short = found.least > 0.0
-        after, share = problem.after(now, found, trust.near)
+        after, share = problem.after(now, found)
         trust = problem.trust(trust, now, after, found, share) if short else trust
         total = total and not problem.stalls(after.gap, now.gap)
         figures.append(problem.figures(now, after, found))

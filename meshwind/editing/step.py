@@ -42,7 +42,7 @@ AGAIN = 1.003
 """Of the least shortfall: what may be left when the change is sought; without some room its price has no limit."""
 SPARE, LITTLE = 0.1, 1e-4
 """Of what the largest gap is lowered by, and of the gap: no more room than the first, and no less than both."""
-FINE = 0.1
+FINE = 0.005
 """Of what rows that are left out may be missed by otherwise: what they may be where not all can be met."""
 FREE = np.inf
 """Shortfall that may be left where none is limited."""
@@ -153,7 +153,7 @@ def _solved(demanded: Demanded, most: float) -> Step:
     rough *= FINE if most < FREE else 1.0
     while True:
         solves += 1
-        rows = rows_of(demanded, kept)
+        rows = rows_of(demanded, kept, LEAST_FREE if most == FREE else (LITTLE, LEAST_FREE[1]))
         solution = minimise(levelled(rows) if most == 0.0 else soft(rows, most))
         change = limits.moves @ (solution.x[: limits.moves.shape[1]] * rows.unit)
         missed = (reach.least - reach.matrix @ change) / reach.part
@@ -192,8 +192,8 @@ class Rows:
     hard_least: Floats
 
 
-def rows_of(demanded: Demanded, kept: Bools) -> Rows:
-    """The rows `kept` of reach and the chosen ones of press."""
+def rows_of(demanded: Demanded, kept: Bools, least_free: tuple[float, float] = LEAST_FREE) -> Rows:
+    """The rows `kept` of reach and the chosen ones of press, of which so much is free."""
     reach, press, limits, margin = demanded.reach, demanded.press, demanded.limits, demanded.margin
     moves, pressing = limits.moves, press.chosen
     rows = sparse.vstack([reach.matrix[kept], press.matrix[pressing]]).tocsr()
@@ -203,7 +203,7 @@ def rows_of(demanded: Demanded, kept: Bools) -> Rows:
     may_move = np.diff(moves.indptr) > 0  # symmetry shortens a row as well, but a shortened row can still be met
     length, free_length = _lengths(rows), _lengths(rows * may_move)
     first = int(kept.sum())
-    usable = free_length > np.where(np.arange(len(length)) < first, *LEAST_FREE) * length
+    usable = free_length > np.where(np.arange(len(length)) < first, *least_free) * length
     free, least, beyond, length = free[usable], least[usable], beyond[usable], length[usable]
     part = np.concatenate([reach.part[kept], press.part[pressing]])[usable]
     unit = max(float(reach.least.max(initial=margin)), float(np.abs(limits.moved).max(initial=0.0)))

@@ -27,19 +27,20 @@ class Trust:
     failed: int = 0
     at_rest: bool = False
 
-    def after(self, change: float, gaps: tuple[float, float, float]) -> "Trust":
+    def after(self, change: float, share: float, gaps: tuple[float, float, float]) -> "Trust":
         """That of the next round.
 
-        change: largest of this round; gaps: largest before it, the one that its program expected, and the one it left.
+        change: largest of this round's program; share: of it, what was made; gaps: largest before it, the one that the
+        program expected of the whole, and the one it left.
         """
         before, expected, left = gaps
         hoped, gained = before - expected, before - left
         if hoped <= LITTLE * before:
             return replace(self, at_rest=True)
-        failed = 0 if gained > 0.0 else self.failed + 1
-        near = self.near
+        if gained <= 0.0:
+            return Trust(share * change, self.failed + 1, self.failed + 1 >= FAILED)
+        if share < 1.0:
+            return Trust(min(FURTHER * share, 1.0) * change)
         if gained < WRONG * hoped:
-            near = change if np.isinf(near) else NEARER * min(change, near)
-        elif gained > RIGHT * hoped:
-            near = FURTHER * near
-        return Trust(near, failed, failed >= FAILED)
+            return Trust(NEARER * change)
+        return Trust(self.near * (FURTHER if gained > RIGHT * hoped else 1.0))
