@@ -109,7 +109,7 @@ def test_one_row_has_the_answer_in_closed_form() -> None:
     laid = straight(surface, 1)
     whole = reach(laid)
     middle = int(np.argmax(whole.least))
-    one = Demands(whole.matrix[[middle]], whole.least[[middle]], np.array([True]), np.array([False]))
+    one = Demands(whole.matrix[[middle]], whole.least[[middle]], np.array([True]), np.array([False]), np.ones(1))
     none = Demands(whole.matrix[:0], whole.least[:0], np.zeros(0, dtype=bool), np.zeros(0, dtype=bool))
     moves = free_moves(surface, frozen_mask(surface, None))
     moved = np.zeros((surface.control_points.size // 3, 3))

@@ -46,6 +46,10 @@ class Candidate:
         """Bridged share and largest gap."""
         return self.proof.bridged, self.proof.gap
 
+    def lower_than(self, other: "Candidate") -> bool:
+        """Whether nothing bridges any more, or the largest gap is lower: what counts where some stay."""
+        return (self.proof.windable, -self.proof.gap) > (other.proof.windable, -other.proof.gap)
+
 
 @dataclass(frozen=True)
 class Run:
@@ -136,7 +140,7 @@ def edit_in_stages(run: Run, first: Candidate) -> Ended:
             outcome = Outcome.WALL_PIERCED
             break
         now = after
-        gains = is_better(now.merit, best.merit)
+        gains = is_better(now.merit, best.merit) if outcome is not Outcome.OUT_OF_REACH else now.lower_than(best)
         best, bridges = (now, found.left) if gains else (best, bridges)
         if outcome != Outcome.WINDABLE or now.proof.windable:
             break
