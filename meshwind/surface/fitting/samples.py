@@ -12,6 +12,7 @@ from meshwind.core.threads import parallel_for
 from meshwind.mesh.geometry.facet_tree import FacetTree
 from meshwind.surface.fitting.infill import ANGLE, Int8s, infill, spans_across
 from meshwind.surface.fitting.point_normal import tangent_normals
+from meshwind.surface.fitting.rim_points import WEIGHT, rim_points
 from meshwind.surface.foot import near_feet
 from meshwind.surface.surface import Surface
 
@@ -136,7 +137,17 @@ class Samples:
         chosen = self.facets.faces[coarse]
         corners = self.corner_uv(coarse)
         uv, points = infill(self.points[chosen], self.facets.normals[chosen], corners, across[coarse])
-        return uv, points, self._infill_weights(uv, spans)
+        on, rims = self._rim_points(spans[0])
+        weight = np.append(self._infill_weights(uv, spans), np.full(len(on), WEIGHT))
+        return np.concatenate([uv, on]), np.concatenate([points, rims]), weight
+
+    def _rim_points(self, around: int) -> tuple[Floats, Floats]:
+        """Points (k, 2) and (k, 3) on the rims that are the part's own, once the net is near."""
+        found = [(np.zeros((0, 2)), np.zeros((0, 3)))]
+        for rim in self.chart.annulus.rims if self.near else ():
+            if self.trusted[rim].all():
+                found.append(rim_points(self.uv[rim], self.points[rim], around))
+        return np.concatenate([uv for uv, _ in found]), np.concatenate([points for _, points in found])
 
     def _infill_weights(self, uv: Floats, spans: tuple[int, int]) -> Floats:
         """Weights (k,) of points at uv (k, 2) between vertices: low where all spans around them contain vertices."""
