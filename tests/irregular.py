@@ -8,11 +8,14 @@ from meshwind.mesh import Annulus, Mesh
 from meshwind.surface.interpolate import Formula
 
 
-def tube(vertices: int, aspect: float, seed: int = 0) -> tuple[Floats, Ints, tuple[Ints, Ints]]:
-    """Blue-noise points on a periodic rectangle as long as `aspect` turns: uv, Delaunay faces, ordered rims."""
+def tube(vertices: int, aspect: float, seed: int = 0, sparse: float = 1.0) -> tuple[Floats, Ints, tuple[Ints, Ints]]:
+    """Blue-noise points on a periodic rectangle as long as `aspect` turns: uv, Delaunay faces, ordered rims.
+
+    sparse: how much further apart the vertices of the rims are than the others.
+    """
     rng = np.random.default_rng(seed)
     pitch = np.sqrt(aspect / vertices)
-    count = round(1 / pitch)
+    count = round(1 / (sparse * pitch))
     rims = [np.sort((np.arange(count) + rng.uniform(-0.2, 0.2, count)) / count % 1.0) for _ in range(2)]
     edge = np.concatenate(
         [np.stack([rim, np.full(count, end)], axis=1) for rim, end in zip(rims, (0, aspect), strict=True)]
@@ -43,9 +46,9 @@ def _ring(uv: Floats) -> Floats:
     return np.concatenate([uv - [1, 0], uv, uv + [1, 0]])
 
 
-def annulus(formula: Formula, vertices: int, aspect: float, seed: int = 0) -> Annulus:
+def annulus(formula: Formula, vertices: int, aspect: float, seed: int = 0, sparse: float = 1.0) -> Annulus:
     """An irregular mesh whose vertices lie on s(u, v), as an annulus."""
-    uv, faces, rims = tube(vertices, aspect, seed)
+    uv, faces, rims = tube(vertices, aspect, seed, sparse)
     points = frozen(formula(uv[:, 0], uv[:, 1]))
     mesh = Mesh(points, frozen(faces), "tube")
     return Annulus(mesh, points, mesh.faces, rims, frozen(np.ones(len(points), dtype=bool)), "given")
