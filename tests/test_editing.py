@@ -110,7 +110,7 @@ def test_one_row_has_the_answer_in_closed_form() -> None:
     whole = reach(laid)
     middle = int(np.argmax(whole.least))
     one = Demands(whole.matrix[[middle]], whole.least[[middle]], np.array([True]), np.array([False]), np.ones(1))
-    none = Demands(whole.matrix[:0], whole.least[:0], np.zeros(0, dtype=bool), np.zeros(0, dtype=bool))
+    none = Demands(whole.matrix[:0], whole.least[:0], np.zeros(0, dtype=bool), np.zeros(0, dtype=bool), np.ones(0))
     moves = free_moves(surface, frozen_mask(surface, None))
     moved = np.zeros((surface.control_points.size // 3, 3))
     limits = Limits(moves, moved, np.full(len(moved), np.inf), nothing(surface))

@@ -20,7 +20,7 @@ from meshwind.editing.shape_rows import FINE, Kept, nothing, one_way, same_volum
 from meshwind.editing.stencil import pitches
 from meshwind.editing.step import Demanded, Limits, Step, energy, step
 from meshwind.editing.symmetry import net_group, planes
-from meshwind.editing.trust import Trust
+from meshwind.editing.trust import FAILED, Trust
 from meshwind.editing.windings import Course, marked_share
 from meshwind.path import Paths
 from meshwind.path.lengths import tolerated
@@ -31,6 +31,8 @@ LEAST_GAP = 1e-6
 """Largest gap, over the part's size, that counts as none on any surface, unless a threshold is given."""
 SAME = 0.01
 """Share of the largest gap by which two states are alike in it: then that which bridges less is better."""
+ALIKE = 1e-3
+"""The same where the largest gap is to become the least, as not all can be met."""
 LAST = 0.12
 """Of the largest gap before all rounds: below it a round that does not gain much is followed by ones that take nothing
 back, which would lift other fibres again."""
@@ -175,10 +177,9 @@ class _Problem:
         """
         if found.least == 0.0:
             return self.changed(now, found.change), 1.0
-        worst = now.worst(self.parts)
         for share in SHARES:
             after = self.changed(now, share * found.change)
-            if after.worst(self.parts) < worst:
+            if self.gains(after, now, now.worst(self.parts), True):
                 return after, share
         return now, share
 
@@ -188,10 +189,9 @@ class _Problem:
         return trust.after(change, share, (now.worst(self.parts), found.shortfall, after.worst(self.parts)))
 
     def gains(self, now: _State, best: _State, lowest: float, short: bool) -> bool:
-        """Whether a state is better than the best so far; short: whether the largest gap alone counts, as it stays."""
-        if short and now.bridged > 0.0:
-            return now.worst(self.parts) < best.worst(self.parts)
-        return is_better((now.bridged, now.gap), (best.bridged, lowest))
+        """Whether a state is better than the best so far and its gap; short: where not all can be met."""
+        gap, same = (now.worst(self.parts), ALIKE) if short else (now.gap, SAME)
+        return is_better((now.bridged, gap), (best.bridged, lowest), same)
 
     def changed(self, now: _State, change: Floats) -> _State:
         """A state with its control points changed (m, 3)."""
@@ -301,9 +301,9 @@ def _rounds(
         now = after
         holds = problem.holds(now)
         better = holds and problem.gains(now, best, lowest, short)
-        lowest = min(lowest, now.gap) if holds else lowest
+        lowest = min(lowest, now.worst(problem.parts) if short else now.gap) if holds else lowest
         best, idle = (now, 0) if better else (best, idle + holds)
-        ended = trust.at_rest if short else idle >= MAX_IDLE_ROUNDS
+        ended = idle >= (1 if short and trust.at_rest else FAILED if short else MAX_IDLE_ROUNDS)
         outcome = _outcome(now.bridged == 0.0 and holds, found, ended)
         if outcome != Outcome.ROUNDS_SPENT:
             break
@@ -312,12 +312,12 @@ def _rounds(
     return best, Outcome.WINDABLE if best.bridged == 0.0 else outcome, tuple(figures)
 
 
-def is_better(one: tuple[float, float], other: tuple[float, float]) -> bool:
-    """Whether one state is better than another, by their bridged shares and largest gaps."""
+def is_better(one: tuple[float, float], other: tuple[float, float], same: float = SAME) -> bool:
+    """Whether one state is better than another, by their bridged shares and largest gaps, alike within a share."""
     (bridged, gap), (bridged_before, gap_before) = one, other
     if (bridged == 0.0) != (bridged_before == 0.0):
         return bridged == 0.0
-    if abs(gap - gap_before) > SAME * gap_before:
+    if abs(gap - gap_before) > same * gap_before:
         return gap < gap_before
     return bridged < bridged_before
 

@@ -8,7 +8,7 @@ from meshwind.chart import Chart
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.progress import Progress
 from meshwind.editing.bound import Bound
-from meshwind.editing.edit import Edit, edit, is_better
+from meshwind.editing.edit import ALIKE, SAME, Edit, edit, is_better
 from meshwind.editing.edited_mesh import displaced, displacement, within
 from meshwind.editing.frozen_part import FrozenPart
 from meshwind.editing.left import Left
@@ -23,7 +23,7 @@ from meshwind.mesh.geometry.mesh import Wall
 from meshwind.surface import Surface, fit
 from meshwind.workflow.options import Options
 
-STAGES = 3
+STAGES = 4
 """Largest number of surfaces that are edited: the one fitted to an edited mesh is not quite the edited one, and fibres
 may bridge on it again."""
 FIRMER, TIGHTER, MORE_ROUNDS = 1.5, 0.1, 2
@@ -45,10 +45,6 @@ class Candidate:
     def merit(self) -> tuple[float, float]:
         """Bridged share and largest gap."""
         return self.proof.bridged, self.proof.gap
-
-    def lower_than(self, other: "Candidate") -> bool:
-        """Whether nothing bridges any more, or the largest gap is lower: what counts where some stay."""
-        return (self.proof.windable, -self.proof.gap) > (other.proof.windable, -other.proof.gap)
 
 
 @dataclass(frozen=True)
@@ -140,7 +136,7 @@ def edit_in_stages(run: Run, first: Candidate) -> Ended:
             outcome = Outcome.WALL_PIERCED
             break
         now = after
-        gains = is_better(now.merit, best.merit) if outcome is not Outcome.OUT_OF_REACH else now.lower_than(best)
+        gains = is_better(now.merit, best.merit, ALIKE if outcome is Outcome.OUT_OF_REACH else SAME)
         best, bridges = (now, found.left) if gains else (best, bridges)
         if outcome != Outcome.WINDABLE or now.proof.windable:
             break

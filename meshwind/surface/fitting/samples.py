@@ -143,10 +143,9 @@ class Samples:
 
     def _rim_points(self, around: int) -> tuple[Floats, Floats]:
         """Points (k, 2) and (k, 3) on the rims that are the part's own, once the net is near."""
-        found = [(np.zeros((0, 2)), np.zeros((0, 3)))]
-        for rim in self.chart.annulus.rims if self.near else ():
-            if self.trusted[rim].all():
-                found.append(rim_points(self.uv[rim], self.points[rim], around))
+        none = np.zeros((0, 2)), np.zeros((0, 3))
+        own = [rim for rim in self.chart.annulus.rims if self.near and self.trusted[rim].all()]
+        found = [none, *[rim_points(self.uv[rim], self.points[rim], around) for rim in own]]
         return np.concatenate([uv for uv, _ in found]), np.concatenate([points for _, points in found])
 
     def _infill_weights(self, uv: Floats, spans: tuple[int, int]) -> Floats:
