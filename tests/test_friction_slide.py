@@ -137,7 +137,9 @@ def test_it_rests_there_with_any_number_of_particles(name: str) -> None:
         assert apart(wound(name, particles).points[0], fine.points[0]) <= 3e-4
 
 
-@pytest.mark.parametrize(("part", "turns", "mu"), [("vase.stl", 0.55, 0.2), ("bottle.obj", 0.3, 0.4)])
+@pytest.mark.parametrize(("part", "turns", "mu"), [
+    ("vase.stl", 0.55, 0.2), ("bottle.obj", 0.3, 0.4), ("bottle.obj", 0.55, 0.15), ("wing.stl", 0.55, 0.2),
+])  # fmt: skip
 def test_parts_have_one_answer(part: str, turns: float, mu: float) -> None:
     surface = mw.fit(mw.flatten(mw.annulus(mw.read(DATA / part))), tolerance=1e-4)
     ends = mw.families(surface, 3, turns)
