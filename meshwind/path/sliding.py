@@ -2,14 +2,16 @@
 
 import numpy as np
 
-from meshwind.core.cast import Floats
-from meshwind.path.batch import Batch, fresh
+from meshwind.core.cast import Bools, Floats
+from meshwind.core.vectors import dots
+from meshwind.path.batch import Batch, fresh, resampled
 from meshwind.path.kernels.lay import turn_of
 from meshwind.path.kernels.status import Status
 from meshwind.path.levels import ascend, climb, draw, segments
 from meshwind.path.solver import Solver
+from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV
 
-ENOUGH = 360
+ENOUGH = 260
 """Least number of segments, and as many per turn, of the slide of a fibre that bridges.
 
 Friction just beyond the ends of a bridge decides where it rests, within a few segments: on two parts of many bridges
@@ -18,30 +20,63 @@ fibres rested 2.7e-3 of their length away with 96 to 192 segments, and 1.3e-3 wi
 
 
 def slide_from_level(solver: Solver, batch: Batch, level: int) -> Batch:
-    """Slide a batch to rest from its starting curves, at first with its particles halved `level` times.
+    """Slide a batch to rest from its starting curves, with its particles halved `level` times, or more if it bridges.
 
-    Where a fibre bridges it slides anew with more particles.  More of them also follow a slide that few cannot, and
-    fewer one over many small dents.
+    More of them also follow a slide that few cannot, and fewer one over many small dents.
     """
-    done = slide_at(solver, batch, level)
-    fine = fine_level(batch.starts, batch.particles)
-    for way in dict.fromkeys((min(fine, level), level - 1, max(level, 0) + 1)):
-        wanting = done.status == Status.STALLED
-        if way == fine < level:
-            wanting |= ~done.touching.all(axis=1)
-        index = np.flatnonzero(wanting)
-        if way == level or not len(index):
-            continue
-        part = batch.rows(index)
-        part.counters[:] = done.counters[index]
-        again = slide_at(solver, part, way)
-        done.counters[index] = again.counters
-        better = np.flatnonzero(again.status != Status.STALLED)
-        done.put(index[better], again.rows(better))
-    lost = np.flatnonzero(done.status == Status.STALLED)
+    slides, fine = _Slides(solver, batch), min(fine_level(batch.starts, batch.particles), level)
+    hollow = crosses_hollows(solver, batch.starts, segments(batch.particles, level) + 1)
+    slides.attempt(hollow, fine)
+    slides.attempt(slides.stalled if fine < level else ~slides.tried, level)
+    if fine < level:
+        slides.attempt(~hollow & (slides.stalled | ~slides.done.touching.all(axis=1)), fine)
+    if fine != level - 1:
+        slides.attempt(slides.stalled, level - 1)
+    slides.attempt(slides.stalled, max(level, 0) + 1)
+    lost = np.flatnonzero(slides.stalled)
     if len(lost):
-        draw(solver, done, lost)
-    return done
+        draw(solver, slides.done, lost)
+    return slides.done
+
+
+class _Slides:
+    """Slides of a batch on several levels: the last answer of each path, and which have been tried."""
+
+    def __init__(self, solver: Solver, batch: Batch) -> None:
+        self.solver, self.batch = solver, batch
+        self.done = batch.curves_sampled().copied()
+        self.done.status[:] = Status.STALLED
+        self.tried = np.zeros(batch.paths, np.bool_)
+
+    @property
+    def stalled(self) -> Bools:
+        """Which paths (p,) have no answer."""
+        return np.asarray(self.done.status == Status.STALLED)
+
+    def attempt(self, which: Bools, level: int) -> None:
+        """Slide some of the paths, with their particles halved `level` times; keep what comes to an end."""
+        index = np.flatnonzero(which)
+        if not len(index):
+            return
+        part = self.batch.rows(index)
+        part.counters[:] = self.done.counters[index]
+        again = slide_at(self.solver, part, level)
+        self.done.counters[index] = again.counters
+        better = np.flatnonzero((again.status != Status.STALLED) | ~self.tried[index])
+        self.done.put(index[better], again.rows(better))
+        self.tried[index] = True
+
+
+def crosses_hollows(solver: Solver, curves: Floats, count: int) -> Bools:
+    """Which starting curves (p, k, 2) bend away from the part at one of so many points: there a fibre lifts off."""
+    if not solver.bridging:
+        return np.zeros(len(curves), np.bool_)
+    points = resampled(curves, count)
+    frames = solver.surface.frames(points.reshape(-1, 2)).reshape(*points.shape[:2], 6, 3)
+    way = np.gradient(points, axis=1)
+    p, q = way[..., :1], way[..., 1:]
+    bend = p * p * frames[:, :, SUU] + 2.0 * p * q * frames[:, :, SUV] + q * q * frames[:, :, SVV]
+    return np.asarray((dots(bend, np.cross(frames[:, :, SU], frames[:, :, SV])) > 0.0).any(axis=1))
 
 
 def slide_at(solver: Solver, batch: Batch, level: int) -> Batch:
