@@ -74,7 +74,7 @@ def drawn(waist: Path, tmp_path_factory: pytest.TempPathFactory, opengl: None) -
 
 def test_a_folder_alone_gives_every_picture(drawn: Path) -> None:
     assert {file.name for file in drawn.iterdir()} == {f"{name}.png" for name in (*OF_ANY, "sheet")}
-    assert pixels(drawn / "sheet.png").shape == (3 * 360, 3 * 480, 3)
+    assert pixels(drawn / "sheet.png").shape == (4 * 360, 3 * 480, 3)
 
 
 @pytest.mark.parametrize("name", OF_ANY)

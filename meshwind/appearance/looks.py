@@ -1,13 +1,13 @@
 """How each map is shown: its title, its colours and its scale, the same in every picture and in the viewer."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from meshwind.appearance.words import quantity
-from meshwind.core.cast import Floats
+from meshwind.core.cast import Floats, Ints
 from meshwind.results import schema
 
 _QUANTILE = 0.99
@@ -21,6 +21,8 @@ _CLEAR = 0.08
 _SMALLEST = 1e-200
 """If all values are less than this, a scale goes to 1."""
 SEQUENTIAL, DIVERGING = "viridis", "RdBu_r"
+SIGNAL = "#e0218a"
+"""Colour of what is bare."""
 _CUT = {"gap": ("RdPu", 0.3, 1.0), "distance": ("magma_r", 0.04, 0.86)}
 """Parts of colour maps: pale where all is well, dark where it is not, so that what matters stands out, in greys too."""
 
@@ -38,6 +40,11 @@ def colour_map(name: str) -> Any:
         return colormaps[name]
     whole, first, last = _CUT[name]
     return ListedColormap(colormaps[whole](np.linspace(first, last, 256)), name)
+
+
+def rgb(colours: Sequence[str]) -> Ints:
+    """Colours as #rrggbb by their red, green and blue (n, 3)."""
+    return np.array([[int(each[k : k + 2], 16) for k in (1, 3, 5)] for each in colours], dtype=np.uint8)
 
 
 @dataclass(frozen=True)

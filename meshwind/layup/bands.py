@@ -87,16 +87,16 @@ class Bands:
         return self.openings[0] + start, self.openings[1] + end
 
 
-def bands(paths: Paths, width: float) -> Bands:
+def bands(paths: Paths, width: float, across: int = _ACROSS) -> Bands:
     """Lay a band of `width`, in the mesh's units, along every path and count the layers over points of the surface.
 
-    A path that ends on a rim goes on past it, so that its band fills the corner there.
+    A path that ends on a rim goes on past it, so that its band fills the corner there.  across: points across a band.
     """
     surface = paths.surface
     p, n = paths.gap.shape
     frames = surface.frames(paths.uv.reshape(-1, 2)).reshape(p, n, 6, 3)
     feet = np.ascontiguousarray(frames[:, :, S])
-    nu, nv = cells_for(surface, width)
+    nu, nv = cells_for(surface, width, across)
     uv = parameter_grid(midpoints(nu), midpoints(nv))
     at = surface.frames(uv)
     area = area_elements(at).reshape(nu, nv) / (nu * nv)
@@ -109,9 +109,9 @@ def bands(paths: Paths, width: float) -> Bands:
     return Bands(frozen(uv), frozen(area), frozen(layers), width, width * length, (openings[0], openings[1]))
 
 
-def cells_for(surface: Surface, width: float) -> tuple[int, int]:
+def cells_for(surface: Surface, width: float, across: int = _ACROSS) -> tuple[int, int]:
     """Samples each way so that some lie across a band everywhere."""
-    count = np.array(mean_speeds(surface, _SPEED_SAMPLES)) * _ACROSS / max(width, TINY)
+    count = np.array(mean_speeds(surface, _SPEED_SAMPLES)) * across / max(width, TINY)
     nu, nv = np.clip(np.ceil(count), _LEAST, _MOST).astype(int)
     return int(nu), int(nv)
 

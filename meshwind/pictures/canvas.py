@@ -18,6 +18,8 @@ LEFT, RIGHT, TOP, BOTTOM = 60, 285, 150, 120
 """Margins around the part, for a page of 1600 x 1200: title above, ruler below, legend to the right."""
 PAPER, INK, FAINT = "#ffffff", "#1c1c1c", "#5a5a5a"
 PART, INSIDE = "#e6e2da", "#8f8a82"
+_MARGIN = 14
+"""Least distance of the legend from the right edge."""
 _BAR_TOP, _BAR_BOTTOM, _BAR_WIDTH = 470, 930, 34
 _ANGLE = np.radians(15.0)
 """Half the angle of view in perspective."""
@@ -132,12 +134,15 @@ def face(page: Page, size: float) -> Any:
 
 
 def legend(pen: Any, page: Page, rows: list[tuple[str, str]]) -> None:
-    """Draw the legend: a stroke and its text per row."""
+    """Draw the legend: a stroke and its text per row, small enough for the page."""
     s = page.unit
     x, y = legend_left(page), s * (TOP + 40)
+    room = page.width - x - s * (58 + _MARGIN)
+    wide = max((pen.textlength(words, font=face(page, 25)) for _, words in rows), default=0.0)
+    size = 25 / max(wide / room, 1.0)
     for k, (colour, words) in enumerate(rows):
         pen.rectangle((x, y + s * (44 * k + 10), x + s * 44, y + s * (44 * k + 17)), fill=colour)
-        pen.text((x + s * 58, y + s * 44 * k), words, INK, font=face(page, 25))
+        pen.text((x + s * 58, y + s * (44 * k + 14)), words, INK, font=face(page, size), anchor="lm")
 
 
 def scale_bar(image: Any, pen: Any, page: Page, scale: Scale) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 
-from meshwind.appearance.looks import Scale, colour_map
+from meshwind.appearance.looks import SIGNAL, Scale, colour_map, rgb
 from meshwind.appearance.strips import Gear, Ribbons
 from meshwind.appearance.view import View
 from meshwind.core.cast import Floats, Ints
@@ -13,7 +13,7 @@ from meshwind.pictures import bodies, canvas
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import FilamentScene, Groups
 
-BASE, HELD, SIGNAL = "#bcc5ce", "#3d4852", "#e0218a"
+BASE, HELD = "#bcc5ce", "#3d4852"
 _RIM = "#1c1c1c"
 _RIM_OPACITY, _RIM_WIDTH = 0.45, 1.3
 DEPTH, _WITHIN = 0.3, 0.04
@@ -105,5 +105,4 @@ def _of_order(scale: Scale | None, made: Ribbons) -> Ints:
 
 def _of_group(groups: Groups, count: int) -> Ints:
     """Colours (count, 3) of the first rows by their group."""
-    table = np.array([[int(each[k : k + 2], 16) for k in (1, 3, 5)] for each in groups.colours], dtype=np.uint8)
-    return np.asarray(table[groups.of_rows[:count]])
+    return np.asarray(rgb(groups.colours)[groups.of_rows[:count]])

@@ -10,6 +10,7 @@ from meshwind.pictures.angles_scene import angles_scene
 from meshwind.pictures.drawings import Drawing
 from meshwind.pictures.filament_scene import bands_scene, filament_scene
 from meshwind.pictures.laminate_scene import laminate_scene
+from meshwind.pictures.layers_scene import layers_scene
 from meshwind.pictures.layup_scenes import crossings_scene, quads_scene, slip_scene, unrolled_scene
 from meshwind.pictures.map_scene import coverage_scene, fit_map_scene, windability_scene
 from meshwind.pictures.page import LEAST, Page
@@ -21,8 +22,8 @@ from meshwind.results.schema import FIT, FIT_ERROR, OF_FILAMENT, OF_LAMINATE, PI
 CELL = 800, 600
 """Largest size of a picture on the sheet, in pixels."""
 _SCENES: tuple[Callable[[Subject], Scene], ...] = (
-    winding_scene, crossings_scene, coverage_scene, windability_scene, slip_scene, fit_map_scene, unrolled_scene,
-    quads_scene, angles_scene, filament_scene, bands_scene, laminate_scene,
+    winding_scene, crossings_scene, coverage_scene, layers_scene, windability_scene, slip_scene, fit_map_scene,
+    unrolled_scene, quads_scene, angles_scene, filament_scene, bands_scene, laminate_scene,
 )  # fmt: skip
 """In the order of PICTURES."""
 

@@ -56,9 +56,9 @@ def render(
     folder : str or PathLike
         Folder of a run or a redesign.
     only : sequence of str, optional
-        Pictures to draw: "winding", "crossings", "coverage", "windability", "slip", "fit", "unrolled", "quads",
-        "angles", "filament", "bands", "laminate", "redesign" or "sheet".  By default all, or none where there is a
-        movie to draw.
+        Pictures to draw: "winding", "crossings", "coverage", "layers", "windability", "slip", "fit", "unrolled",
+        "quads", "angles", "filament", "bands", "laminate", "redesign" or "sheet".  By default all, or none
+        where there is a movie to draw.
     page : Page, optional
         Size and style.  By default 1600 x 1200 pixels, and 960 x 720 for movies.
     animate : sequence of str, optional

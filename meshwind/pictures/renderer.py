@@ -22,6 +22,7 @@ from meshwind.pictures import (
     fit_picture,
     hits_picture,
     laminate_picture,
+    layers_picture,
     machine_picture,
     map_picture,
     quads_picture,
@@ -38,6 +39,7 @@ from meshwind.pictures import (
 DRAWN_BY: dict[type, Callable[..., Any]] = {
     scenes.WindingScene: winding_picture.draw,
     scenes.FitScene: fit_picture.draw,
+    scenes.LayersScene: layers_picture.draw,
     scenes.MapScene: map_picture.draw,
     scenes.SlipScene: slip_picture.draw,
     scenes.CrossingsScene: crossings_picture.draw,

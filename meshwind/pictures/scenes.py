@@ -119,6 +119,20 @@ class MapScene:
 
 
 @dataclass(frozen=True)
+class LayersScene:
+    """The layers of band over each cell of the part, in steps.
+
+    steps (q,): of the part's quads, numbers of the colours and words; the first is for what is bare.
+    """
+
+    frame: Frame
+    part: Part
+    steps: Ints
+    colours: tuple[str, ...]
+    words: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class SlipScene:
     """The fibres by their slip: positions on the scale (p, n), NaN where it is not defined.
 
@@ -321,6 +335,7 @@ Scene: TypeAlias = (
     | HitsScene
     | CrossingsScene
     | MapScene
+    | LayersScene
     | SlipScene
     | QuadsScene
     | UnrolledScene

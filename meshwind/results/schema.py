@@ -166,13 +166,14 @@ CONFIG = File("meshwind.toml")
 
 WINDING, FIT, REDESIGN, SHEET = "winding", "fit", "redesign", "sheet"
 FILAMENTS, BANDS, LAMINATE_PICTURE = "filament", "bands", "laminate"
+LAYERS_PICTURE = "layers"
 OF_FILAMENT = FILAMENTS, BANDS
 """Pictures of a continuous winding alone, ..."""
 OF_LAMINATE = BANDS, LAMINATE_PICTURE
 """... and those of layers one on another."""
 PICTURES = (
-    WINDING, "crossings", "coverage", "windability", "slip", FIT, "unrolled", "quads", "angles", FILAMENTS, BANDS,
-    LAMINATE_PICTURE,
+    WINDING, "crossings", "coverage", LAYERS_PICTURE, "windability", "slip", FIT, "unrolled", "quads", "angles",
+    FILAMENTS, BANDS, LAMINATE_PICTURE,
 )  # fmt: skip
 """The pictures of a winding; REDESIGN is that of a redesign, SHEET shows all of a folder on one page."""
 MOVIES = "gif", "mp4"
