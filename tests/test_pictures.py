@@ -29,11 +29,11 @@ from meshwind.pictures.slip_picture import runs
 from meshwind.pictures.subject import subject_of
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.results.reading import read_results
-from meshwind.results.schema import OF_FILAMENT, OF_LAMINATE, PICTURES
+from meshwind.results.schema import PICTURES
 from meshwind.results.write import write_files
 from meshwind.surface.grid import grid
 
-OF_ANY = tuple(name for name in PICTURES if name not in (*OF_FILAMENT, *OF_LAMINATE))
+OF_ANY = tuple(name for name in PICTURES if name not in ("filament", "laminate"))
 """Pictures of any winding, be it continuous or not, and without layers."""
 
 SMALL = Page(480, 360)

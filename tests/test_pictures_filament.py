@@ -181,7 +181,22 @@ def test_the_angles_are_those_of_the_paths(of: Subject) -> None:
 
 def test_only_a_filament_has_its_pictures(of: Subject) -> None:
     assert set(OF_FILAMENT) <= set(scenes_of(of))
-    assert not {*OF_FILAMENT, *OF_LAMINATE} & set(scenes_of(replace(of, filaments=())))
+    assert {*OF_FILAMENT, *OF_LAMINATE} & set(scenes_of(replace(of, filaments=()))) == {"bands"}
+
+
+def test_bands_of_single_paths_have_their_width_and_family(of: Subject) -> None:
+    scene = bands_scene(replace(of, filaments=()))
+    made, groups, paths = scene.ribbons, scene.groups, of.paths
+    assert groups is not None and groups.names == ("family +1", "family −1")
+    assert len(made.sizes) == len(paths)
+    across = np.linalg.norm(np.diff(made.points, axis=1), axis=2).sum(axis=1)
+    assert np.median(across) == pytest.approx(of.widths[0], rel=0.01)
+    first = np.cumsum(made.sizes) - made.sizes
+    assert np.array_equal(groups.of_rows[first], (paths.family < 0).astype(np.int64))
+    # each lies along its path, lifted by little
+    middle = made.points[first, made.points.shape[1] // 2]
+    assert np.abs(middle - paths.points[:, 0]).max() < 0.006 * paths.surface.size
+    assert not len(scene.gear.base) and not len(scene.gear.held)
 
 
 @pytest.mark.usefixtures("opengl")

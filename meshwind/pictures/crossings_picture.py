@@ -6,15 +6,19 @@ import numpy as np
 import pyvista as pv
 
 from meshwind.appearance.looks import colour_map
+from meshwind.core.cast import Floats
+from meshwind.core.vectors import unit as unit_of
 from meshwind.pictures import bodies, canvas
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import CrossingsScene
 
 FIBRE = "#a9a296"
-_DOT = 9.0, 0.3
-"""Radius of a dot in pixels, and its upper limit over the pitch."""
+_DOT, _RING = 10.5, 2.0
+"""Largest radius of a disc and width of its ring, in pixels."""
 _RINGED = 4.0
-"""Least radius of a dot with a ring, in pixels."""
+"""Least radius of a disc with a ring, in pixels."""
+_SIDES = 20
+"""Sides of a disc."""
 
 
 def draw(window: Any, scene: CrossingsScene, page: Page) -> Any:
@@ -35,26 +39,39 @@ def draw(window: Any, scene: CrossingsScene, page: Page) -> Any:
 
 
 def add_dots(window: Any, scene: CrossingsScene, scale: float, unit: float, thick: float) -> None:
-    """Add a dot per crossing, in a dark ring unless dots are small, so that pale ones stand out."""
+    """Add a disc per crossing, in a dark ring unless it is small, so that pale ones stand out.
+
+    Discs lie on the part and keep within their room, so that they do not meet in any view.
+    """
     if not len(scene.points):
         return
-    pixels, share = _DOT
-    size = min(pixels * unit, max(share * scene.part.pitch / scale, 1.5 * unit))
-    at = scene.points + 2.0 * thick * scene.normals
-    eye = scene.frame.view.eye
-    ring = (2.0 * size + 3.0 * unit, 0.0, {"color": canvas.INK})
-    core = (2.0 * size, size * scale, {"scalars": "share", "cmap": colour_map(scene.scale.colours)})
-    for wide, behind, look in (ring, core) if size > _RINGED * unit else (core,):
-        dots = pv.PolyData(at + behind * eye)
-        dots.point_data["share"] = np.asarray(scene.shares)
-        window.add_mesh(
-            dots,
-            style="points",
-            render_points_as_spheres=True,
-            point_size=wide,
-            lighting=False,
-            clim=[0.0, 1.0],
-            show_scalar_bar=False,
-            render=False,
-            **look,
-        )
+    size = radii(scene, scale, unit)
+    lift = 2.0 * thick * scene.normals
+    ringed = size > _RINGED * unit * scale
+    inner = np.where(ringed, size - _RING * unit * scale, size)
+    rings = discs(scene.points[ringed] + lift[ringed], scene.normals[ringed], size[ringed])
+    cores = discs(scene.points + lift + 0.3 * thick * scene.normals, scene.normals, inner)
+    cores.cell_data["share"] = np.repeat(scene.shares, _SIDES)
+    window.add_mesh(rings, color=canvas.INK, lighting=False, render=False) if ringed.any() else None
+    look = {"cmap": colour_map(scene.scale.colours), "clim": [0.0, 1.0], "show_scalar_bar": False}
+    window.add_mesh(cores, scalars="share", lighting=False, render=False, **look)
+
+
+def radii(scene: CrossingsScene, scale: float, unit: float) -> Floats:
+    """Radius (c,) of the disc on each crossing, in mesh units; scale: mesh units per pixel."""
+    return np.minimum(scene.room, _DOT * unit * scale)
+
+
+def discs(centres: Floats, normals: Floats, size: Floats) -> Any:
+    """Discs of radius size (c,) round centres (c, 3), square to normals (c, 3); a fan of triangles each."""
+    up = unit_of(normals)
+    least = np.eye(3)[np.abs(up).argmin(axis=1)] if len(up) else up
+    right = unit_of(np.cross(up, least))
+    turn = 2.0 * np.pi * np.arange(_SIDES) / _SIDES
+    arc = np.cos(turn)[:, None] * right[:, None] + np.sin(turn)[:, None] * np.cross(up, right)[:, None]
+    rim = centres[:, None] + size[:, None, None] * arc
+    points = np.concatenate([centres[:, None], rim], axis=1)
+    k = np.arange(_SIDES)
+    fan = np.stack([0 * k, 1 + k, 1 + (k + 1) % _SIDES], axis=1)
+    faces = (fan[None] + np.arange(len(centres))[:, None, None] * (_SIDES + 1)).reshape(-1, 3)
+    return pv.PolyData.from_regular_faces(points.reshape(-1, 3), faces)

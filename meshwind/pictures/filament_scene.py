@@ -8,8 +8,10 @@ from meshwind.appearance.ribbons import ribbons
 from meshwind.appearance.strips import Gear, Ribbons
 from meshwind.appearance.view import View, framed
 from meshwind.appearance.words import quantity
+from meshwind.filament.filament import Filament
 from meshwind.pictures.scenes import FilamentScene, Groups
 from meshwind.pictures.subject import Subject
+from meshwind.results.laminate_reading import fibre_of
 
 _OUT, _BACK = "#9cc3dc", "#f2cf8d"
 """Paler than the fibres of the families, so that the signal colour stands out."""
@@ -31,8 +33,8 @@ def filament_scene(of: Subject) -> FilamentScene:
 
 
 def bands_scene(of: Subject) -> FilamentScene:
-    """The bands by layer or, of a single one, by family, over a part whose bare places show."""
-    fibres = of.filaments or (() if of.laminate is None else of.laminate.fibres)
+    """The bands by layer or, of a single one, by pass or family, over a part whose bare places show."""
+    fibres = of.filaments or (_paths(of) if of.laminate is None else of.laminate.fibres)
     made, stands = ribbons(fibres, of.paths.surface, of.widths, of.turned), _gear(of)
     layers = int(made.layer.max()) + 1
     if layers > 1:
@@ -41,11 +43,17 @@ def bands_scene(of: Subject) -> FilamentScene:
         names = tuple(f"layer {k + 1} {kind}".strip() for k, kind in enumerate(kinds))
         groups, bare = Groups(made.layer, colours, names), f"{layers} layers, one on another"
     else:
-        groups = Groups(made.passed % 2, (_OUT, _BACK), ("passes out", "passes back"))
+        names = ("passes out", "passes back") if of.filaments else ("family +1", "family −1")
+        groups = Groups(made.passed % 2, (_OUT, _BACK), names)
         share = of.layup.bands.bare
         bare = "nothing bare" if share == 0.0 else f"{100.0 * share:.2g} % of the part bare"
     frame = of.frame(f"{of.name}: bands of true width", f"band {_wide(of)}  ·  {bare}", _view(of, made, stands))
     return FilamentScene(frame, of.part, made, stands, groups=groups)
+
+
+def _paths(of: Subject) -> tuple[Filament, ...]:
+    """The paths of a winding that is not continuous, each as a filament of its own."""
+    return tuple(fibre_of(of.paths, row) for row in range(len(of.paths)))
 
 
 def _wide(of: Subject) -> str:
@@ -56,7 +64,7 @@ def _wide(of: Subject) -> str:
 
 
 def _gear(of: Subject) -> Gear:
-    return gear(of.paths.surface, of.filaments, of.turned)
+    return gear(of.paths.surface, of.filaments, of.turned if of.filaments else ())
 
 
 def _view(of: Subject, strips: Ribbons, stands: Gear) -> View:

@@ -17,7 +17,17 @@ from meshwind.pictures.page import LEAST, Page
 from meshwind.pictures.scenes import Scene
 from meshwind.pictures.subject import Subject
 from meshwind.pictures.winding_scene import winding_scene
-from meshwind.results.schema import FIT, FIT_ERROR, OF_FILAMENT, OF_LAMINATE, PICTURES, SHEET, picture
+from meshwind.results.schema import (
+    FILAMENTS,
+    FIT,
+    FIT_ERROR,
+    LAMINATE_PICTURE,
+    OF_FILAMENT,
+    OF_LAMINATE,
+    PICTURES,
+    SHEET,
+    picture,
+)
 
 CELL = 800, 600
 """Largest size of a picture on the sheet, in pixels."""
@@ -34,12 +44,12 @@ def scenes_of(of: Subject) -> dict[str, Scene]:
     That of the fit error is missing if the error is not known, and those of a filament or a laminate if there is none.
     """
     lacking = {FIT} if FIT_ERROR not in of.maps else set()
-    lacking |= {*OF_FILAMENT, *OF_LAMINATE} - set(names_of(of))
+    lacking |= {FILAMENTS, LAMINATE_PICTURE} - set(names_of(of))
     return {name: make(of) for name, make in zip(PICTURES, _SCENES, strict=True) if name not in lacking}
 
 
 def names_of(of: Subject) -> tuple[str, ...]:
-    """Names of the pictures that only a continuous winding or one with layers has, as far as it is one."""
+    """Names of the pictures that are first of a continuous winding or of one with layers, as far as it is one."""
     names = (*(OF_FILAMENT if of.filaments else ()), *(OF_LAMINATE if of.laminate is not None else ()))
     return tuple(dict.fromkeys(names))
 

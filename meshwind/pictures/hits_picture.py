@@ -5,12 +5,13 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 
+from meshwind.appearance.looks import SIGNAL
 from meshwind.core.cast import Floats
 from meshwind.pictures import bodies, canvas, filament_picture
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import HitsScene
 
-_SPAN, _EYE, _ASTRAY = filament_picture.SIGNAL, "#1f4e79", "#b35806"
+_SPAN, _EYE, _ASTRAY = SIGNAL, "#1f4e79", "#b35806"
 _THIN, _MARK = 1.6, 6.0
 """Radius in pixels of a span's tube, and of the mark where it meets the part."""
 _THROUGH = 0.35

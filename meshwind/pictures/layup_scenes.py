@@ -1,6 +1,7 @@
 """Scenes of the crossings, the slip, the quad mesh and the unrolled part."""
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from meshwind.appearance.looks import Look, Scale, fixed
 from meshwind.core.cast import Floats
@@ -13,6 +14,8 @@ from meshwind.results.schema import DEGREES
 from meshwind.surface.image import surface_image
 
 ANGLE = Look("crossing angle", "angle between\nthe families", DEGREES, "viridis", fixed(0.0, 90.0), step=15.0)
+_ROOM = 0.45
+"""Radius of a disc over the distance to the nearest other, at most."""
 NO_SLIP = 1e-6
 """Slip below this is round-off: the fibre is a geodesic."""
 _PIXELS = 384
@@ -29,7 +32,15 @@ def crossings_scene(of: Subject) -> CrossingsScene:
         subtitle = f"{len(crossings)} crossings at {low:.0f}° to {high:.0f}°, half of them above {usual:.0f}°"
     normals = of.paths.surface.normals(crossings.uv) if len(crossings) else np.zeros((0, 3))
     frame = of.frame(f"{of.name}: angle at which the families cross", subtitle)
-    return CrossingsScene(frame, of.part, fibres(of), scale, scale.shares(angle), crossings.points, normals)
+    points = crossings.points
+    return CrossingsScene(frame, of.part, fibres(of), scale, scale.shares(angle), points, normals, room(points))
+
+
+def room(points: Floats) -> Floats:
+    """Radius (n,) up to which balls round points (n, 3) keep apart: nearly half the way to the nearest other."""
+    if len(points) < 2:
+        return np.full(len(points), np.inf)
+    return np.asarray(_ROOM * cKDTree(points).query(points, k=2)[0][:, 1])
 
 
 def quads_scene(of: Subject) -> QuadsScene:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 
+from meshwind.appearance.looks import SIGNAL
 from meshwind.appearance.strips import Ribbons
 from meshwind.core.cast import Floats
 from meshwind.pictures import animation_picture, canvas, filament_picture
@@ -14,7 +15,7 @@ from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import MachineScene
 
 _STEEL, _RAIL, _EYE = "#8d99a5", "#c9ced4", "#1f4e79"
-_FIBRE, _FAULTY = canvas.INK, filament_picture.SIGNAL
+_FIBRE, _FAULTY = canvas.INK, SIGNAL
 _THICK = 5.0
 """Width of the free fibre in pixels of the designed page."""
 _CHUCK = 2.4, 1.2

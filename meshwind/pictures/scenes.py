@@ -82,7 +82,10 @@ class AnimationScene:
 
 @dataclass(frozen=True)
 class CrossingsScene:
-    """The crossings (c, 3), with the surface's normals (c, 3) there, and positions on the scale (c,)."""
+    """The crossings (c, 3), with the surface's normals (c, 3) there, and positions on the scale (c,).
+
+    room (c,): radius of a disc on each, in mesh units, up to which no two meet.
+    """
 
     frame: Frame
     part: Part
@@ -91,6 +94,7 @@ class CrossingsScene:
     shares: Floats
     points: Floats
     normals: Floats
+    room: Floats
 
 
 @dataclass(frozen=True)

@@ -75,10 +75,11 @@ def _stations(path: Path) -> Floats:
 
 def _fibres(folder: Path, surface: Surface) -> tuple[Filament, ...]:
     layers = enumerate(read_layer_paths(folder, surface)[0])
-    return tuple(_fibre(paths, row, number) for number, paths in layers for row in range(len(paths)))
+    return tuple(fibre_of(paths, row, number) for number, paths in layers for row in range(len(paths)))
 
 
-def _fibre(paths: Paths, row: int, layer: int) -> Filament:
+def fibre_of(paths: Paths, row: int, layer: int = 0) -> Filament:
+    """One of the paths of a layer as a filament of its own, on pass 0 for family +1 and 1 for family -1."""
     count = paths.points.shape[1]
     none, zero = np.full(count, np.nan), np.zeros(count, dtype=np.int64)
     kind = np.where(paths.on_surface[row], Kind.LAID, Kind.BRIDGE)

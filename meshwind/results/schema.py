@@ -168,9 +168,9 @@ WINDING, FIT, REDESIGN, SHEET = "winding", "fit", "redesign", "sheet"
 FILAMENTS, BANDS, LAMINATE_PICTURE = "filament", "bands", "laminate"
 LAYERS_PICTURE = "layers"
 OF_FILAMENT = FILAMENTS, BANDS
-"""Pictures of a continuous winding alone, ..."""
+"""Pictures that are first of a continuous winding, ..."""
 OF_LAMINATE = BANDS, LAMINATE_PICTURE
-"""... and those of layers one on another."""
+"""... and of layers one on another; any winding has BANDS."""
 PICTURES = (
     WINDING, "crossings", "coverage", LAYERS_PICTURE, "windability", "slip", FIT, "unrolled", "quads", "angles",
     FILAMENTS, BANDS, LAMINATE_PICTURE,
