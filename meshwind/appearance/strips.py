@@ -65,17 +65,18 @@ class Ribbons:
         ahead[1:] += steps
         return unit(np.cross(ahead, np.gradient(self.points, axis=1)))
 
-    def before(self, eye: Floats, depth: float, within: float) -> "Ribbons":
+    def before(self, eye: Floats, depth: float, within: float, both: bool = False) -> "Ribbons":
         """The same as an eye in direction (3,) shall see it: what is laid later before what is laid earlier.
 
         Fibres are computed one by one. Where they cross in the air the later one would lie on the earlier one, but they
         would cut through each other; so bands that face the eye come nearer to it by up to `depth`, but for turnarounds
         and what is `within` a distance of them, which has pins in front of it.
+        both: for an eye on the other side, too.
         """
         share = (self.laid / max(float(self.laid[-1]), TINY))[:, None]
         # both depend on the place alone, so that where bands cross their order alone decides
         clear = np.clip(self.off_turns / max(within, TINY) - 1.0, 0.0, 1.0)
-        facing = np.clip(_FACING * (self.normals @ eye), 0.0, 1.0)
+        facing = np.clip(_FACING * (self.normals @ eye), -1.0 if both else 0.0, 1.0)
         return replace(self, points=self.points + (depth * share * clear * facing)[..., None] * eye)
 
     def until(self, done: float) -> "Ribbons":

@@ -1,6 +1,6 @@
 """Views of a part: the direction to look from, and the extents on the picture."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,7 +24,8 @@ NAMED = {
 class View:
     """A parallel projection: unit vectors towards the right, the top and the eye (3,), centre, extents.
 
-    centre (3,) is the middle of what is seen; width and height its extents on the picture, in mesh units.
+    centre (3,) is the middle of what is seen; width and height its extents on the picture, in mesh units; both: whether
+    pictures with room for it show the other side as well.
     """
 
     right: Floats
@@ -33,6 +34,19 @@ class View:
     centre: Floats
     width: float
     height: float
+    both: bool = False
+
+    @property
+    def other(self) -> "View":
+        """The view from the other side, turned about the longer extent: what is seen has the same extents."""
+        if self.upright:
+            return replace(self, right=-self.right, eye=-self.eye)
+        return replace(self, up=-self.up, eye=-self.eye)
+
+    @property
+    def upright(self) -> bool:
+        """Whether what is seen is higher than wide."""
+        return self.height > self.width
 
 
 def best_view(points: Floats, quads: Ints, axis: Floats, marks: Floats, outward: Floats, weight: Floats) -> View:
@@ -107,7 +121,7 @@ def around(count: int) -> Floats:
 
 def framed(points: Floats, view: View) -> View:
     """A view from the same side that contains all points (n, 3)."""
-    return _framed(points, view.right, view.up, view.eye)
+    return replace(_framed(points, view.right, view.up, view.eye), both=view.both)
 
 
 def _framed(points: Floats, right: Floats, up: Floats, eye: Floats) -> View:

@@ -77,7 +77,7 @@ def moving(points: Floats, fibres: Floats, view: View, reel: Reel) -> tuple[View
     """
     spin, centre, extent = turning(points, fibres, view.up, view.right)
     motion = motion_of(reel, spin, _TURNS)
-    return replace(view, centre=centre, width=float(extent[0]), height=float(extent[1])), motion
+    return replace(view, centre=centre, width=float(extent[0]), height=float(extent[1]), both=False), motion
 
 
 def motion_of(reel: Reel, spin: Floats, turns: int) -> Motion:

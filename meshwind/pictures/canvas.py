@@ -20,6 +20,8 @@ PAPER, INK, FAINT = "#ffffff", "#1c1c1c", "#5a5a5a"
 PART, INSIDE = "#e6e2da", "#8f8a82"
 _MARGIN = 14
 """Least distance of the legend from the right edge."""
+_BETWEEN, _SMALLER = 40.0, 1.25
+"""Distance between two views, and the factor by which the part may be larger in one."""
 _BAR_TOP, _BAR_BOTTOM, _BAR_WIDTH = 470, 930, 34
 _ANGLE = np.radians(15.0)
 """Half the angle of view in perspective."""
@@ -48,10 +50,31 @@ def legend_left(page: Page) -> float:
     return page.width - page.unit * (RIGHT - 20)
 
 
+def rooms(page: Page, view: View) -> list[Box]:
+    """The boxes that the part is drawn in: two for a view of both sides that would not be much larger in one.
+
+    In perspective there is one, as the part would be seen at a slant in two.
+    """
+    whole = room(page)
+    left, top, width, height = whole
+    gap = page.unit * _BETWEEN
+    wide, high = (width - gap) / 2.0, (height - gap) / 2.0
+    if view.upright:
+        pair = [(left, top, wide, height), (left + wide + gap, top, wide, height)]
+    else:
+        pair = [(left, top, width, high), (left, top + high + gap, width, high)]
+    two = view.both and not page.perspective and _scale(pair[0], view) <= _SMALLER * _scale(whole, view)
+    return pair if two else [whole]
+
+
+def _scale(box: Box, view: View) -> float:
+    """Mesh units per pixel at which a view fills a box."""
+    return float(max(view.width / box[2], view.height / box[3]))
+
+
 def fitting(page: Page, view: View) -> float:
     """Mesh units per pixel at which the view fills the room for it."""
-    _, _, width, height = room(page)
-    return float(max(view.width / width, view.height / height))
+    return _scale(rooms(page, view)[0], view)
 
 
 def middle(box: Box) -> tuple[float, float]:
@@ -67,9 +90,22 @@ def add_smooth(window: Any, mesh: Any, **look: Any) -> Any:
 
 
 def portrait(window: Any, page: Page, view: View, points: Floats) -> Any:
-    """Picture of the window's contents in the middle of the room for it; points (k, 3): of the part."""
-    aim(window, page, view, points, view.centre, middle(room(page)), fitting(page, view))
-    return shot(window, page)
+    """Picture of the window's contents in the middle of the room for it, from both sides where there is room for two.
+
+    points (k, 3): of the part.
+    """
+    boxes, scale = rooms(page, view), fitting(page, view)
+    aim(window, page, view, points, view.centre, middle(boxes[0]), scale)
+    image = shot(window, page)
+    if len(boxes) > 1:
+        box = boxes[1]
+        aim(window, page, view.other, points, view.centre, middle(box), scale)
+        half = round(box[0] - 0.5 * page.unit * _BETWEEN), round(box[1] - 0.5 * page.unit * _BETWEEN)
+        corner = (half[0], 0) if view.upright else (0, half[1])
+        image.paste(shot(window, page).crop((*corner, page.width, page.height)), corner)
+        at = box[0] + 0.5 * box[2], page.height - page.unit * (BOTTOM - 30)
+        pen(image).text(at, "from the other side", FAINT, font=face(page, 21), anchor="mm")
+    return image
 
 
 def aim(

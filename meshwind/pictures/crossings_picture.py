@@ -46,7 +46,7 @@ def add_dots(window: Any, scene: CrossingsScene, scale: float, unit: float, thic
     if not len(scene.points):
         return
     size = radii(scene, scale, unit)
-    lift = 2.0 * thick * scene.normals
+    lift = 2.4 * thick * scene.normals
     ringed = size > _RINGED * unit * scale
     inner = np.where(ringed, size - _RING * unit * scale, size)
     rings = discs(scene.points[ringed] + lift[ringed], scene.normals[ringed], size[ringed])

@@ -87,7 +87,7 @@ def bands(scene: FilamentScene, ribbons: Ribbons, view: View, page: Page) -> lis
     """The bands of a scene, or the first of them, with their colours, and their two edges, which tell them apart."""
     size = max(view.width, view.height)
     # in perspective what is nearer is larger, too
-    seen = ribbons if page.perspective else ribbons.before(view.eye, DEPTH * size, _WITHIN * size)
+    seen = ribbons if page.perspective else ribbons.before(view.eye, DEPTH * size, _WITHIN * size, view.both)
     mesh = pv.PolyData.from_regular_faces(seen.points.reshape(-1, 3), seen.quads)
     mesh.point_data["Normals"] = ribbons.normals.reshape(-1, 3)
     mesh.point_data.active_normals_name = "Normals"

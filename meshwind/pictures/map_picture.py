@@ -39,7 +39,8 @@ def add_fans(window: Any, fans: Fans, eye: Floats) -> None:
     aside = np.cross(normal, ahead)
     turn = fans.reach[:, None] * np.linspace(-1.0, 1.0, _ARC + 1)
     arc = np.cos(turn)[..., None] * ahead[:, None] + np.sin(turn)[..., None] * aside[:, None]
-    tip = fans.points + fans.size * eye  # moved towards the eye, so that the part does not cut them
+    nearer = np.where(normal @ eye < 0.0, -fans.size, fans.size)[:, None]
+    tip = fans.points + nearer * eye  # moved towards an eye on its side, so that the part does not cut them
     rim = np.concatenate([fans.size * arc, -fans.size * arc], axis=1) + tip[:, None]
     points = np.concatenate([tip[:, None], rim], axis=1)
     k = np.arange(1, _ARC + 1)

@@ -55,9 +55,11 @@ def windability_scene(of: Subject) -> MapScene:
     )
     seen = map_scene(of, WINDABILITY, "where a taut fibre presses", subtitle)
     apart = max(of.view.width, of.view.height) / _FANS
-    facing = of.normals @ of.view.eye > _ASLANT * np.linalg.norm(of.normals, axis=1)
-    some = np.flatnonzero((kind == SADDLE) & (of.maps[PRESS_REACH] < _ALL_BUT) & facing)
-    chosen = some[spread_out(of.points[some], apart)]
+    toward = (of.normals @ of.view.eye) / np.linalg.norm(of.normals, axis=1)
+    some = (kind == SADDLE) & (of.maps[PRESS_REACH] < _ALL_BUT)
+    # each side by itself: on a thin part those of one would leave no room to those of the other
+    sides = [np.flatnonzero(some & (each > _ASLANT)) for each in ((toward, -toward) if of.view.both else (toward,))]
+    chosen = np.concatenate([side[spread_out(of.points[side], apart)] for side in sides])
     fans = Fans(
         points=of.points[chosen],
         normals=of.normals[chosen],

@@ -28,7 +28,8 @@ def draw(window: Any, scene: QuadsScene, page: Page) -> Any:
     off = scene.corners[scene.off] if faces else ()
     if len(off):
         size = float(np.clip(0.4 * scene.part.pitch / scale, 1.5 * page.unit, 9.0 * page.unit))
-        dots = pv.PolyData(off + 3.0 * page.unit * scale * view.eye)
+        nearer = 3.0 * page.unit * scale * view.eye
+        dots = pv.PolyData(np.concatenate([off + nearer, off - nearer]) if view.both else off + nearer)
         window.add_mesh(dots, color=OFF, point_size=size, render_points_as_spheres=True, lighting=False, render=False)
     image = canvas.portrait(window, page, view, scene.part.points)
     pen = canvas.titled(image, page, scene.frame)

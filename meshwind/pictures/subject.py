@@ -78,7 +78,10 @@ class Subject:
 
     @cached_property
     def view(self) -> View:
-        """View of the long side that shows most of the part, its bend and its bridges, or from the given side."""
+        """View of the long side that shows most of the part, its bend and its bridges, or from the given side.
+
+        The first hides half of the part, so that it is shown from the other side as well.
+        """
         paths = self.paths
         if isinstance(self.seen_from, View):
             return self.seen_from
@@ -88,7 +91,7 @@ class Subject:
         uv = np.stack(np.meshgrid(np.arange(32) / 32, v, indexing="ij"), axis=2).reshape(-1, 2)
         axis = paths.surface.points(uv).reshape(32, 65, 3).mean(axis=0)
         marks = paths.points.reshape(-1, 3), paths.normal.reshape(-1, 3), paths.gap.ravel()
-        return best_view(self.points, self.quads, axis, *marks)
+        return replace(best_view(self.points, self.quads, axis, *marks), both=True)
 
     @cached_property
     def kept(self) -> Ints:
