@@ -14,6 +14,7 @@ from PIL import Image
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.geometry.mesh import Mesh
+from meshwind.path.lengths import lengths
 from meshwind.path.paths import Paths
 from meshwind.pictures import driver
 from meshwind.pictures.animation_scene import laid_before, turning
@@ -143,6 +144,24 @@ def test_slip_off_the_surface_is_no_number(waist: Path) -> None:
     lines = runs(seen.fibres.points, seen.shares, wanted)
     assert np.isfinite(lines.point_data["share"]).all()
     assert lines.n_lines == 2 * len(of.paths)  # below and above the waist
+
+
+def test_the_histogram_of_slip_is_by_length_of_what_touches(waist: Path) -> None:
+    of = subject_of(read_results(waist))
+    seen = slip_scene(of)
+    # all of it needs 0.1, half of the friction: one bar, of all, below a line at the end of the scale
+    assert seen.bins[len(seen.bins) // 2] == pytest.approx(1.0) and np.count_nonzero(seen.bins) == 1
+    assert seen.limit == 1.0
+    # a quarter of the way of a path is a quarter of the fibre, however many points it has
+    slip = np.array(of.paths.slip)
+    known = np.isfinite(slip)
+    length = lengths(of.paths).arc_length
+    early = known & (length < 0.25 * length[:, -1:])
+    slip[early] = 0.022
+    seen = slip_scene(replace(of, layup=replace(of.layup, paths=replace(of.paths, slip=frozen(slip)))))
+    mine = np.gradient(length, axis=1)
+    share = mine[early].sum() / mine[known].sum()
+    assert seen.bins[2] == pytest.approx(share) and seen.bins.sum() == pytest.approx(1.0)
 
 
 def test_without_friction_slip_needs_no_scale(tmp_path: Path) -> None:

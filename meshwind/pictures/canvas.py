@@ -186,13 +186,21 @@ def scale_bar(image: Any, pen: Any, page: Page, scale: Scale) -> None:
     colour_bar(image, pen, page, colour_map(scale.colours), list(scale.words), scale.marks)
 
 
+def bar_box(page: Page) -> Box:
+    """The box of a scale of colours."""
+    s = page.unit
+    top = s * _BAR_TOP
+    bottom = max(page.height - s * (DESIGNED[1] - _BAR_BOTTOM), top + 40.0 * s)
+    return legend_left(page), top, s * _BAR_WIDTH, bottom - top
+
+
 def colour_bar(
     image: Any, pen: Any, page: Page, colours: Any, words: list[str], marks: list[tuple[float, str]]
 ) -> None:
     """Draw a scale of colours with lines of text above it and marks at positions from 0, below, to 1."""
     s = page.unit
-    x, width, top = legend_left(page), s * _BAR_WIDTH, s * _BAR_TOP
-    bottom = max(page.height - s * (DESIGNED[1] - _BAR_BOTTOM), top + 40.0 * s)
+    x, top, width, high = bar_box(page)
+    bottom = top + high
     shade = colours(np.linspace(1.0, 0.0, round(bottom) - round(top)))[:, None, :3]
     bar = np.repeat((255 * shade).astype(np.uint8), round(width), axis=1)
     image.paste(Image.fromarray(bar), (round(x), round(top)))

@@ -6,7 +6,7 @@ from scipy.spatial import cKDTree
 from meshwind.appearance.looks import Look, Scale, fixed
 from meshwind.core.cast import Floats
 from meshwind.path.apart import to_next
-from meshwind.path.lengths import bridging
+from meshwind.path.lengths import bridging, lengths
 from meshwind.pictures.scenes import CrossingsScene, QuadsScene, SlipScene, UnrolledScene
 from meshwind.pictures.subject import Subject
 from meshwind.pictures.winding_scene import fibres
@@ -18,6 +18,8 @@ _ROOM = 0.45
 """Radius of a disc over the distance to the nearest other, at most."""
 NO_SLIP = 1e-6
 """Slip below this is round-off: the fibre is a geodesic."""
+_BINS = 20
+"""Bars of the histogram of slip."""
 _PIXELS = 384
 
 
@@ -70,7 +72,18 @@ def slip_scene(of: Subject) -> SlipScene:
         shares=scale.shares(of.paths.slip[:, of.kept]),
         needed=end > 0.0,
         bridges=not bool(of.paths.on_surface.all()),
+        bins=_bins(of, scale),
+        limit=float(scale.shares(np.array([friction]))[0]) if friction else 0.0,
     )
+
+
+def _bins(of: Subject, scale: Scale) -> Floats:
+    """Shares of the length of converged fibre that touches, by its slip, on equal parts of the scale."""
+    arc, slip = lengths(of.paths).arc_length[of.converged], of.paths.slip[of.converged]
+    known = np.isfinite(slip)
+    mine = np.gradient(arc, axis=1)[known]
+    at = np.minimum((_BINS * scale.shares(slip[known])).astype(np.int64), _BINS - 1)
+    return np.bincount(at, mine, _BINS) / max(float(mine.sum()), 1e-300)
 
 
 def _slip_subtitle(of: Subject, end: float) -> str:

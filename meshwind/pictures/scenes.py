@@ -12,6 +12,8 @@ from meshwind.appearance.strips import Gear, Ribbons
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.pictures.contents import Frame as Frame
 from meshwind.pictures.contents import Part as Part
+from meshwind.pictures.curve_scenes import AnglesScene as AnglesScene
+from meshwind.pictures.curve_scenes import LaminateScene as LaminateScene
 from meshwind.pictures.edit_scenes import RedesignScene as RedesignScene
 from meshwind.pictures.edit_scenes import RoundsScene as RoundsScene
 from meshwind.pictures.edit_scenes import SliceScene as SliceScene
@@ -140,7 +142,8 @@ class LayersScene:
 class SlipScene:
     """The fibres by their slip: positions on the scale (p, n), NaN where it is not defined.
 
-    needed: whether any fibre needs friction; bridges: whether any leaves the surface.
+    needed: whether any fibre needs friction; bridges: whether any leaves the surface; bins (b,): shares of the length
+    of fibre that touches, on equal parts of the scale; limit: position of the friction on the scale, 0 if none.
     """
 
     frame: Frame
@@ -150,6 +153,8 @@ class SlipScene:
     shares: Floats
     needed: bool
     bridges: bool
+    bins: Floats
+    limit: float
 
 
 @dataclass(frozen=True)
@@ -295,37 +300,6 @@ class HitsScene:
     eyes: Floats
     astray: Floats
     notes: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class LaminateScene:
-    """The thickness of a laminate on the part, (k,) on a scale, and that of its layers along the part.
-
-    stations (s,): lengths along the part; thickness, angles (l, s): of each layer, angles in degrees, NaN where it is
-    not; names: words for each layer.
-    """
-
-    frame: Frame
-    part: Part
-    scale: Scale
-    shares: Floats
-    stations: Floats
-    thickness: Floats
-    angles: Floats
-    names: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class AnglesScene:
-    """Least, median and largest winding angle in degrees (s,) at stations, which are lengths (s,) along the part.
-
-    cover (s,): layers of band of one family there, None where the band has no width.
-    """
-
-    frame: Frame
-    stations: Floats
-    angles: Floats
-    cover: Floats | None
 
 
 Scene: TypeAlias = (
