@@ -1,6 +1,7 @@
 """Studies: their meaning, that each case is done once even if workers are killed, and the same results everywhere."""
 
 import csv
+import itertools
 import json
 import os
 import signal
@@ -16,8 +17,9 @@ from pyarrow import parquet
 
 from meshwind.core.errors import BadInputError
 from meshwind.studies import read_study, sweep
+from meshwind.studies.charts import kept_apart, line_words
 from meshwind.studies.local import run_local
-from meshwind.studies.study import CaseStatus
+from meshwind.studies.study import CaseStatus, Row
 from meshwind.studies.work import Done, grouped
 
 DATA = Path(__file__).parents[1] / "data"
@@ -225,3 +227,17 @@ def test_a_missing_scheduler_is_one_line(tmp_path: Path) -> None:
         patch.setattr(cluster, "CONNECT_SECONDS", 1)
         with pytest.raises(BadInputError, match="no scheduler answers"):
             sweep(small(tmp_path), tmp_path / "out", scheduler="tcp://127.0.0.1:1")
+
+
+def test_lines_of_the_chart_say_in_what_they_differ() -> None:
+    groups: list[Row] = [
+        {"mesh": mesh, "friction": friction, "turns": 0.5} for mesh in ("a.stl", "b.stl") for friction in (0.1, 0.25)
+    ]
+    assert line_words(groups, ["mesh", "friction", "turns"]) == ["friction 0.1", "friction 0.25"] * 2
+    assert line_words(groups[:1], ["friction"]) == [""]
+    places = [0.5, 0.51, 0.99, 0.98, 0.0, 0.5]
+    moved = kept_apart(places, 0.1)
+    assert min(moved) >= 0.0 and max(moved) <= 1.0
+    ranked = sorted(range(6), key=places.__getitem__)
+    assert all(moved[b] - moved[a] > 0.1 - 1e-9 for a, b in itertools.pairwise(ranked))
+    assert kept_apart([0.2, 0.8], 0.1) == [0.2, 0.8]

@@ -16,6 +16,8 @@ _FIGURES = {
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 _MARKS = "os^Dv*P"
 _DPI = 130
+_MOST_WORDS, _APART = 12, 0.085
+"""Lines up to which each has words at its end, and distance of the words over the height of the axes."""
 
 
 def draw_tradeoffs(picture: Path, rows: Sequence[Row], swept: Sequence[str]) -> None:
@@ -38,13 +40,17 @@ def draw_tradeoffs(picture: Path, rows: Sequence[Row], swept: Sequence[str]) -> 
     FigureCanvasAgg(figure)
     grid = figure.subplots(len(_FIGURES), len(numeric), squeeze=False, sharex="col", sharey="row")
     for column, name in enumerate(numeric):
-        groups = _lines(done, name, [other for other in names if other != name])
+        others = [other for other in names if other != name]
+        groups = _lines(done, name, others)
+        words = line_words([group for group, _ in groups], others)
         for row, (figure_name, label) in enumerate(_FIGURES.items()):
             axes = grid[row, column]
             for group, line in groups:
                 style = _style(group, done)
                 at = [each[name] for each in line]
                 axes.plot(at, [each[figure_name] for each in line], lw=1.1, ms=4, alpha=0.85, **style)
+            if len(groups) <= _MOST_WORDS and any(words):
+                _write_words(axes, [(line[-1][name], line[-1][figure_name]) for _, line in groups], words)
             axes.grid(alpha=0.3, lw=0.5)
             for side in ("top", "right"):
                 axes.spines[side].set_visible(False)
@@ -63,6 +69,47 @@ def draw_tradeoffs(picture: Path, rows: Sequence[Row], swept: Sequence[str]) -> 
     )
     with staged(picture.parent, lambda _: ()) as staging:
         figure.savefig(staging / picture.name, dpi=_DPI, metadata={"Software": None})
+
+
+def line_words(groups: Sequence[Row], others: Sequence[str]) -> list[str]:
+    """Words for each line: those of its other options in which the lines differ, but for the mesh, which has a colour.
+
+    groups: a case of each line.
+    """
+    differ = [name for name in others if name != "mesh" and len({repr(row[name]) for row in groups}) > 1]
+    return [", ".join(f"{name.replace('_', ' ')} {_short(row[name])}" for name in differ) for row in groups]
+
+
+def kept_apart(places: Sequence[float], gap: float) -> list[float]:
+    """Places from 0 to 1 for words that are at least a gap from each other, near these places and in their order."""
+    order = sorted(range(len(places)), key=places.__getitem__)
+    moved, least = [0.0] * len(places), 0.0
+    for k in order:
+        moved[k] = max(places[k], least)
+        least = moved[k] + gap
+    most = 1.0
+    for k in reversed(order):  # what went over the top pushes those below it down
+        moved[k] = min(moved[k], most)
+        most = moved[k] - gap
+    return moved
+
+
+def _short(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def _write_words(axes: Any, ends: Sequence[tuple[Any, Any]], words: Sequence[str]) -> None:
+    """Write words to the right of the ends of lines, on lines of their own where ends are close."""
+    shown = [(x, y, each) for (x, y), each in zip(ends, words, strict=True) if y is not None and y == y]
+    if not shown:
+        return
+    low, high = axes.get_ylim()
+    places = kept_apart([(y - low) / (high - low) for _, y, _ in shown], _APART)
+    for (x, y, each), place in zip(shown, places, strict=True):
+        axes.annotate(
+            each, (x, y), (1.02, place), textcoords="axes fraction", fontsize=6, va="center", annotation_clip=False,
+            arrowprops={"arrowstyle": "-", "lw": 0.4, "color": "#999999"},
+        )  # fmt: skip
 
 
 def _column(name: str) -> str:
