@@ -119,7 +119,7 @@ def traces(  # noqa: PLR0913
     length : float or array_like of float, shape (p,)
         Lengths of the fibres, in the surface's units.
     slip : float or array_like of float, shape (p,), default 0
-        Ratio of geodesic to normal curvature, positive to the left as seen from outside: |slip| is the required
+        Ratio of geodesic to normal curvature, positive to the left as seen from outside: ``|slip|`` is the required
         friction. 0 gives geodesics.  It has no effect where the surface does not press.
     method : {"adaptive", "rk4"}, default "adaptive"
         "adaptive" is of order 8 and controls the error of every step; "rk4" is the classical Runge-Kutta method of

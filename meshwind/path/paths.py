@@ -61,8 +61,8 @@ class Paths(Geometric):
     normal : ndarray of float, shape (p, n, 3)
         Outward unit normal at the particle or its foot.
     slip : ndarray of float, shape (p, n)
-        Required friction |kg|/kn, geodesic over normal curvature: the coefficient of friction that the fibre needs to
-        stay where it is.  NaN off the surface and at the two ends.
+        Required friction ``|kg|/kn``, geodesic over normal curvature: the coefficient of friction that the fibre needs
+        to stay where it is.  NaN off the surface and at the two ends.
     family : ndarray of int, shape (p,)
         +1 or -1, the sense of turning.
     status : ndarray of int, shape (p,)

@@ -303,7 +303,7 @@ def elbow(major: float, minor: float, bend: float = np.pi / 2, spans: Spans = (1
 
 
 def hyperboloid(waist: float, slope: float, half_height: float, spans: Spans = (192, 96)) -> Surface:
-    """Make one sheet r^2 = waist^2 + (slope z)^2 of a hyperboloid about the z axis, for |z| <= half_height.
+    """Make one sheet r^2 = waist^2 + (slope z)^2 of a hyperboloid about the z axis, for ``|z| <= half_height``.
 
     Parameters
     ----------
