@@ -1,4 +1,4 @@
-"""How Sphinx makes the site: README, the pages beside this file, theory and docstrings, without a second copy of any."""
+"""How Sphinx makes the site of README, the pages beside this file, theory and docstrings, without a second copy."""
 
 import meshwind
 
