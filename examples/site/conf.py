@@ -24,5 +24,7 @@ napoleon_use_rtype = False
 
 html_theme = "furo"
 html_title = f"meshwind {version}"
+html_static_path = ["static"]
+html_css_files = ["wide.css"]
 html_copy_source = False
 html_show_sphinx = False
