@@ -129,7 +129,7 @@ def test_shells_beside_solids(tmp_path: Path) -> None:
     assert volume(solid.vertices, solid.faces) == pytest.approx(2.0) and len(solid.faces) == 20
     assert areas(sheet.vertices, sheet.faces).sum() == pytest.approx(9.0)
     inside = "surface cells inside the solid are left out: 1"
-    assert solid.warnings[0] == inside and "--component 1 takes that instead" in solid.warnings[1]
+    assert solid.warnings[0] == inside and "component=1 takes that instead" in solid.warnings[1]
     assert sheet.warnings == (inside,)
 
 

@@ -158,7 +158,7 @@ def test_the_converted_unit_is_said_and_not_to_be_changed(name: str, unit: str, 
     assert read(path, units="MM").warnings == ()
     for words in ("in", "meters"):
         with pytest.raises(
-            BadInputError, match=r"but the lengths of the file are 'mm', 'converted from .*; leave --un"
+            BadInputError, match=r"but the lengths of the file are 'mm', 'converted from .*; leave un"
         ):
             mw.check(path, units=words)
         with pytest.raises(BadInputError, match="leave units out"):
