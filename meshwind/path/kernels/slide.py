@@ -1,9 +1,11 @@
 """The slide of a fibre under friction from its starting curve to rest, by increments of time.
 
 An overdamped fibre of constant tension moves across itself at the rate |kg| - mu kn, and not at all where that is
-negative (3.12).  Each increment is one implicit step: equilibrium under friction that acts from where the fibre lay
-before, with a force that resists the slip over the length of the increment.  Where the fibre comes to rest depends on
-how it got there: a particle that has slid one way may be drawn back later, or be held where it stopped.
+negative (3.12).  Each increment is one implicit step of second order (BDF2): equilibrium under friction, with a force
+that resists the slip over the length of the increment.  Both act from where the fibre lay before, moved on by
+w^2 / (1 + 2 w) of its last slip, w being the ratio of the two increments; a particle that friction holds has no such
+start.  Where the fibre comes to rest depends on how it got there: a particle that has slid one way may be drawn back
+later, or be held where it stopped.
 """
 
 import numpy as np
