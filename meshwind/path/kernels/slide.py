@@ -38,9 +38,10 @@ from each to the next: waves die out in the order of their lengths, each in a ti
 FARTHEST = 0.005
 """Move within an increment, over the fibre's length, from which on increments no longer grow: a fibre that leaps off a
 bump is followed."""
+UNSETTLED = 5e-4
+"""Move within an increment, over the length, up to which it counts though the contact force has not settled."""
 LITTLE, HASTE = 1e-4, 1.5
-"""Move within an increment, over the length, up to which it counts though the contact force has not settled, and the
-factor to the next after it."""
+"""Move within an increment, over the length, that is little, and the factor to the next after it."""
 LATE = 0.1
 """Time from which on a fibre that moves little is at rest: its longest wave dies out in this time."""
 AT_REST = 2e-6
@@ -170,7 +171,7 @@ def slide(rough, limits, state, lain, counters):
         shorter = time > SHORTEST
         if counters[EVALUATIONS] > spent:
             status, shorter = STALLED, False
-        if status == STALLED or (shorter and not settled and move > LITTLE * length):
+        if status == STALLED or (shorter and not settled and move > UNSETTLED * length):
             copy(before, state)
             if not shorter:
                 break
