@@ -221,7 +221,7 @@ def test_the_movie_moves(run: Path, tmp_path: Path) -> None:
     assert told[:6] == ["program", "wind again", "write", "axes", "viewer", "movie"]
     assert [int(line.split()[1]) for line in told[6:]] == [3, 5, 8, 10, 13, 15, 18, 20, 23, 25]
     assert [file.name for file in done.files] == [
-        "axes.png", "program.csv", "program.gif", "program.html", "program.json",
+        "axes.png", "program.csv", "program.gif", "program.html", "program.json", "program_columns.csv",
     ]  # fmt: skip
     with Image.open(tmp_path / "program.gif") as movie:
         assert movie.n_frames >= 25  # type: ignore[attr-defined]
