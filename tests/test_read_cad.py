@@ -157,9 +157,7 @@ def test_the_converted_unit_is_said_and_not_to_be_changed(name: str, unit: str, 
         assert mw.check(mesh).units_from == f"converted from {unit.lower()[:2]}"
     assert read(path, units="MM").warnings == ()
     for words in ("in", "meters"):
-        with pytest.raises(
-            BadInputError, match=r"but the lengths of the file are 'mm', 'converted from .*; leave un"
-        ):
+        with pytest.raises(BadInputError, match=r"but the lengths of the file are 'mm', 'converted from .*; leave un"):
             mw.check(path, units=words)
         with pytest.raises(BadInputError, match="leave units out"):
             read(path).in_units(words)
