@@ -56,7 +56,7 @@ ROUNDS, BALANCE = 30, 1e-6
 PASSES, SETTLED = 4, 0.05
 """Maximum number of times that an increment is made anew with the contact force at its end, and the change from one to
 the next, over the increment's move, with which it counts."""
-MOST, DEAREST = 400, 5_000
+MOST, DEAREST = 400, 8_000
 """Maximum number of increments, and of evaluations a particle, of a slide."""
 LEANING = 16
 """Number of increments in a row over which a fibre that leans on a rim has slid off: in them the time grows six times,
