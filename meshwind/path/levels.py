@@ -19,7 +19,7 @@ def segments(particles: int, level: int) -> int:
 def climb(solver: Solver, batch: Batch, particles: int, level: int) -> Batch:
     """The batch, from the answer with the particles halved `level` times, with all of them."""
     for k in range(level - 1, -1, -1):
-        batch = ascend(solver.coarse if k else solver, batch, ((particles - 1) >> k) + 1)
+        batch = ascend(solver.coarse if k else solver, batch, segments(particles, k) + 1)
     return batch
 
 

@@ -199,9 +199,8 @@ class _Slides:
         """Paths of so many segments slid from starting curves with a change of friction."""
         options, batch = self.asked.options, fresh(starts, count + 1)
         friction = self.friction(change.friction)
-        Solver(self.paths.surface, friction, options.bridging, options.tolerance, options.iterations).coarse.slide(
-            batch
-        )
+        solver = Solver(self.paths.surface, friction, options.bridging, options.tolerance, options.iterations)
+        solver.coarse.slide(batch)
         return batch
 
     def shifted(self, index: Ints, shift: float) -> Floats:

@@ -26,7 +26,7 @@ from meshwind.workflow.options import Options
 _WARNING = "warning: "
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class LoadedResult(Views):
     """The result of an earlier run, as `load` reads it from its folder.
 
@@ -51,10 +51,6 @@ class LoadedResult(Views):
     """
 
     results: Results
-
-    def __repr__(self) -> str:
-        at_rest = int(self.results.at_rest.sum())
-        return f"<meshwind LoadedResult: {self.name}, {at_rest} of {len(self.paths)} paths at rest>"
 
     @property
     def folder(self) -> Path:

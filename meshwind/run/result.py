@@ -97,9 +97,7 @@ class Result(Winding, Views):
         """The result whose winding is given."""
         return cls(**{each.name: getattr(winding, each.name) for each in fields(winding)})
 
-    def __repr__(self) -> str:
-        at_rest = int((self.paths.status == Status.CONVERGED).sum())
-        return f"<meshwind Result: {self.mesh.name}, {at_rest} of {len(self.paths)} paths at rest>"
+    __repr__ = Views.__repr__
 
     @property
     def name(self) -> str:

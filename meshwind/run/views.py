@@ -18,6 +18,7 @@ from meshwind.core.table import as_columns, data_frame
 from meshwind.filament.filament import Filament, filaments_block
 from meshwind.layup.layup import Layup
 from meshwind.path.blocks import bridges_block, paths_block, paths_table
+from meshwind.path.paths import Paths, Status
 from meshwind.pictures.page import Page
 from meshwind.pictures.picture import Picture
 from meshwind.pictures.render import render
@@ -59,6 +60,10 @@ class Wound(Protocol):
         """Unit of length."""
 
     @property
+    def paths(self) -> Paths:
+        """All paths, family +1 first."""
+
+    @property
     def layup(self) -> Layup:
         """Paths, crossings, quads and coverage."""
 
@@ -83,6 +88,10 @@ class Wound(Protocol):
 
 class Views:
     """Base of results: pictures, tables, and what other libraries take."""
+
+    def __repr__(self: Wound) -> str:
+        at_rest = int((self.paths.status == Status.CONVERGED).sum())
+        return f"<meshwind {type(self).__name__}: {self.name}, {at_rest} of {len(self.paths)} paths at rest>"
 
     def plot(
         self: Wound,
