@@ -11,7 +11,7 @@ from meshwind.path.levels import ascend, climb, draw, segments
 from meshwind.path.solver import Solver
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV
 
-ENOUGH = 260
+ENOUGH = 250
 """Least number of segments, and as many per turn, of the slide of a fibre that bridges.
 
 Friction just beyond the ends of a bridge decides where it rests, within a few segments: on two parts of many bridges
