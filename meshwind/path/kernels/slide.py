@@ -8,14 +8,17 @@ start.  Where the fibre comes to rest depends on how it got there: a particle th
 later, or be held where it stopped.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
+from meshwind.core.cast import Floats, Ints
 from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.contact import pull
-from meshwind.path.kernels.coulomb import Fibre, Grip
+from meshwind.path.kernels.coulomb import Fibre, Grip, blank_grip
 from meshwind.path.kernels.geometry import dot, minus, over, put, row
-from meshwind.path.kernels.grip import attach_to_curve, hold_all
+from meshwind.path.kernels.grip import attach_to_curve, copy_grip, hold_all
 from meshwind.path.kernels.relax import relax
 from meshwind.path.kernels.relax_with_friction import relax_with_friction
 from meshwind.path.kernels.resist import ROOM, lay_down, press_anew, resistance
@@ -65,6 +68,17 @@ SHORTER, SHORTEST = 0.3, 1e-6
 """Factor of an increment that fails, and the shortest that is tried."""
 
 
+class Track(NamedTuple):
+    """Where a fibre of n particles lay.
+
+    lain (m, n, 2): its curve in (u, v) at first and after each step; turned (n, 2): the last step in which a particle
+    slipped to the right and to the left; one that lands counts as both, for it begins anew there.
+    """
+
+    lain: Floats
+    turned: Ints
+
+
 @njit(nogil=True, cache=True)
 def slide_all(first, last, rough, limits, batch, held, own):
     """Let paths first to last of a batch slide from their starting curves to rest.
@@ -74,7 +88,7 @@ def slide_all(first, last, rough, limits, batch, held, own):
     """
     n = batch.uv.shape[1]
     frames, offset = np.zeros((n, 6, 3)), np.zeros(n)
-    lain = np.empty((MOST + 1, n, 2))
+    track = Track(np.empty((MOST + 1, n, 2)), np.empty((n, 2), np.int64))
     for p in range(first, last):
         start, counters = batch.starts[p], batch.counters[p]
         state, grip = state_of(batch, p, frames), Grip(batch.anchor[p], offset, batch.mode[p])
@@ -87,12 +101,12 @@ def slide_all(first, last, rough, limits, batch, held, own):
             batch.residual[p], batch.status[p] = residual, status
             continue
         attach_to_curve(rough.body.spline, fibre, counters)
-        residual, status, steps = slide(rough, limits, state, lain, counters)
-        held[p] = lain[steps]
+        residual, status, steps = slide(rough, limits, state, track, counters)
+        held[p] = track.lain[steps]
         if status == CONVERGED:
-            residual, status, k = settle(rough, limits, state, grip, start, lain, steps, counters)
+            residual, status, k = settle(rough, limits, fibre, track, steps, counters)
             own[p] = k == 0
-            held[p] = lain[k]
+            held[p] = track.lain[k]
         batch.residual[p], batch.status[p] = residual, status
 
 
@@ -123,10 +137,10 @@ def slide_one_way(rough, limits, fibre, counters):
 
 
 @njit(cache=True)
-def slide(rough, limits, state, lain, counters):
-    """Let a fibre that lies on its starting curve slide to rest, in place.
+def slide(rough, limits, state, track, counters):
+    """Let a fibre that lies on its starting curve slide to rest, in place, and note its track.
 
-    Returns (residual, status, steps); lain (m, n, 2): where it lay at first and after each step.
+    Returns (residual, status, steps).
     """
     n = len(state.X)
     before, last, older = blank(n), blank(n), blank(n)
@@ -135,7 +149,7 @@ def slide(rough, limits, state, lain, counters):
     loose = Limits(limits.pull_off, max(limits.tolerance, BALANCE), ROUNDS)
     time, steps, leant = FIRST, 0, 0
     past = 0.0  # length of the increment before
-    lain[0] = state.uv
+    track.lain[0], track.turned[:] = state.uv, 0
     length = energy(state.X)[1]
     resist = resistance(n, 0.0, ROOM * length, FIRM * length)
     lay_down(resist, rough, state, contacts)
@@ -178,7 +192,8 @@ def slide(rough, limits, state, lain, counters):
             time *= SHORTER
             continue
         steps += 1
-        lain[steps] = state.uv
+        track.lain[steps] = state.uv
+        note_ways(track.turned, resist, before, state, AT_REST * length, steps)
         copy(before, older)
         past = time
         leant = leant + 1 if status != CONVERGED else 0
@@ -233,30 +248,57 @@ def slip_from(before, i, here, across):
 
 
 @njit(cache=True)
-def settle(rough, limits, state, grip, start, lain, steps, counters):
+def note_ways(turned, resist, before, state, least, step):
+    """Note to which side each particle slipped in a step, by more than a least distance."""
+    for i in range(1, len(turned) - 1):
+        if not state.touching[i]:
+            continue
+        if not before.touching[i]:
+            turned[i] = step
+            continue
+        d = slip_from(before, i, row(state.X, i), row(resist.across, i))
+        if abs(d) > least:
+            turned[i, 1 if d > 0.0 else 0] = step
+
+
+@njit(cache=True)
+def settle(rough, limits, fibre, track, steps, counters):
     """Balance a fibre at rest to the last, with friction from the earliest curve from which it slid one way only.
 
-    Returns (residual, status, k), k being the number of that curve among `lain`, 0 for the starting curve.
+    Where that leads elsewhere friction holds it from where it lies.  Returns (residual, status, k), k being the number
+    of that curve in the track, 0 for the starting curve.
     """
-    rest = blank(len(state.X))
+    state, n = fibre.state, len(fibre.state.X)
+    rest, early, grip = blank(n), blank(n), blank_grip(n)
     copy(state, rest)
     length = energy(rest.X)[1]
-    residual, status = np.inf, STALLED
-    quick = Limits(limits.pull_off, limits.tolerance, AT_ONCE)
-    k = 0
-    while True:
-        curve = start if k == 0 else lain[k]
-        if k > 0:
-            copy(rest, state)
-        fibre = Fibre(state, grip, curve)
-        hold_all(fibre, rough.body.size)
-        residual, status = relax_with_friction(rough, limits if k == steps else quick, fibre, counters)
-        if status == NEEDS_TREE or k == steps:
-            break
-        if status != STALLED and largest_move(state.X, rest.X) <= SAME * length:
-            break
-        k = min(max(k + 1, (k + steps + 1) // 2), steps)
-    return residual, status, k
+    first, k = STALLED, 0
+    for i in range(1, n - 1):
+        if state.touching[i]:
+            k = max(k, min(track.turned[i, 0], track.turned[i, 1]))
+    left = np.inf
+    if k < steps:
+        quick = Limits(limits.pull_off, limits.tolerance, AT_ONCE)
+        left, first = balance_from(rough, quick, fibre, track, k, counters)
+        if first == NEEDS_TREE or (first != STALLED and largest_move(state.X, rest.X) <= SAME * length):
+            return left, first, k
+        copy(state, early)
+        copy_grip(fibre.grip, grip)
+        copy(rest, state)
+    residual, status = balance_from(rough, limits, fibre, track, steps, counters)
+    if first == STALLED or status == NEEDS_TREE or largest_move(state.X, early.X) > SAME * length:
+        return residual, status, steps
+    copy(early, state)
+    copy_grip(grip, fibre.grip)
+    return left, first, k
+
+
+@njit(cache=True)
+def balance_from(rough, limits, fibre, track, k, counters):
+    """Balance a fibre with friction from the curve on which it lay after k steps, 0 for the starting curve."""
+    held = Fibre(fibre.state, fibre.grip, fibre.curve if k == 0 else track.lain[k])
+    hold_all(held, rough.body.size)
+    return relax_with_friction(rough, limits, held, counters)
 
 
 @njit(cache=True)
