@@ -64,18 +64,26 @@ def resolve(solver: Solver, batch: Batch, curves: Floats) -> None:
     for _ in range(FINER):
         if not len(index):
             break
-        if solver.friction.none:
-            fine = ascend(solver, fine, 2 * fine.particles - 1)
-        else:  # the law says how they come to rest
-            before = fine.counters
-            fine = solve_with(solver, curves[index], 2 * fine.particles - 1)
-            fine.counters[:] += before
+        fine = ascend(solver, fine, 2 * fine.particles - 1)
+        if not solver.friction.none:
+            fine = fine.curves_sampled()
+            slide_anew(solver, fine, curves[index])
         few = follow(solver, fine, n)
         batch.counters[index] = fine.counters[:] = few.counters
         gone = failing(fine) & (fine.status != Status.STALLED)
         done = gone | (few.status == REST)
         batch.put(index[done], few.rows(np.flatnonzero(done)))
-        index, fine = index[~done], fine.rows(np.flatnonzero(~done))
+        left = ~done if solver.friction.none else ~done & (fine.status != Status.STALLED)  # slid in every way
+        index, fine = index[left], fine.rows(np.flatnonzero(left))
+
+
+def slide_anew(solver: Solver, batch: Batch, curves: Floats) -> None:
+    """Slide paths under friction that stalled from their starting curves once more, in place."""
+    lost = np.flatnonzero(batch.status == Status.STALLED)
+    if len(lost):
+        anew = solve_with(solver, curves[lost], batch.particles)
+        anew.counters[:] += batch.counters[lost]
+        batch.put(lost, anew)
 
 
 def follow(solver: Solver, fine: Batch, particles: int) -> Batch:
