@@ -51,9 +51,9 @@ AT_REST = 2e-6
 """Largest move within an increment, over the fibre's length, of a fibre at rest."""
 FIRM = 1e3
 """Force over the tension that holds the fibre to its starting curve while it lifts off hollows, which takes no time."""
-SAME, AT_ONCE = 3e-5, 40
+SAME, AT_ONCE, AT_LAST = 1e-4, 40, 300
 """Distance, over the length, up to which friction from an earlier curve leads to the same place of rest, and the most
-steps by which it does."""
+steps by which it does, and by which a fibre is balanced where it lies."""
 ROUNDS, BALANCE = 30, 1e-6
 """Maximum number of steps of an increment before a shorter one is tried, and the unbalanced force it leaves."""
 PASSES, SETTLED = 4, 0.05
@@ -285,7 +285,8 @@ def settle(rough, limits, fibre, track, steps, counters):
         copy(state, early)
         copy_grip(fibre.grip, grip)
         copy(rest, state)
-    residual, status = balance_from(rough, limits, fibre, track, steps, counters)
+    patient = Limits(limits.pull_off, limits.tolerance, min(limits.iterations, AT_LAST))
+    residual, status = balance_from(rough, patient, fibre, track, steps, counters)
     if first == STALLED or status == NEEDS_TREE or largest_move(state.X, early.X) > SAME * length:
         return residual, status, steps
     copy(early, state)
