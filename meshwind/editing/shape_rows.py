@@ -11,7 +11,7 @@ from meshwind.mesh.geometry.areas_and_volumes import area_vectors, volume
 from meshwind.surface.surface import Surface
 
 PER_SPAN = 2
-"""Samples per span and direction, of the body whose volume is kept."""
+"""Samples per span and direction where the surface keeps its side, and of the body whose volume is kept."""
 KEPT, FINE = 2e-4, 5e-4
 """Shares of the volume: by which a round may change it to first order, and by which an edit may have changed it.
 
@@ -39,7 +39,7 @@ def nothing(surface: Surface) -> Kept:
 
 def one_way(first: Surface, moved: Floats, inward: bool) -> Kept:
     """The first surface moves outward only, or inward, counting what it has moved so far (m, 3)."""
-    uv = lattice(first, 1)
+    uv = lattice(first, PER_SPAN)
     direction = first.normals(uv) * (-1.0 if inward else 1.0)
     which, (part,) = weights(first, uv, ((0, 0),))
     matrix = along(which, part, direction, len(moved))
