@@ -14,8 +14,10 @@ CLOSE = 0.01
 """Relative distance of numbers that hold and that do not, at which the search ends."""
 BEYOND = 0.02
 """So much beyond the number found at least one path should fail."""
-_LOOKED_AT = 8, 2
-"""Paths that are tried at first with every number, those that failed last in front; and the first of these."""
+_LOOKED_AT = 1
+"""Paths that are tried with every number: the ones that failed last, which mostly limit it."""
+_AT_ONCE = 4
+"""Paths that are tried at once with a number that holds these."""
 _LEAST = 0.05
 """The first number that is tried above 0."""
 _CAUTION = 0.05, 0.15, 0.3
@@ -101,13 +103,13 @@ class Search:
                 if abs(bad - good) <= max(CLOSE * good, way.least) or number in (good, bad):
                     number = self._beyond(good)
                     if number == 0.0:
-                        if self._all_hold(good, self.order if self.together else self.order[_LOOKED_AT[0] :]):
+                        if self._all_hold(good, self.order if self.together else self.order[_LOOKED_AT:]):
                             return good
                         good, bad, step = 0.0, good, _STEP
                         continue
                     good, bad = number, self._next_failed(number)
                     continue
-            if self._hold(number, self.order[: _LOOKED_AT[0]]):
+            if self._hold(number, self.order[:_LOOKED_AT]):
                 good = number
             else:
                 bad = number
@@ -118,10 +120,10 @@ class Search:
         """A number further on that holds the paths looked at, although one in between did not; 0 for none."""
         tried = self.way.beyond(good)
         told = abs(tried - good) > self.way.least and self.way.nearer(self.way.asked, tried)
-        if not told or not self._hold(tried, self.order[: _LOOKED_AT[0]]):
+        if not told or not self._hold(tried, self.order[:_LOOKED_AT]):
             return 0.0
         number = self.way.rounded(tried)
-        return number if self.way.nearer(number, good) and self._hold(number, self.order[: _LOOKED_AT[0]]) else 0.0
+        return number if self.way.nearer(number, good) and self._hold(number, self.order[:_LOOKED_AT]) else 0.0
 
     def _next_failed(self, number: float) -> float:
         """The nearest number beyond one that holds, with which some path failed."""
@@ -131,7 +133,7 @@ class Search:
     def _all_hold(self, number: float, rest: Ints) -> bool:
         """Whether all paths hold with a number, of which the rest is yet to be tried."""
         every = self.order
-        many = max(len(every), 1) if self.together else _LOOKED_AT[0]
+        many = max(len(every), 1) if self.together else _AT_ONCE
         tries = [(self.attempt, rest)] + ([(self.also, every)] if self.also is not None else [])
         return all(
             self._try(number, paths[k : k + many], attempt)
@@ -140,13 +142,8 @@ class Search:
         )
 
     def _hold(self, number: float, paths: Ints) -> bool:
-        """Whether the paths looked at hold: those lost by the other reading, those that failed last, then others."""
-        first = _LOOKED_AT[1]
-        return (
-            self._try(number, self.lost[:first], self.also)
-            and self._try(number, paths[:first])
-            and self._try(number, paths[first:])
-        )
+        """Whether some paths hold, and those lost last by the other reading."""
+        return self._try(number, self.lost[:_LOOKED_AT], self.also) and self._try(number, paths)
 
     def _try(self, number: float, paths: Ints, attempt: Attempt | None = None) -> bool:
         """Whether some paths hold; those that do not go to the front of the order."""

@@ -288,8 +288,9 @@ class Paths(Geometric):
         """
         if self.asked is None or (self.status == Status.CONVERGED).all():
             return Advice(len(self))
-        same = len(self.asked) == len(self)  # otherwise some were added to those asked for, of which it speaks
-        status = self.status if same else np.full(len(self.asked), Status.UNSTABLE)
+        status = self.status
+        if len(self.asked) != len(self):  # some were added to those asked for, of which it speaks
+            status = self.asked.again(self.surface, self.asked.options, np.arange(len(self.asked))).status
         return advise(self.surface, self.asked, status)
 
     @property
