@@ -236,3 +236,25 @@ def test_nobody_is_told_a_friction_that_is_next_to_none() -> None:
         lambda number, paths: np.full(len(paths), number > 1e-8), Way(0.0, 1.0, 1.0, 1e-3), np.arange(8), 144
     )
     assert 5e-4 <= search.run() <= 1e-3 and search.budget > 0
+
+
+def test_single_numbers_that_fail_do_not_end_a_search() -> None:
+    """All hold from 0.3 on but for some numbers; numbers next to 0.889 hold as well, 2 % beyond 0.907."""
+    islands = (0.2, 0.4, 0.8, 0.889, 0.9)
+
+    def held(number: float, paths: Ints) -> Bools:
+        return np.full(len(paths), number >= 0.3 and number not in islands)
+
+    found = Search(held, Way(0.1, 1.0, 1.0, 1e-3), np.arange(4), 400).run()
+    assert 0.3 <= found < 0.3 / (1.0 - BEYOND)
+
+
+def test_a_small_friction_is_told_as_closely_as_a_large_one() -> None:
+    """Above what is next to none the number is the least that holds, to 2 %."""
+    for needed in (0.0012, 0.0033, 0.021, 0.4):
+
+        def held(number: float, paths: Ints, needed: float = needed) -> Bools:
+            return np.full(len(paths), number >= needed)
+
+        found = Search(held, Way(0.0, 1.0, 1.0, 1e-3), np.arange(6), 200).run()
+        assert needed <= found < needed / (1.0 - BEYOND)

@@ -20,7 +20,7 @@ from meshwind.surface.surface import Surface
 ROUGHEST = 1.0
 """Largest coefficient of friction that is looked at: fibres on a part rarely have more."""
 _SMOOTHEST = 1e-3
-"""Difference of coefficients of friction that nobody can tell."""
+"""A coefficient of friction that nobody can tell from none."""
 _FEWEST = 1.0 / 64.0
 """Least share of the revolutions asked for that is looked at."""
 _BUDGET = 96, 6

@@ -37,18 +37,18 @@ class Way:
     last: float
     first_step: float
     least: float = 0.0
-    """Distance of numbers below which they are the same to whoever asks."""
+    """A number that is next to none: where one up to it holds, none nearer to 0 is looked for."""
 
     @property
     def down(self) -> bool:
         """Whether smaller numbers hold."""
         return self.last < self.asked
 
-    def rounded(self, number: float) -> float:
-        """The number as it is printed, to the safe side."""
+    def rounded(self, number: float, outward: bool = False) -> float:
+        """The number as it is printed: to the safe side, or outward, to the side of the one asked for."""
         unit = 10.0 ** (math.floor(math.log10(number)) - DIGITS + 1)
         steps = number / unit
-        whole = math.floor(steps + 1e-9) if self.down else math.ceil(steps - 1e-9)
+        whole = math.floor(steps + 1e-9) if self.down != outward else math.ceil(steps - 1e-9)
         return float(f"{whole * unit:.{DIGITS}g}")
 
     def back(self, number: float, step: float) -> float:
@@ -100,7 +100,7 @@ class Search:
                     return 0.0
             else:
                 number = way.rounded(0.5 * (good + bad))
-                if abs(bad - good) <= max(CLOSE * good, way.least) or number in (good, bad):
+                if good <= way.least or abs(bad - good) <= CLOSE * good or number in (good, bad):
                     number = self._beyond(good)
                     if number == 0.0:
                         if self._all_hold(good, self.order if self.together else self.order[_LOOKED_AT:]):
@@ -117,13 +117,20 @@ class Search:
         return next((number for number in further if self._all_hold(number, self.order)), 0.0)
 
     def _beyond(self, good: float) -> float:
-        """A number further on that holds the paths looked at, although one in between did not; 0 for none."""
-        tried = self.way.beyond(good)
-        told = abs(tried - good) > self.way.least and self.way.nearer(self.way.asked, tried)
-        if not told or not self._hold(tried, self.order[:_LOOKED_AT]):
+        """A number further on that holds the paths looked at, although one in between did not; 0 for none.
+
+        Numbers that hold may lie a hair apart from ones that do not: where the one a little further on holds, those
+        next to it that can be printed are tried.
+        """
+        way = self.way
+        tried = way.beyond(good)
+        if good <= way.least or not way.nearer(way.asked, tried) or not self._hold(tried, self.order[:_LOOKED_AT]):
             return 0.0
-        number = self.way.rounded(tried)
-        return number if self.way.nearer(number, good) and self._hold(number, self.order[:_LOOKED_AT]) else 0.0
+        for number in (way.rounded(tried), way.rounded(tried, outward=True)):
+            further = way.nearer(number, good) and way.nearer(way.asked, number)
+            if further and self._hold(number, self.order[:_LOOKED_AT]):
+                return number
+        return 0.0
 
     def _next_failed(self, number: float) -> float:
         """The nearest number beyond one that holds, with which some path failed."""
