@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshwind.core.brief import brief
-from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.cast import Floats, Ints
 from meshwind.core.progress import Progress, silent
 from meshwind.filament.cap_turn import Cap, ends_with_caps, joined_on_caps, passes_on_caps
 from meshwind.filament.course import Course, Courses, Kind, Stretches, in_line
@@ -164,23 +164,12 @@ def _filaments(
     found, done = [], 0
     for there in joining.filaments:
         back = joining.back[there]
-        stretches = [Stretches(laid, ways[0][there]), Stretches(laid, ways[1][back], backwards=True)]
-        passed = [0, 1]
+        stretches = [Stretches(laid, ways[0][there]), Stretches(laid, ways[1][back], backwards=True, back=1)]
         if over_end is not None:
             stretches.insert(1, Stretches(over_end, there))
-            passed.insert(1, 0)
         if over_start is not None:
-            stretches.append(Stretches(over_start, back))
-            passed.append(1)
-        course, count = in_line(stretches)
-        circuit = done + np.arange(len(there))
-        found.append(
-            replace(
-                course,
-                circuit=frozen(np.repeat(circuit, count.sum(axis=1))),
-                passed=frozen(np.repeat(2 * circuit[:, None] + passed, count.ravel())),
-            )
-        )
+            stretches.append(Stretches(over_start, back, back=1))
+        found.append(in_line(stretches, done))
         done += len(there)
     return tuple(found)
 
@@ -216,7 +205,7 @@ def _laid(paths: Paths, fibres: Hung) -> Courses:
     # where a fibre comes to its prism, its turnaround begins
     kind[:, [0, -1]] = np.where(fibres.aloft[:, [0, -1]], int(Kind.TURN), kind[:, [0, -1]])
     count = np.full(len(paths), paths.gap.shape[1])
-    none = np.full(kind.size, -1)
+    none = np.broadcast_to(-1, kind.size)  # a filament numbers them
     slip = np.where(fibres.aloft, np.nan, paths.slip)
     return Courses(
         Course(

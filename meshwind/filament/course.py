@@ -10,7 +10,7 @@ import numpy as np
 from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.threads import parallel_for
-from meshwind.filament.runs import Columns, Runs, copy_runs
+from meshwind.filament.runs import Columns, Order, Runs, copy_runs
 
 _BLOCK = 50
 """Stretches at least that a thread copies."""
@@ -123,17 +123,21 @@ class Courses:
 
 
 class Stretches(NamedTuple):
-    """Some of the courses of many fibres, `rows` (n,), each from its first point to its last or backwards."""
+    """Some of the courses of many fibres, `rows` (n,), each from its first point to its last or backwards.
+
+    back: 1 if they belong to the passes back, 0 to those there.
+    """
 
     courses: Courses
     rows: Ints
     backwards: bool = False
+    back: int = 0
 
 
-def in_line(stretches: Sequence[Stretches]) -> tuple[Course, Ints]:
-    """One course through the first of all stretches, then the second ones, and how many points (n, k) each gives.
+def in_line(stretches: Sequence[Stretches], circuit: int) -> Course:
+    """One course through the first of all stretches, which are a circuit of this number, then the second ones, and on.
 
-    Each starts where the one before ends, so that its first point is left out.  Circuits and passes are not set.
+    Each starts where the one before ends, so that its first point is left out.
     """
     step = np.array([-1 if each.backwards else 1 for each in stretches])
     count = np.stack([each.courses.count[each.rows] for each in stretches], axis=1)
@@ -148,14 +152,14 @@ def in_line(stretches: Sequence[Stretches]) -> tuple[Course, Ints]:
         np.empty((many, 3)), np.empty((many, 3)), np.empty(many), np.empty(many), np.empty(many, dtype=np.int64),
         np.empty(many, dtype=np.int64),
     )  # fmt: skip
+    order = Order(np.empty(many, dtype=np.int64), np.empty(many, dtype=np.int64))
     for k, each in enumerate(stretches):
         one = each.courses.course
         source = Columns(*(frozen(getattr(one, name)) for name in Columns._fields))
-        runs_ = Runs(frozen(first[:, k]), frozen(count[:, k]), frozen(at[:, k]), int(step[k]))
-        parallel_for(copy_runs, len(count), _BLOCK, source, runs_, made)
+        runs_ = Runs(*(frozen(of[:, k]) for of in (first, count, at)), int(step[k]), circuit, each.back)
+        parallel_for(copy_runs, len(count), _BLOCK, source, runs_, made, order)
     points, normal, angle, slip, kind, path = (frozen(each) for each in made)
-    none = np.broadcast_to(-1, many)
-    return Course(points, normal, angle, slip, kind, none, none, path), count
+    return Course(points, normal, angle, slip, kind, frozen(order.circuit), frozen(order.passed), path)
 
 
 def in_turn(parts: Sequence[Courses], *, share: bool) -> Courses:

@@ -12,8 +12,8 @@ import numpy as np
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
-from meshwind.core.vectors import unit
 from meshwind.filament.edge import Edge, Legs, Lift, legs
+from meshwind.filament.hanging import Fibres, Hanging, hang
 from meshwind.filament.leaving import Rays
 from meshwind.filament.part_edge import PartEdge
 from meshwind.filament.turnaround import Catch, Turnaround
@@ -130,25 +130,14 @@ def hung(paths: Paths, angle: Floats, over: Sequence[tuple[Legs, int, int]]) -> 
     if all(legs_.lift is None for legs_, _, _ in over):
         return Hung(paths.points, paths.normal, frozen(angle), frozen(aloft))
     points, normals, angle = np.array(paths.points), np.array(paths.normal), np.array(angle)
-    many = points.shape[1]
+    fibres = Fibres(points, normals, angle, aloft)
     for legs_, end, family in over:
         if legs_.lift is None:
             continue
         leaves = np.flatnonzero(legs_.lift.aloft)
         rows, lift = np.flatnonzero(paths.family == family)[leaves], legs_.lift.chosen(leaves)
-        reach = int(lift.aloft.max()) + 1
-        near = slice(many - reach, many) if end else slice(0, reach)
-        left = np.arange(reach)[::-1] if end else np.arange(reach)
-        share = np.clip(left / lift.aloft[:, None], 0.0, 1.0)[..., None]  # from the rim, 1 where it leaves the part
-        moved = (left <= lift.aloft[:, None])[..., None]
-        way = share * lift.off[:, None] + (1.0 - share) * legs_.points[leaves][:, None]
-        last = many - 1 - lift.aloft if end else lift.aloft
-        turn = unit(share * normals[rows, last][:, None] + (1.0 - share) * lift.normal[:, None])
-        lean = share[..., 0] * angle[rows, last][:, None] + (1.0 - share[..., 0]) * lift.angle[:, None]
-        angle[rows, near] = np.where(moved[..., 0], lean, angle[rows, near])
-        points[rows, near] = np.where(moved, way, points[rows, near])
-        normals[rows, near] = np.where(moved, turn, normals[rows, near])
-        aloft[rows, near] |= left < lift.aloft[:, None]
+        way = lift.aloft, lift.off, legs_.points[leaves], lift.normal, lift.angle
+        hang(0, len(rows), Hanging(frozen(rows), *(frozen(each) for each in way), bool(end)), fibres)
         before[end] = max(before[end], float(lift.before.max(initial=0.0)))
     return Hung(frozen(points), frozen(normals), frozen(angle), frozen(aloft), (before[0], before[1]))
 

@@ -1,5 +1,6 @@
 """Passes between two caps from given touch points: the slips with which exact half-legs meet half-way."""
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -44,8 +45,9 @@ def met(ends: tuple[End, End], tables: Tables, touch: Floats) -> Met:
     """
     first = slips(tables, touch)
     rates = tables.mismatch(touch, first)[2]
-    there = _meet((ends[0], ends[1]), touch[:, :2], first[:, :2], rates[:, 0])
-    back = _meet((ends[1], ends[0]), touch[:, 1:], first[:, 2:], rates[:, 1])
+    with ThreadPoolExecutor(2) as pool:  # what one does between its marches, the other marches through
+        ways = (ends, touch[:, :2], first[:, :2], rates[:, 0]), (ends[::-1], touch[:, 1:], first[:, 2:], rates[:, 1])
+        there, back = pool.map(_meet, *zip(*ways, strict=True))
     return Met(np.stack([there[0], back[0]]), (there[1], back[1]), np.stack([there[2], back[2]]))
 
 
