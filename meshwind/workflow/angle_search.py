@@ -9,6 +9,11 @@ _TRIALS = 30
 """Most trials; three or four are usual."""
 _SAME_TURNS = 5e-3
 """Share by which revolutions differ where a search between them ends."""
+_BRINK = 2e-2
+"""The same next to revolutions at which too few paths come to rest, if what is between leads no further than ..."""
+_RISE = 2.0
+"""... so many times what the angle's tangent rises by over that, short of the angle by more than half a degree."""
+_SHORT = np.radians(0.5)
 _LEAP = 2.0
 """Factor by which one trial's revolutions may differ from those of the one before."""
 _HALVED = 3
@@ -32,14 +37,22 @@ class Hunt(NamedTuple):
     within: bool
 
 
-def hunt(measure: Callable[[float], float | None], wanted: float, start: float, near: float, most: float) -> Hunt:
+def hunt(
+    measure: Callable[[float], float | None],
+    wanted: float,
+    start: float,
+    near: float,
+    most: float,
+    *,
+    least: float = 0.0,
+) -> Hunt:
     """Search for the revolutions at which an angle is `wanted`, up to `near`, both in radians.
 
     measure: gives the angle at some revolutions, or None where too few paths come to rest; start: the first trial's;
-    most: revolutions beyond which none are tried.  Reached is -infinity where too few come to rest at any.
+    most, least: revolutions beyond which none are tried.  Reached is -infinity where too few come to rest at any.
     """
     low, high, lost, best, reached, steepest = 0.0, np.inf, np.inf, 0.0, -np.inf, -np.inf
-    target, before, turns = float(np.tan(wanted)), (0.0, 0.0), min(start, most)
+    target, before, turns, rise = float(np.tan(wanted)), (0.0, 0.0), max(min(start, most), least), 0.0
     for trial in range(_TRIALS):
         now = measure(turns)
         if now is None:
@@ -49,17 +62,21 @@ def hunt(measure: Callable[[float], float | None], wanted: float, start: float, 
             steepest = max(steepest, now)
             if abs(now - wanted) < abs(reached - wanted):
                 best, reached = turns, now
-            if abs(now - wanted) <= near or (turns >= most and now < wanted):
+            if abs(now - wanted) <= near or (turns >= most and now < wanted) or (turns <= least and now > wanted):
                 break
             low, high = (turns, high) if now < wanted else (low, turns)
             at = turns, float(np.tan(now))
             rise = (at[1] - before[1]) / (at[0] - before[0]) if at[0] != before[0] else 0.0
             before = at
             step = turns + (target - at[1]) / rise if rise > 0.0 else _LEAP * turns if now < wanted else 0.0
-            step = min(max(step, turns / _LEAP), turns * _LEAP, most)
+            step = max(min(max(step, turns / _LEAP), turns * _LEAP, most), least)
             if not low < step < high or (np.isfinite(high) and trial % _HALVED == _HALVED - 1 and low > 0.0):
                 step = 0.5 * (low + high)
-        if high - low < _SAME_TURNS * high:
+        apart = _SAME_TURNS
+        if high == lost and low > 0.0 and low == before[0]:
+            further = before[1] + _RISE * max(rise, before[1] / low) * (high - low)
+            apart = _BRINK if np.arctan(further) < wanted - _SHORT else _SAME_TURNS
+        if high - low < apart * high:
             break
         turns = step
     return Hunt(best, reached, lost, steepest >= wanted - near)

@@ -1,6 +1,7 @@
 """Helical paths between two level lines: revolutions for an angle, and as many paths as cover the part."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -15,21 +16,19 @@ from meshwind.filament.levels import Levels, station
 from meshwind.filament.settling import SCOUTS_PER_TURN
 from meshwind.filament.stations import angles_at, circuits_to_cover, median_angle
 from meshwind.path import Paths, Status, solve
-from meshwind.path.friction import Friction
+from meshwind.path.friction import Friction, friction_of
 from meshwind.planning.families import families
 from meshwind.surface import Surface
 from meshwind.workflow.angle_search import Hunt, hunt, survey
+from meshwind.workflow.angle_trials import MOST, Trials, Tried
 from meshwind.workflow.notes import Note
 
 _PARTICLES = 401
 """Particles of a trial's path: fewer do not come to rest round the edges of a flat part, and take longer to say so."""
-_TRIAL_PATHS, _ROUGH_PATHS = 24, 8
-"""Paths a family at most with which revolutions and the number of paths are found, and those that a search begins with.
+_TRIAL_PATHS, _ROUGH_PATHS, _FEWEST_PATHS = 24, 8, 4
+"""Paths a family at most with which revolutions and the number of paths are found, those that a search begins with, and
+with friction, which takes long: it keeps neighbours alike, so that fewer tell the angle of all.
 """
-_MOST = 0.75
-"""Share of the paths that are to come to rest for their angle to count: a layer is not wound with a few of them."""
-_FIRST = (0.0, 0.2, 0.6, 0.9)
-"""Places in the order of a trial's paths of those that go first: where one at most comes to rest, most will not."""
 _ON_CAPS = 23
 """Circuits over caps with which those that cover are counted: a prime, next to which many turns close."""
 _COUNTED_PATHS = 96
@@ -49,8 +48,14 @@ _AS_WIDE = 1e-6
 """Share by which level lines may be shorter than the longest and still count as the widest place."""
 _BACK = (0.02, 0.04, 0.07, 0.1, 0.13, 0.17, 0.22, 0.3)
 """Shares of the revolutions that are given up at a brink, as more paths and particles slide off sooner, ..."""
+_ASIDE = (0.01, -0.01, 0.02, -0.02, 0.04, -0.04)
+"""... those that are tried where the angle is met, but not with every path, ..."""
 _FOR_ALL = 0.05
-"""... and the largest share that the last path which slides off is worth."""
+"""... the largest share that a few paths are worth which slide off, ..."""
+_WORTH = np.radians(1.0)
+"""... and the angle that all of them are worth, where it is out of reach anyway."""
+_WITHIN_REACH = np.radians(3.0)
+"""How short of an angle a few paths may fall for it to be tried with more of them, and all over the revolutions."""
 _NEAR, _ROUGHLY = np.radians(0.05), np.radians(0.2)
 """How near an angle is to be met in the end and by the search's beginning, ..."""
 _ENOUGH = np.radians(0.5)
@@ -61,7 +66,8 @@ _ENOUGH = np.radians(0.5)
 class Turned:
     """Revolutions for an angle: where that is taken, v, the angle there that they give, and why it is no nearer.
 
-    reached, asked: in radians; lost: least revolutions with which paths did not come to rest, infinite without any.
+    reached, asked: in radians; lost: least revolutions with which paths did not come to rest, infinite without any;
+    had: least and largest angle of the trials in which they did.
     """
 
     revolutions: float
@@ -69,6 +75,7 @@ class Turned:
     asked: float
     reached: float
     lost: float = np.inf
+    had: tuple[float, float] = (np.nan, np.nan)
 
     @property
     def met(self) -> bool:
@@ -89,13 +96,15 @@ class Turned:
         if self.reached > self.asked:
             why = "neither fewer revolutions nor more bring it nearer"
         elif np.isfinite(self.lost):
-            why = f"at {self.lost:.4g} paths slide off or are unstable, more than {1.0 - _MOST:.0%} of them"
+            why = f"at {self.lost:.4g} paths slide off or are unstable, more than {1.0 - MOST:.0%} of them"
         else:
             why = f"up to {_FURTHEST:g} times the revolutions of a tube were tried"
+        low, high = np.degrees(self.had)
         return (
             f"its angle of {np.degrees(self.asked):g} degrees is out of reach at v={self.v:.3g}: wound at "
             f"{np.degrees(self.reached):.2f} degrees with {self.revolutions:.4g} revolutions, the nearest found; "
-            f"{why}; give more friction, wider openings, another place or another angle"
+            f"{why}; trials held at {low:.1f} to {high:.1f} degrees; give more friction, wider openings, another place "
+            "or another angle"
         )
 
     def moved(self, paths: Paths) -> tuple[Note, ...]:
@@ -141,20 +150,21 @@ class Helices:
         start, end, family = ends.start[some], ends.end[some], ends.family[some]
         return solve(self.surface, start, end, family=family, particles=particles, friction=self.friction)
 
-    def tried(self, revolutions: float, paths: int, most: float = 0.0) -> Paths | None:
-        """Trial paths, so many a family, that come to rest; None where none does, or not a share `most` of them."""
-        self.say(f"{revolutions:.4g} revolutions")
-        if most > 0.0:
-            first = self._on_trial(paths, revolutions, (np.array(_FIRST) * 2 * paths).astype(np.int64))
-            if np.count_nonzero(first.status == Status.CONVERGED) <= 1:
-                return None
+    def tried(self, revolutions: float, paths: int) -> Paths | None:
+        """Trial paths, so many a family, that come to rest; None where none does."""
         laid = self._on_trial(paths, revolutions)
         held = laid.status == Status.CONVERGED
-        return laid.subset(held) if held.any() and held.mean() >= most else None
+        return laid.subset(held) if held.any() else None
 
     def _on_trial(self, paths: int, revolutions: float, which: Ints | None = None) -> Paths:
         """Lay both families, or some of their paths, with enough particles a turn."""
+        self.say(f"{revolutions:.4g} revolutions")
         return self.laid(paths, revolutions, max(_PARTICLES, int(np.ceil(SCOUTS_PER_TURN * revolutions))), which)
+
+    def _trials(self, paths: int, v: float) -> Trials:
+        """Trials with at most so many paths a family, and the angle at v."""
+        many = min(paths, self.paths)
+        return Trials(partial(self._on_trial, many), lambda laid: median_angle(laid, v, self.paths), 2 * many)
 
     def settled(
         self,
@@ -194,29 +204,21 @@ class Helices:
         v = self._widest if place is None else station(place, self.lines)
         tube = self._on_a_tube(angle)
         most = _FURTHEST * tube
-
-        def found_with(paths: int, start: float, near: float, span: tuple[float, float]) -> Hunt:
-            def measure(turns: float) -> float | None:
-                trial = self.tried(turns, min(self.paths, paths), _MOST)
-                return None if trial is None else median_angle(trial, v, self.paths)
-
-            best = hunt(measure, angle, start, near, most)
-            at_a_brink = np.isfinite(best.lost) and best.reached < angle
-            if abs(best.reached - angle) <= _ENOUGH or at_a_brink:
-                return best
-            return survey(measure, angle, near, (span[0], max(min(span[1], _PAST * best.lost), 2.0 * span[0])), best)
-
-        found = found_with(_ROUGH_PATHS, tube, _ROUGHLY, (_FEWEST * most, most))
-        if found.within or found.reached > angle:
+        span = _FEWEST * most, most
+        few = _ROUGH_PATHS if friction_of(self.surface, self.friction).none else _FEWEST_PATHS
+        rough, fine = self._trials(few, v), self._trials(_TRIAL_PATHS, v)
+        found = _found(rough, angle, tube, (_ROUGHLY, _WITHIN_REACH), span)
+        if found.within or found.reached > angle - _WITHIN_REACH:
             start = found.revolutions
-            found = found_with(_TRIAL_PATHS, start, _NEAR, (start / _ABOUT, start * _ABOUT))
+            found = _found(fine, angle, start, (_NEAR, 0.0), (max(start / _ABOUT, span[0]), min(start * _ABOUT, most)))
         if not np.isfinite(found.reached):
             raise BadInputError(
-                f"under {100 * _MOST:.0f} % of the paths come to rest at {found.lost:.4g} revolutions, and at fewer; "
+                f"under {100 * MOST:.0f} % of the paths come to rest at {found.lost:.4g} revolutions, and at fewer; "
                 "give more friction"
             )
-        turned = Turned(found.revolutions, v, angle, found.reached, found.lost)
-        return turned if turned.met else self._steepest(turned)
+        best = _held(fine, found, angle)
+        angles = [each.angle for each in (*rough.counted, *fine.counted)]
+        return Turned(best.revolutions, v, angle, best.angle, found.lost, (min(angles), max(angles)))
 
     @property
     def _inside(self) -> Bools:
@@ -237,21 +239,51 @@ class Helices:
         low, high = np.interp(self.between, self.lines.v, self.lines.mean)
         return float(np.tan(angle) * (high - low) / self.lines.length[self._inside].mean())
 
-    def _steepest(self, found: Turned) -> Turned:
-        """A little less than the revolutions found, at which every path is at rest, or else most are.
 
-        An angle that is out of reach is not worth paths that slide off.
-        """
-        best, most = found, 0.0
-        at_a_brink = np.isfinite(found.lost) and found.reached < found.asked
-        for share in _BACK if at_a_brink else (0.0,):
-            if most and share > _FOR_ALL:
-                break
-            turns = (1.0 - share) * found.revolutions
-            trial = self.tried(turns, min(self.paths, _TRIAL_PATHS), _MOST)
-            if trial is not None and len(trial) > most:
-                reached = median_angle(trial, found.v, self.paths)
-                best, most = replace(found, revolutions=turns, reached=reached), len(trial)
-            if most == 2 * min(self.paths, _TRIAL_PATHS):
-                break
+def _found(trials: Trials, angle: float, start: float, reach: tuple[float, float], span: tuple[float, float]) -> Hunt:
+    """The revolutions next to an angle: from a start on, and all over a span where it is not met otherwise.
+
+    reach: how near the angle is to be met, and how short of it a brink may be for that, in radians.
+    """
+    (near, short), (low, most) = reach, span
+    best = hunt(trials.angle, angle, start, near, most, least=low)
+    at_a_brink = np.isfinite(best.lost) and best.reached < angle
+    if abs(best.reached - angle) <= _ENOUGH or (at_a_brink and best.reached < angle - short):
         return best
+    return survey(trials.angle, angle, near, (low, max(min(most, _PAST * best.lost), 2.0 * low)), best)
+
+
+def _held(trials: Trials, found: Hunt, angle: float) -> Tried:
+    """The trial next to an angle at which every path is at rest, or else most are.
+
+    An angle that is out of reach, or can be had to half a degree without, is not worth paths that slide off.
+    """
+
+    def off(each: Tried) -> float:
+        return abs(each.angle - angle)
+
+    whole = [each for each in trials.counted if each.whole]
+    near = [each for each in whole if off(each) <= _ENOUGH]
+    if near:
+        return min(near, key=off)
+    if found.reached > angle + _ENOUGH:
+        return min([*whole, trials.at(found.revolutions)], key=off)
+    best = trials.at(found.revolutions)
+    for share in (*_ASIDE, *_BACK[3:]) if best.counts and off(best) <= _ENOUGH else _BACK:
+        if best.whole:
+            break
+        turns = (1.0 - share) * found.revolutions
+        now = trials.if_whole(turns) if best.counts else trials.at(turns)
+        best = best if now is None or not now.counts or off(now) > _worth(best, angle) else now
+    if not best.counts:
+        return Tried(found.revolutions, found.reached, best.held)
+    if not best.whole:
+        trials.at((1.0 - _FOR_ALL) * found.revolutions)
+    others = [each for each in trials.counted if each.held > best.held and off(each) <= _worth(best, angle)]
+    return min(others, key=lambda each: (-each.held, off(each)), default=best)
+
+
+def _worth(best: Tried, angle: float) -> float:
+    """How far off an angle a trial may be to be better than another one, as more of its paths are at rest."""
+    off = abs(best.angle - angle)
+    return _ENOUGH if off <= _ENOUGH else off + _WORTH
