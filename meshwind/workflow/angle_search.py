@@ -9,11 +9,11 @@ _TRIALS = 30
 """Most trials; three or four are usual."""
 _SAME_TURNS = 5e-3
 """Share by which revolutions differ where a search between them ends."""
-_BRINK = 2e-2
+_BRINK = 6e-2
 """The same next to revolutions at which too few paths come to rest, if what is between leads no further than ..."""
 _RISE = 2.0
-"""... so many times what the angle's tangent rises by over that, short of the angle by more than half a degree."""
-_SHORT = np.radians(0.5)
+"""... so many times what the angle's tangent rises by over that, short of the angle by more than this."""
+_SHORT = np.radians(1.0)
 _LEAP = 2.0
 """Factor by which one trial's revolutions may differ from those of the one before."""
 _HALVED = 3

@@ -51,9 +51,7 @@ _BACK = (0.02, 0.04, 0.07, 0.1, 0.13, 0.17, 0.22, 0.3)
 _ASIDE = (0.01, -0.01, 0.02, -0.02, 0.04, -0.04)
 """... those that are tried where the angle is met, but not with every path, ..."""
 _FOR_ALL = 0.05
-"""... the largest share that a few paths are worth which slide off, ..."""
-_WORTH = np.radians(1.0)
-"""... and the angle that all of them are worth, where it is out of reach anyway."""
+"""... and the share that a few paths are worth which slide off, where some always do."""
 _WITHIN_REACH = np.radians(3.0)
 """How short of an angle a few paths may fall for it to be tried with more of them, and all over the revolutions."""
 _NEAR, _ROUGHLY = np.radians(0.05), np.radians(0.2)
@@ -204,13 +202,16 @@ class Helices:
         v = self._widest if place is None else station(place, self.lines)
         tube = self._on_a_tube(angle)
         most = _FURTHEST * tube
-        span = _FEWEST * most, most
+        limits = _FEWEST * most, most
         few = _ROUGH_PATHS if friction_of(self.surface, self.friction).none else _FEWEST_PATHS
         rough, fine = self._trials(few, v), self._trials(_TRIAL_PATHS, v)
-        found = _found(rough, angle, tube, (_ROUGHLY, _WITHIN_REACH), span)
+        found = _found(rough, angle, tube, (_ROUGHLY, _WITHIN_REACH), limits)
         if found.within or found.reached > angle - _WITHIN_REACH:
             start = found.revolutions
-            found = _found(fine, angle, start, (_NEAR, 0.0), (max(start / _ABOUT, span[0]), min(start * _ABOUT, most)))
+            found = _found(fine, angle, start, (_NEAR, 0.0), limits, _ABOUT)
+        elif whole := [each for each in rough.counted if each.whole]:
+            top = max(whole)
+            found = found._replace(revolutions=top.revolutions, reached=top.angle)
         if not np.isfinite(found.reached):
             raise BadInputError(
                 f"under {100 * MOST:.0f} % of the paths come to rest at {found.lost:.4g} revolutions, and at fewer; "
@@ -240,17 +241,26 @@ class Helices:
         return float(np.tan(angle) * (high - low) / self.lines.length[self._inside].mean())
 
 
-def _found(trials: Trials, angle: float, start: float, reach: tuple[float, float], span: tuple[float, float]) -> Hunt:
-    """The revolutions next to an angle: from a start on, and all over a span where it is not met otherwise.
+def _found(
+    trials: Trials,
+    angle: float,
+    start: float,
+    reach: tuple[float, float],
+    limits: tuple[float, float],
+    about: float = np.inf,
+) -> Hunt:
+    """The revolutions next to an angle: from a start on and, where that does not meet it, all over.
 
-    reach: how near the angle is to be met, and how short of it a brink may be for that, in radians.
+    reach: how near the angle is to be met, and how short of it a brink may be for that, in radians; limits: least and
+    most revolutions; about: the factor about those that were found within which others are looked for.
     """
-    (near, short), (low, most) = reach, span
+    (near, short), (low, most) = reach, limits
     best = hunt(trials.angle, angle, start, near, most, least=low)
     at_a_brink = np.isfinite(best.lost) and best.reached < angle
     if abs(best.reached - angle) <= _ENOUGH or (at_a_brink and best.reached < angle - short):
         return best
-    return survey(trials.angle, angle, near, (low, max(min(most, _PAST * best.lost), 2.0 * low)), best)
+    low, high = max(low, start / about), min(most, _PAST * best.lost, start * about)
+    return survey(trials.angle, angle, near, (low, max(high, 2.0 * low)), best)
 
 
 def _held(trials: Trials, found: Hunt, angle: float) -> Tried:
@@ -269,21 +279,20 @@ def _held(trials: Trials, found: Hunt, angle: float) -> Tried:
     if found.reached > angle + _ENOUGH:
         return min([*whole, trials.at(found.revolutions)], key=off)
     best = trials.at(found.revolutions)
-    for share in (*_ASIDE, *_BACK[3:]) if best.counts and off(best) <= _ENOUGH else _BACK:
+    met = best.counts and off(best) <= _ENOUGH
+
+    def good(each: Tried) -> bool:
+        return each.counts and (off(each) <= _ENOUGH or not met)
+
+    for share in (*_ASIDE, *_BACK[3:]) if met else _BACK:
         if best.whole:
             break
         turns = (1.0 - share) * found.revolutions
         now = trials.if_whole(turns) if best.counts else trials.at(turns)
-        best = best if now is None or not now.counts or off(now) > _worth(best, angle) else now
+        best = best if now is None or not good(now) else now
     if not best.counts:
         return Tried(found.revolutions, found.reached, best.held)
     if not best.whole:
         trials.at((1.0 - _FOR_ALL) * found.revolutions)
-    others = [each for each in trials.counted if each.held > best.held and off(each) <= _worth(best, angle)]
+    others = [each for each in trials.counted if each.held > best.held and good(each)]
     return min(others, key=lambda each: (-each.held, off(each)), default=best)
-
-
-def _worth(best: Tried, angle: float) -> float:
-    """How far off an angle a trial may be to be better than another one, as more of its paths are at rest."""
-    off = abs(best.angle - angle)
-    return _ENOUGH if off <= _ENOUGH else off + _WORTH
