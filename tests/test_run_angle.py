@@ -1,7 +1,9 @@
 """The winding angle that is asked for, and as many paths as cover the part."""
 
+from dataclasses import replace
 from math import atan, cos, degrees, pi, radians, tan
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,6 +20,7 @@ from meshwind.filament.levels import levels
 from meshwind.filament.stations import angles_at, median_angle
 from meshwind.layup.direction import directions
 from meshwind.layup.direction import winding_angle as angle_map
+from meshwind.path import Paths
 from meshwind.surface import Surface
 from meshwind.surface.interpolate import interpolate
 from meshwind.workflow.angle_search import Hunt, hunt, survey
@@ -228,3 +231,64 @@ def test_angles_that_fall_at_first_are_looked_for_all_over() -> None:
     past = survey(lambda r: None if r < 0.5 else radians(20.0 * r), radians(30.0), 1e-3, (0.01, 4.0), nothing)
     assert past.revolutions == pytest.approx(1.5, abs=0.01)
     assert survey(lambda _: None, radians(30.0), 1e-3, (0.01, 4.0), nothing) == nothing
+
+
+def test_a_hunt_ends_soon_where_an_angle_is_out_of_reach() -> None:
+    tried: list[float] = []
+
+    def measure(turns: float) -> float | None:
+        """From 20 degrees up to where paths slide off, at 45."""
+        tried.append(turns)
+        return None if turns > 1.0 else radians(20.0 + 25.0 * turns)
+
+    gone = hunt(measure, radians(80.0), 1.3, 1e-3, 100.0, least=0.01)
+    assert degrees(gone.reached) == pytest.approx(45.0, abs=1.5) and len(tried) <= 6
+    tried.clear()
+    # nearer to it the brink is looked for more closely
+    near = hunt(measure, radians(45.8), 1.3, 1e-3, 100.0, least=0.01)
+    assert degrees(near.reached) == pytest.approx(45.0, abs=0.15)
+    tried.clear()
+    low = hunt(measure, radians(5.0), 1.0, 1e-3, 100.0, least=0.02)
+    assert low.revolutions == min(tried) == 0.02 and len(tried) <= 8
+
+
+@pytest.fixture(scope="module")
+def tank() -> Surface:
+    return mw.fit(mw.flatten(mw.annulus(mw.read("data/tank.ply"))))
+
+
+def counted(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Paths of each trial from now on."""
+    tried: list[int] = []
+
+    def lay(surface: Surface, start: Floats, end: Floats, **options: Any) -> Paths:
+        tried.append(len(start))
+        return mw.solve(surface, start, end, **options)
+
+    monkeypatch.setattr("meshwind.workflow.helices.solve", lay)
+    return tried
+
+
+def test_every_path_holds_where_half_a_degree_less_allows_it(tank: Surface, monkeypatch: pytest.MonkeyPatch) -> None:
+    """At 24.2 degrees a path in twelve slides off, at 23.9 none does."""
+    parts = replace(helices(tank), paths=12)
+    turned = parts.turned_to(radians(24.25))
+    laid = parts.laid(12, turned.revolutions, 401)
+    assert turned.met and (laid.status == 0).all()
+    assert degrees(median_angle(laid, turned.v, 12)) == pytest.approx(24.25, abs=0.5)
+    solves = counted(monkeypatch)
+    out = parts.turned_to(radians(60.0))
+    assert not out.met and degrees(out.reached) == pytest.approx(23.9, abs=0.1)
+    assert len(solves) <= 14 and sum(solves) <= 150
+    assert (parts.laid(12, out.revolutions, 401).status == 0).all()
+    assert f"{degrees(out.had[1]):.1f} degrees" in out.shortfall
+
+
+def test_an_angle_is_met_with_the_paths_that_are_wound() -> None:
+    """On the bottle eight paths a family have 13.7 degrees where of twelve more than a quarter slide off."""
+    bottle = replace(helices(mw.fit(mw.flatten(mw.annulus(mw.read("data/bottle.obj"))))), paths=12)
+    for angle in (11.5, 14.0):
+        turned = bottle.turned_to(radians(angle))
+        held = bottle.laid(12, turned.revolutions, 401).status == 0
+        assert held.mean() >= (0.75 if angle > 12.0 else 1.0)
+        assert turned.met == (angle < 12.0)
