@@ -241,11 +241,11 @@ def test_a_hunt_ends_soon_where_an_angle_is_out_of_reach() -> None:
         tried.append(turns)
         return None if turns > 1.0 else radians(20.0 + 25.0 * turns)
 
-    gone = hunt(measure, radians(80.0), 1.3, 1e-3, 100.0, least=0.01)
+    gone = hunt(measure, radians(80.0), 1.3, 1e-3, 100.0, brink=0.06)
     assert degrees(gone.reached) == pytest.approx(45.0, abs=1.5) and len(tried) <= 6
     tried.clear()
     # nearer to it the brink is looked for more closely
-    near = hunt(measure, radians(45.8), 1.3, 1e-3, 100.0, least=0.01)
+    near = hunt(measure, radians(45.8), 1.3, 1e-3, 100.0, brink=0.06)
     assert degrees(near.reached) == pytest.approx(45.0, abs=0.15)
     tried.clear()
     low = hunt(measure, radians(5.0), 1.0, 1e-3, 100.0, least=0.02)

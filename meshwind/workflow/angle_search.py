@@ -9,11 +9,10 @@ _TRIALS = 30
 """Most trials; three or four are usual."""
 _SAME_TURNS = 5e-3
 """Share by which revolutions differ where a search between them ends."""
-_BRINK = 6e-2
-"""The same next to revolutions at which too few paths come to rest, if what is between leads no further than ..."""
-_RISE = 2.0
-"""... so many times what the angle's tangent rises by over that, short of the angle by more than this."""
-_SHORT = np.radians(1.0)
+_RISE, _SHORT = 2.0, np.radians(1.0)
+"""Times that the angle's tangent may rise by what it rose by on the way to a brink, and by how much an angle is to be
+beyond that for the brink itself not to matter.
+"""
 _LEAP = 2.0
 """Factor by which one trial's revolutions may differ from those of the one before."""
 _HALVED = 3
@@ -45,11 +44,13 @@ def hunt(
     most: float,
     *,
     least: float = 0.0,
+    brink: float = _SAME_TURNS,
 ) -> Hunt:
     """Search for the revolutions at which an angle is `wanted`, up to `near`, both in radians.
 
     measure: gives the angle at some revolutions, or None where too few paths come to rest; start: the first trial's;
-    most, least: revolutions beyond which none are tried.  Reached is -infinity where too few come to rest at any.
+    most, least: revolutions beyond which none are tried; brink: share to which those are found at which too few paths
+    come to rest, where the angle is far beyond them.  Reached is -infinity where too few come to rest at any.
     """
     low, high, lost, best, reached, steepest = 0.0, np.inf, np.inf, 0.0, -np.inf, -np.inf
     target, before, turns, rise = float(np.tan(wanted)), (0.0, 0.0), max(min(start, most), least), 0.0
@@ -75,7 +76,7 @@ def hunt(
         apart = _SAME_TURNS
         if high == lost and low > 0.0 and low == before[0]:
             further = before[1] + _RISE * max(rise, before[1] / low) * (high - low)
-            apart = _BRINK if np.arctan(further) < wanted - _SHORT else _SAME_TURNS
+            apart = brink if np.arctan(further) < wanted - _SHORT else _SAME_TURNS
         if high - low < apart * high:
             break
         turns = step

@@ -50,6 +50,8 @@ _BACK = (0.02, 0.04, 0.07, 0.1, 0.13, 0.17, 0.22, 0.3)
 """Shares of the revolutions that are given up at a brink, as more paths and particles slide off sooner, ..."""
 _ASIDE = (0.01, -0.01, 0.02, -0.02, 0.04, -0.04)
 """... those that are tried where the angle is met, but not with every path, ..."""
+_BRINK = 0.06
+"""... how closely the brink is looked for where an angle is far beyond it, ..."""
 _FOR_ALL = 0.05
 """... and the share that a few paths are worth which slide off, where some always do."""
 _WITHIN_REACH = np.radians(3.0)
@@ -255,7 +257,7 @@ def _found(
     most revolutions; about: the factor about those that were found within which others are looked for.
     """
     (near, short), (low, most) = reach, limits
-    best = hunt(trials.angle, angle, start, near, most, least=low)
+    best = hunt(trials.angle, angle, start, near, most, least=low, brink=_BRINK)
     at_a_brink = np.isfinite(best.lost) and best.reached < angle
     if abs(best.reached - angle) <= _ENOUGH or (at_a_brink and best.reached < angle - short):
         return best
