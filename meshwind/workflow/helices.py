@@ -48,8 +48,10 @@ _AS_WIDE = 1e-6
 """Share by which level lines may be shorter than the longest and still count as the widest place."""
 _BACK = (0.02, 0.04, 0.07, 0.1, 0.13, 0.17, 0.22, 0.3)
 """Shares of the revolutions that are given up at a brink, as more paths and particles slide off sooner, ..."""
-_ASIDE = (0.01, -0.01, 0.02, -0.02, 0.04, -0.04)
+_ASIDE = (0.01, -0.01, 0.02, -0.02, 0.04, 0.07, 0.1, 0.13)
 """... those that are tried where the angle is met, but not with every path, ..."""
+_MOVES = np.radians(1.5)
+"""... up to this change of the angle, were the part a tube: next to a brink it changes by less, ..."""
 _BRINK = 0.06
 """... how closely the brink is looked for where an angle is far beyond it, ..."""
 _FOR_ALL = 0.05
@@ -286,7 +288,8 @@ def _held(trials: Trials, found: Hunt, angle: float) -> Tried:
     def good(each: Tried) -> bool:
         return each.counts and (off(each) <= _ENOUGH or not met)
 
-    for share in (*_ASIDE, *_BACK[3:]) if met else _BACK:
+    aside = [share for share in _ASIDE if abs(share) * np.sin(2.0 * angle) <= 2.0 * _MOVES]
+    for share in aside if met else _BACK:
         if best.whole:
             break
         turns = (1.0 - share) * found.revolutions
@@ -294,7 +297,7 @@ def _held(trials: Trials, found: Hunt, angle: float) -> Tried:
         best = best if now is None or not good(now) else now
     if not best.counts:
         return Tried(found.revolutions, found.reached, best.held)
-    if not best.whole:
+    if not (best.whole or met):
         trials.at((1.0 - _FOR_ALL) * found.revolutions)
     others = [each for each in trials.counted if each.held > best.held and good(each)]
     return min(others, key=lambda each: (-each.held, off(each)), default=best)
