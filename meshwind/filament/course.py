@@ -156,7 +156,8 @@ def in_line(stretches: Sequence[Stretches], circuit: int) -> Course:
     for k, each in enumerate(stretches):
         one = each.courses.course
         source = Columns(*(frozen(getattr(one, name)) for name in Columns._fields))
-        runs_ = Runs(*(frozen(of[:, k]) for of in (first, count, at)), int(step[k]), circuit, each.back)
+        begin, length, to = (frozen(of[:, k]) for of in (first, count, at))
+        runs_ = Runs(begin, length, to, int(step[k]), circuit, each.back)
         parallel_for(copy_runs, len(count), _BLOCK, source, runs_, made, order)
     points, normal, angle, slip, kind, path = (frozen(each) for each in made)
     return Course(points, normal, angle, slip, kind, frozen(order.circuit), frozen(order.passed), path)

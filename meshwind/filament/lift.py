@@ -136,8 +136,9 @@ def hung(paths: Paths, angle: Floats, over: Sequence[tuple[Legs, int, int]]) -> 
             continue
         leaves = np.flatnonzero(legs_.lift.aloft)
         rows, lift = np.flatnonzero(paths.family == family)[leaves], legs_.lift.chosen(leaves)
-        way = lift.aloft, lift.off, legs_.points[leaves], lift.normal, lift.angle
-        hang(0, len(rows), Hanging(frozen(rows), *(frozen(each) for each in way), bool(end)), fibres)
+        many, off, normal, lean = (frozen(each) for each in (lift.aloft, lift.off, lift.normal, lift.angle))
+        corner = frozen(legs_.points[leaves])
+        hang(0, len(rows), Hanging(frozen(rows), many, off, corner, normal, lean, bool(end)), fibres)
         before[end] = max(before[end], float(lift.before.max(initial=0.0)))
     return Hung(frozen(points), frozen(normals), frozen(angle), frozen(aloft), (before[0], before[1]))
 
