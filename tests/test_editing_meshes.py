@@ -12,7 +12,7 @@ AROUND, ALONG = 48, 40
 
 
 def waisted(depth: float, noise: float = 0.0) -> mw.Mesh:
-    """A tube of radius 1 from z = -1 to 1 with a waist of a depth about z = 0, its vertices moved radially at random."""
+    """A tube of radius 1 from z = -1 to 1 with a waist of a depth about z = 0, vertices moved radially at random."""
     phi, z = np.meshgrid(2.0 * np.pi * np.arange(AROUND) / AROUND, np.linspace(-1.0, 1.0, ALONG), indexing="ij")
     radius = 1.0 - depth * np.exp(-((z / 0.35) ** 2)) + noise * np.random.default_rng(3).standard_normal(z.shape)
     points = np.stack([radius * np.cos(phi), radius * np.sin(phi), z], axis=-1).reshape(-1, 3)
