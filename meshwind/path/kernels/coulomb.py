@@ -43,6 +43,12 @@ STUCK, HELD = 0, 2
 """Modes of a touching particle beside sigma = +1 and -1: on the starting curve; pressed against a rim."""
 MARGIN, FAINT = 1e-8, 1e-10
 """A stuck particle slips above this share over mu N, and this angle: below them no active set may fit."""
+ON_CURVE = 1e-12
+"""Round-off of a lateral distance over the part's size: nearer to the starting curve counts as on it.
+
+A stuck particle slips only where the force over mu N, against the stiffness 2 of its springs, moves it further: else it
+would stick again at once, and slip and stick for ever.
+"""
 
 
 class RoughBody(NamedTuple):
@@ -166,6 +172,7 @@ def balance_forces(rough, fibre, contacts, barred, balance):
     against a rim is held there.  Returns the number of modes changed and the largest unbalanced force.
     """
     table, periodic, curve = rough.friction, rough.body.spline.periodic, fibre.curve
+    least = 2.0 * ON_CURVE * rough.body.size
     X, uv, frames, normals = fibre.state.X, fibre.state.uv, fibre.state.frames, fibre.state.normal
     anchor, offset, mode = fibre.grip.anchor, fibre.grip.offset, fibre.grip.mode
     before, after, turn, residual = contacts.before, contacts.after, balance.turn, balance.residual
@@ -180,7 +187,7 @@ def balance_forces(rough, fibre, contacts, barred, balance):
         ways = along_curve(curve, anchor[i], su, sv, normal)
         back = dot(springs.sum, ways.t) < 0.0  # the fibre runs the other way along its starting curve
         if mode[i] == STUCK and not barred[i]:
-            now = let_slip(springs, normal, back)
+            now = let_slip(springs, normal, back, least)
         if now != STUCK:
             ways = along_fibre(springs, su, sv, normal, back)
             if pressed_out(springs, uv[i, 1], sv, now, ways.b):
@@ -218,15 +225,15 @@ def along_curve(curve, s, su, sv, normal):
 
 
 @njit(cache=True)
-def let_slip(springs, normal, back):
-    """Mode of a stuck particle: it slips where friction cannot hold the force across the fibre.
+def let_slip(springs, normal, back, least):
+    """Mode of a stuck particle: it slips where friction lets more than the `least` force across the fibre pass.
 
     That is across the fibre itself, which at a kink is not the direction of its starting curve.
     """
     side = dot(springs.force, cross(normal, springs.sum)) / springs.span
     if back:
         side = -side
-    if abs(side) > springs.bound * (1.0 + MARGIN) + FAINT * springs.span:
+    if abs(side) > springs.bound * (1.0 + MARGIN) + FAINT * springs.span + least:
         return slipping(side)
     return np.int8(STUCK)
 

@@ -4,14 +4,12 @@ import numpy as np
 
 from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
-from meshwind.path.kernels.coulomb import HELD, STUCK, slipping
+from meshwind.path.kernels.coulomb import HELD, ON_CURVE, STUCK, slipping
 from meshwind.path.kernels.geometry import derivative
 from meshwind.path.kernels.starting_curve import curve_at, nearest_on, offset_from
 from meshwind.path.kernels.state import EVALUATIONS, copy_particle, put_on_surface
 from meshwind.surface.evaluate import SU, SV
 
-ON_CURVE = 1e-12
-"""Round-off of a lateral distance over the part's size: nearer to the starting curve counts as on it."""
 ROUNDS = 2
 """Rounds of spacing particles evenly: the second leaves an error of the order of the first's squared."""
 
