@@ -25,17 +25,21 @@ Shape = Callable[[Floats, Floats], Floats]
 
 @dataclass(frozen=True)
 class Case:
-    """A smooth shape, where the fibre starts and ends, the wave of its starting curve in v, and the friction."""
+    """A smooth shape, where the fibre starts and ends, the wave of its starting curve in v, and the friction.
+
+    halves: number of half waves.
+    """
 
     shape: Shape
     ends: tuple[tuple[float, float], tuple[float, float]]
     wave: float
     mu: float
+    halves: int = 3
 
     def start(self, count: int) -> Floats:
         t = np.linspace(0.0, 1.0, count)
         (a, b), (c, d) = self.ends
-        return np.column_stack([a + t * (c - a), b + t * (d - b) + self.wave * np.sin(3.0 * np.pi * t)])
+        return np.column_stack([a + t * (c - a), b + t * (d - b) + self.wave * np.sin(self.halves * np.pi * t)])
 
 
 def torus(u: Floats, v: Floats) -> Floats:
@@ -59,11 +63,64 @@ def cone(u: Floats, v: Floats) -> Floats:
     return np.stack([r * np.cos(t), r * np.sin(t), 2.0 * v], axis=-1)
 
 
+def oval(size: Floats, turn: Floats, axes: tuple[float, float], u: Floats, v: Floats) -> Floats:
+    """Ellipses of these half axes, each of its size and turned by its angle, up to a height v."""
+    t = 2.0 * np.pi * u
+    x, y = axes[0] * size * np.cos(t), axes[1] * size * np.sin(t)
+    return np.stack([x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn), v], axis=-1)
+
+
+def hyperboloid(u: Floats, v: Floats) -> Floats:
+    return oval(np.sqrt(0.49 + 0.5 * (2.0 * v - 1.0) ** 2), 0.0 * v, (1.0, 1.0), u, 3.2 * v - 1.6)
+
+
+def ogive(u: Floats, v: Floats) -> Floats:
+    return oval(np.sqrt(1.9**2 - (1.02 * v) ** 2) - 0.9, 0.0 * v, (1.0, 1.0), u, 1.87 * v)
+
+
+def elliptic(u: Floats, v: Floats) -> Floats:
+    return oval(np.ones_like(v), 0.0 * v, (1.3, 0.8), u, 6.0 * v)
+
+
+def wavy(u: Floats, v: Floats) -> Floats:
+    return oval(1.0 + 0.05 * np.cos(6.0 * np.pi * v), 0.0 * v, (1.0, 1.0), u, 4.0 * v)
+
+
+def tapered(u: Floats, v: Floats) -> Floats:
+    return oval(1.0 - 0.45 * v, 0.0 * v, (1.2, 0.85), u, 2.5 * v)
+
+
+def bent(u: Floats, v: Floats) -> Floats:
+    """A tube of radius 0.6 round a quarter of a sine and more, its sections across it."""
+    lean = 0.8 * 2.2 / 3.0 * np.cos(2.2 * v)
+    across = 0.6 * np.cos(2.0 * np.pi * u) / np.sqrt(1.0 + lean * lean)
+    return np.stack([0.8 * np.sin(2.2 * v) + across, 0.6 * np.sin(2.0 * np.pi * u), 3.0 * v - lean * across], axis=-1)
+
+
+def squared(u: Floats, v: Floats) -> Floats:
+    """A superellipse of the fourth order: flat in the middle of its four sides."""
+    t = 2.0 * np.pi * u
+    r = (np.cos(t) ** 4 + np.sin(t) ** 4) ** -0.25 * (1.0 - 0.15 * (2.0 * v - 1.0) ** 2)
+    return np.stack([r * np.cos(t), r * np.sin(t), 3.0 * v], axis=-1)
+
+
+def twisted(u: Floats, v: Floats) -> Floats:
+    return oval(np.ones_like(v), 1.2 * v, (1.15, 0.9), u, 2.4 * v)
+
+
 CASES = {
     "torus": Case(torus, ((-0.2, 0.1), (0.22, 0.9)), 0.1, 0.1),
     "ellipsoid": Case(ellipsoid, ((0.0, 0.1), (0.4, 0.75)), 0.0, 0.08),
     "barrel": Case(barrel, ((0.0, 0.15), (0.6, 0.85)), 0.1, 0.06),
     "cone": Case(cone, ((0.0, 0.1), (0.55, 0.25)), 0.0, 0.15),
+    "hyperboloid": Case(hyperboloid, ((0.0, 0.25), (0.9, 0.7)), 0.08, 0.1, 2),
+    "ogive": Case(ogive, ((0.0, 0.1), (0.5, 0.75)), 0.0, 0.05),
+    "elliptic": Case(elliptic, ((0.0, 0.3), (0.62, 0.3)), 0.3, 0.35, 1),
+    "wavy": Case(wavy, ((0.0, 0.15), (1.3, 0.8)), 0.0, 0.05),
+    "tapered": Case(tapered, ((0.05, 0.2), (0.75, 0.45)), 0.15, 0.2, 2),
+    "bent": Case(bent, ((0.1, 0.1), (1.2, 0.9)), 0.06, 0.15),
+    "squared": Case(squared, ((0.06, 0.2), (0.7, 0.75)), 0.12, 0.1),
+    "twisted": Case(twisted, ((0.0, 0.3), (0.7, 0.5)), 0.15, 0.6, 2),
 }
 
 

@@ -37,7 +37,8 @@ CLOSE_ENOUGH = 0.01
 DEEPEST_HALF = 12
 """Maximum number of times that a segment is halved."""
 LANDED = 0.5
-"""Share of what the true ends of a bridge change its length by that is left as an error."""
+"""Share of what the true ends of a bridge change its length by that is left as an error, as of the arc before them: the
+fibre may leave it sooner, and how it bends where it ends is not known."""
 EXPLAINED = 3.0
 """Longest way round the arc on which a bridge lands, over what that adds to its length: 1.5, with a margin of two."""
 BETWEEN_SAMPLES = 1.25
@@ -89,6 +90,8 @@ def run_length(X, normal, first, last, rise):
         if odd <= UNEVEN * even and change <= UNEVEN * np.sqrt(k2):
             total += chord + arc
             error += 2.0 * arc * odd / max(even, TINY)
+            if (i == first and first > 0) or (i + 1 == last and last < len(X) - 1):
+                error += LANDED * arc
         else:
             total += chord
             error += detour(X, normal, i, chord, rise[i])
@@ -137,7 +140,8 @@ def measure_all(first, last, body, laid, length, error, off):
                 high, low = seen(body.spline, state, i, point, counters)
                 found.rise[i], found.dip[i] = max(found.rise[i], high), max(found.dip[i], low)
         length[p], error[p] = fibre_length(body.spline, state, found.rise)
-        off[p] = max(found.dip.max(), BETWEEN_SAMPLES * found.rise.max() + peak(body, state, counters))
+        # a fibre that lies above its segments, as the surface does beside a hollow, is as much further from its bottom
+        off[p] = BETWEEN_SAMPLES * found.rise.max() + max(found.dip.max(), peak(body, state, counters))
 
 
 @njit(cache=True)
