@@ -125,6 +125,20 @@ def test_a_low_rib_ahead_of_where_a_bridge_leaves_too_late_is_in_the_stated_erro
     assert meridian(surface, 51).length_error[0] < 2e-5 * LENGTH
 
 
+@pytest.mark.parametrize(("at", "width", "depth", "bulge"), [
+    ((204.2071047, 205.8788391, 208.1354425), (2.622439, 0.965718, 1.35558), (0.1783152, 0.554968, 0.0707793), 18.6),
+    ((196.1610451, 198.1087861, 201.1411364), (1.13974, 0.710658, 1.122648), (0.0545946, 0.0536874, 0.0601672), 20.9),
+])  # fmt: skip
+def test_three_hollows_within_a_spacing_are_in_the_stated_errors(
+    at: tuple[float, ...], width: tuple[float, ...], depth: tuple[float, ...], bulge: float
+) -> None:
+    hollows = bumps(np.array(at), np.array(width), -np.array(depth))
+    surface = revolved(lambda z: hollows(z) + bulge * (1.0 - (2.0 * z / LENGTH - 1.0) ** 2), 2033)
+    check(surface, 51)
+    paths, (_, height) = meridian(surface, 51), hull(surface)
+    assert 0.9 * height <= paths.gap.max() + paths.position_error[0]  # as much of it as is the distance from the walls
+
+
 def test_the_top_of_a_rib_between_samples_is_in_the_stated_error() -> None:
     surface = revolved(bumps(np.array([77.1]), np.array([0.25]), np.array([3.0])), 2048)
     v = np.linspace(0.0, 1.0, 200001)

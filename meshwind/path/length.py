@@ -259,7 +259,7 @@ def fibre_length(spline, state, rise):
         last = detour(X, state.normal, i - 1, distance(X, i - 1, i), rise[i - 1])
         if before + after <= chord and straight - chord <= first + last + ROUNDED * chord:
             total += straight
-            error += LANDED * abs(straight - chord)
+            error += LANDED * abs(straight - chord) + max(straight - chord - first - last, 0.0)
             error += unexplained(first, before, here, row(X, i), chord)
             error += unexplained(last, after, there, row(X, j), chord)
         else:  # the ends lie beyond one another, or further round than the surface stands out
