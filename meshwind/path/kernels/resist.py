@@ -133,18 +133,22 @@ def follow_contacts(resist, state, inner, count):
 
 @njit(cache=True)
 def press_anew(resist, rough, state, contacts):
-    """Hold the particles that still touch with the contact force of `state`."""
+    """Hold the particles that still touch with the contact force of `state`; returns the largest change of mu N."""
     uv, before, after, n = state.uv, contacts.before, contacts.after, len(state.X)
     link(state.touching, contacts)
     for i in range(n):
         if not state.touching[i]:
             resist.bound[i] = -1.0
+    most = 0.0
     i = after[0]
     while i < n - 1:
         if resist.bound[i] >= 0.0:
             mu, _, _ = coefficient(rough.friction, rough.body.spline.periodic, uv[i, 0], uv[i, 1])
-            resist.bound[i] = held_by(state, before[i], i, after[i], mu)
+            bound = held_by(state, before[i], i, after[i], mu)
+            most = max(most, abs(bound - resist.bound[i]))
+            resist.bound[i] = bound
         i = after[i]
+    return most
 
 
 @njit(cache=True)

@@ -178,8 +178,11 @@ def slide(rough, limits, state, track, counters):
             if turn > 0 and largest_move(state.X, last.X) <= max(SETTLED * move, AT_REST * length):
                 settled = True
                 break
-            press_anew(resist, rough, state, contacts)
-            follow_bend(resist, aimed, before, state)
+            eased = press_anew(resist, rough, state, contacts)
+            bent = follow_bend(resist, aimed, before, state)
+            if eased <= SETTLED * pace * move and bent <= SETTLED * move:
+                settled = True
+                break
         if status == NEEDS_TREE:
             break
         shorter = time > SHORTEST
@@ -219,8 +222,11 @@ def aim_ahead(resist, now, before, share):
 
 @njit(cache=True)
 def follow_bend(resist, aimed, before, state):
-    """Measure slips from where the fibre, not its tangent, passes a particle that moved along it."""
-    n = len(state.X)
+    """Measure slips from where the fibre, not its tangent, passes a particle that moved along it.
+
+    Returns the largest change of that place.
+    """
+    n, most = len(state.X), 0.0
     for i in range(1, n - 1):
         if resist.bound[i] >= 0.0 and before.touching[i]:
             across = row(resist.across, i)
@@ -229,8 +235,13 @@ def follow_bend(resist, aimed, before, state):
                 put(row(before.X, i), aimed, i)
             straight = dot(minus(here, row(before.X, i)), across)
             d = straight - slip_from(before, i, here, across)
+            square = 0.0
             for a in range(3):
-                resist.lain[i, a] = aimed[i, a] + d * across[a]
+                place = aimed[i, a] + d * across[a]
+                square += (place - resist.lain[i, a]) ** 2
+                resist.lain[i, a] = place
+            most = max(most, np.sqrt(square))
+    return most
 
 
 @njit(cache=True)
