@@ -53,6 +53,10 @@ class Kernel:
         return getattr(import_module(self.module), self.name)
 
 
+_COMPLETE: set[frozenset[str]] = set()
+"""Jobs of which this process has seen all kernels kept: looking takes 25 ms."""
+
+
 @lru_cache
 def table() -> tuple[Kernel, ...]:
     """The kernels; those that one calls come before it."""
@@ -71,7 +75,12 @@ def compile_ahead(jobs: Iterable[str] = JOBS, progress: Progress = silent, worth
     worth: seconds of compiling below which none is compiled.  A process that is killed leaves its kernel to the first
     call of it, and so does a folder that takes no more.
     """
-    missing = _missing(frozenset(jobs))
+    wanted = frozenset(jobs)
+    if wanted in _COMPLETE:
+        return 0
+    missing = _missing(wanted)
+    if not missing:
+        _COMPLETE.add(wanted)
     if sum(table()[number].seconds for number in missing) >= worth and missing and where() is not None:
         _Pool(missing, progress).run(min(cores(), MAX_PROCESSES, len(missing)))
     return len(missing)

@@ -12,8 +12,8 @@ ACCURACY = 1e-6
 """Largest KKT residual that counts as solved, for data of order 1."""
 TOLERANCE = 1e-7
 """Clarabel's own, absolute and relative: its last steps gain two digits each."""
-FEW, EVERY = 0.05, 32
-"""Share of the rows violated without a change, below which the program is tried with those, and with every 32nd of the
+FEW, EVERY = 0.05, 64
+"""Share of the rows violated without a change, below which the program is tried with those, and with every 64th of the
 others: where a small change is enough, a third of the time."""
 PASSES = 4
 """Such programs, each with the rows that the last one violated; with those that it takes, most come to the end in 3."""
