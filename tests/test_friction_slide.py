@@ -222,3 +222,16 @@ def test_a_slide_that_stalls_is_shown_where_it_lies(particles: int) -> None:
     draw(solver, stopped, np.array([0]))
     assert stopped.status[0] == Status.STALLED
     np.testing.assert_allclose(stopped.X, rested.X, atol=1e-3)
+
+
+def test_a_path_slides_as_it_would_alone() -> None:
+    """Also beside one that turns further: advice tries paths a few at a time, and a run solves all of them."""
+    surface = mw.shapes.revolution(lambda z: 1.0 + 0.3 * (z - 1.0) ** 2, 0.0, 2.0)
+    start, end = np.array([[0.0, 0.0], [0.1, 0.0]]), np.array([[0.2, 1.0], [2.3, 1.0]])
+    both = mw.solve(surface, start, end, particles=51, friction=0.3)
+    assert not both.on_surface[0].all()  # it bridges the waist
+    alone = [mw.solve(surface, start[k : k + 1], end[k : k + 1], particles=51, friction=0.3) for k in range(2)]
+    assert sum(each.counters.evaluations for each in alone) == both.counters.evaluations
+    for each, path in zip(alone, both, strict=True):
+        assert each.status[0] == path.status
+        np.testing.assert_array_equal(each.points[0], path.points)

@@ -188,7 +188,7 @@ class _Slides:
         starts = self.shifted(index, change.shift)
         level = min((halvings(curve, n) for curve in curves), default=0)
         if not self.paths.on_surface[index].all():
-            level = min(level, fine_level(curves, n))
+            level = min(level, *(fine_level(curve, n) for curve in curves))
         batch = self.slid(starts, max(segments(n, level + 1), 2), change)
         stalled = np.flatnonzero(batch.status == Status.STALLED)
         if len(stalled):

@@ -22,9 +22,22 @@ fibres rested 2.7e-3 of their length away with 96 to 192 segments, and 1.3e-3 wi
 def slide_from_level(solver: Solver, batch: Batch, level: int) -> Batch:
     """Slide a batch to rest from its starting curves, with its particles halved `level` times, or more if it bridges.
 
+    Each path slides as it would alone: what becomes of it does not depend on how far the others turn.
+    """
+    done = batch.curves_sampled().copied()
+    levels = np.array([min(fine_level(curve, batch.particles), level) for curve in batch.starts], np.int64)
+    for fine in np.unique(levels):
+        index = np.flatnonzero(levels == fine)
+        done.put(index, _slide(solver, batch.rows(index), level, int(fine)))
+    return done
+
+
+def _slide(solver: Solver, batch: Batch, level: int, fine: int) -> Batch:
+    """Slide a batch to rest, with its particles halved `level` times, or `fine` times where it bridges.
+
     More of them also follow a slide that few cannot, and fewer one over many small dents.
     """
-    slides, fine = _Slides(solver, batch), min(fine_level(batch.starts, batch.particles), level)
+    slides = _Slides(solver, batch)
     hollow = crosses_hollows(solver, batch.starts, segments(batch.particles, level) + 1)
     slides.attempt(hollow, fine)
     slides.attempt(slides.stalled if fine < level else ~slides.tried, level)
@@ -99,9 +112,9 @@ def slide_at(solver: Solver, batch: Batch, level: int) -> Batch:
     return done
 
 
-def fine_level(curves: Floats, particles: int) -> int:
-    """The level on which fibres that bridge slide from starting curves (p, k, 2)."""
-    enough = ENOUGH * max(max(1.0, turn_of(curve)) for curve in curves)
+def fine_level(curve: Floats, particles: int) -> int:
+    """The level on which a fibre that bridges slides from its starting curve (k, 2)."""
+    enough = ENOUGH * max(1.0, turn_of(curve))
     level = 0
     while segments(particles, level + 1) >= enough:
         level += 1
