@@ -82,6 +82,13 @@ def largest_leap(state, periodic):
 @njit(cache=True)
 def required_friction(X, normal, i):
     """|kg| / kn from the turn of the polyline's unit tangent at particle i; 0 where the fibre runs straight."""
+    side, press = turned(X, normal, i)
+    return abs(side) / press if press > PULL else 0.0
+
+
+@njit(cache=True)
+def turned(X, normal, i):
+    """Turn of the polyline's unit tangent at particle i in the surface, and that towards it: kg and kn by a spacing."""
     p = 1.0 / max(distance(X, i, i - 1), TINY)
     q = 1.0 / max(distance(X, i + 1, i), TINY)
     press = side = square = 0.0
@@ -93,4 +100,4 @@ def required_friction(X, normal, i):
         press -= turn * normal[i, k]
         side += turn * b
         square += b * b
-    return abs(side) / np.sqrt(max(square, TINY)) / press if press > PULL else 0.0
+    return side / np.sqrt(max(square, TINY)), press

@@ -31,7 +31,7 @@ from meshwind.path.kernels.relax import (
     failure,
 )
 from meshwind.path.kernels.resist import ROOM, resistance
-from meshwind.path.kernels.rest import MAX_LANDINGS, pin_where_needed, resolve, restore_contact, settle_evenly
+from meshwind.path.kernels.rest import MAX_LANDINGS, level, pin_where_needed, resolve, restore_contact, settle_evenly
 from meshwind.path.kernels.state import (
     CONVERGED,
     ITERATIONS,
@@ -180,5 +180,7 @@ def certified_with_friction(rough, limits, final, resume, stalled, fibre, requir
             return residual, status if status == NEEDS_TREE else first
     residual, status = resolve(rough, resist, limits, state, required, residual, counters)
     if anew or state.pinned.any():
+        if status == CONVERGED:
+            residual = level(rough, resist, limits, state, required, residual, counters)
         hold_all(fibre, body.size)
     return residual, status

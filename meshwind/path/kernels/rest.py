@@ -3,8 +3,8 @@
 import numpy as np
 
 from meshwind.core.kernel import njit
-from meshwind.path.kernels.certificate import DEEPEST, certify, leaps
-from meshwind.path.kernels.coulomb import RoughBody
+from meshwind.path.kernels.certificate import DEEPEST, certify, leaps, turned
+from meshwind.path.kernels.coulomb import RoughBody, coefficient
 from meshwind.path.kernels.glide import spread_along
 from meshwind.path.kernels.landing import land
 from meshwind.path.kernels.mend import ROUNDS, any_wanting, centre, mend, pin_beads, spread_stations
@@ -29,7 +29,7 @@ from meshwind.path.kernels.survey import blank_survey, survey
 
 MAX_LANDINGS = 4
 """Maximum number of times that a path is relaxed anew because its certificate finds a particle inside the body."""
-PASSES, PRESSED = 4, 1e-3
+PASSES, PRESSED = 20, 1e-9
 """Maximum number of times that contact forces are taken anew, and the change over the largest with which they count."""
 NEAR = 3e-4
 """Longest slip over the length of a path that counts as at rest where it lay."""
@@ -38,6 +38,8 @@ BALANCE = 1e-8
 EVEN = 3
 """Number of times that the springs' natural lengths are made even after particles were moved: each brings the pulls
 closer to one another by the square of the fibre's bends."""
+LEVELLED = 20
+"""Maximum number of times that a path under friction is balanced anew until its springs pull alike."""
 
 
 @njit(nogil=True, cache=True)
@@ -155,6 +157,47 @@ def settle_evenly(rough, resist, limits, final, centred, state, required, counte
         if status != CONVERGED:
             break
     return residual, status
+
+
+@njit(cache=True)
+def level(rough, resist, limits, state, required, residual, counters):
+    """Balance a path at rest, whose springs are uneven, until Coulomb's law holds; returns by how much it does not.
+
+    The tension is the same all along the fibre, but the springs' pulls only become so, and what friction holds is that
+    of the contact force before.
+    """
+    best, contacts = blank(len(state.X)), no_contacts(len(state.X))
+    copy(state, best)
+    least = max(residual, beyond_law(rough, state))
+    for _ in range(LEVELLED):
+        if least <= BALANCE:
+            break
+        released = spread_stations(state, limits.pull_off * spring_energy(state)[1] / (len(state.X) - 1), contacts)
+        if released > 0 and len(rough.body.tree.levels) == 0:
+            break
+        left, status = settle(rough, resist, limits, True, state, required, counters)
+        left = max(left, beyond_law(rough, state))
+        if status != CONVERGED:
+            break
+        if left < least:
+            copy(state, best)
+            least = left
+    copy(best, state)
+    certify(rough.body, state, required, counters)
+    return least
+
+
+@njit(cache=True)
+def beyond_law(rough, state):
+    """Largest turn of a path in the surface beyond what friction holds, in radians, away from the rims."""
+    most = 0.0
+    for i in range(1, len(state.X) - 1):
+        u, v = state.uv[i, 0], state.uv[i, 1]
+        if state.touching[i] and 0.0 < v < 1.0:
+            mu, _, _ = coefficient(rough.friction, rough.body.spline.periodic, u, v)
+            side, press = turned(state.X, state.normal, i)
+            most = max(most, abs(side) - mu * max(press, 0.0))
+    return most
 
 
 @njit(cache=True)
