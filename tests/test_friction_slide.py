@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from friction_checks import forces
 from scipy.spatial import cKDTree
 
 import meshwind as mw
@@ -206,6 +207,20 @@ def test_parts_have_one_answer(part: str, turns: float, mu: float) -> None:
         stated = other.length_error + found[0].length_error
         assert (np.abs(other.length - found[0].length) <= stated).all()
         assert max(apart(*both) for both in zip(other.points, found[0].points, strict=True)) <= 1e-3
+
+
+@pytest.mark.parametrize(("turns", "mu", "within"), [(0.55, 0.3, 1e-3), (0.55, 0.4, 1e-3), (0.2, 0.3, 4e-3)])
+def test_the_law_holds_between_bridges_with_a_particle_moved_to_an_edge(turns: float, mu: float, within: float) -> None:
+    """Next to the edge springs are uneven: their pulls, and what friction holds, are alike only in the limit."""
+    surface = mw.fit(mw.flatten(mw.annulus(mw.read(DATA / "wing.stl"))))
+    ends = mw.families(surface, 8, turns)
+    paths = mw.solve(surface, ends.start[4:5], ends.end[4:5], particles=101, friction=mu)
+    lateral, press, uneven = forces(paths)
+    there = paths.on_surface[:, 1:-1]
+    assert paths.status[0] == mw.Status.CONVERGED and uneven[there].max() > 0.1
+    assert (np.abs(lateral) - mu * np.maximum(press, 0.0))[there].max() <= paths.residual[0] + 1e-9
+    pressed = there & (press > 1e-4)
+    assert (np.abs(lateral)[pressed] <= mu * (1.0 + within) * press[pressed]).all()
 
 
 @pytest.mark.parametrize("particles", [51, 101])

@@ -139,6 +139,15 @@ def test_three_hollows_within_a_spacing_are_in_the_stated_errors(
     assert 0.9 * height <= paths.gap.max() + paths.position_error[0]  # as much of it as is the distance from the walls
 
 
+def test_a_bridge_that_lands_where_the_surface_bends_otherwise_is_in_the_stated_error() -> None:
+    """Its last particle lies in a shallow hollow next to the edge that the fibre goes over."""
+    at, width = [83.74440854, 87.88979307, 91.43531052], [3.2028006, 2.9744933, 0.6671162]
+    hollows = bumps(np.array(at), np.array(width), np.array([-2.9667266, -0.0821388, -0.0998739]))
+    surface = revolved(lambda z: hollows(z) + 10.0 + 21.56973 * (1.0 - (2.0 * z / LENGTH - 1.0) ** 2), 3539)
+    check(surface, 201)
+    assert meridian(surface, 201).length_error[0] < 1e-6 * LENGTH
+
+
 def test_the_top_of_a_rib_between_samples_is_in_the_stated_error() -> None:
     surface = revolved(bumps(np.array([77.1]), np.array([0.25]), np.array([3.0])), 2048)
     v = np.linspace(0.0, 1.0, 200001)

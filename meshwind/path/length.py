@@ -38,7 +38,8 @@ DEEPEST_HALF = 12
 """Maximum number of times that a segment is halved."""
 LANDED = 0.5
 """Share of what the true ends of a bridge change its length by that is left as an error, as of the arc before them: the
-fibre may leave it sooner, and how it bends where it ends is not known."""
+fibre may leave it sooner, and how it bends where it ends is not known.  What a step leaves of its slope comes on top:
+there the surface bends otherwise than at the particle."""
 EXPLAINED = 3.0
 """Longest way round the arc on which a bridge lands, over what that adds to its length: 1.5, with a margin of two."""
 BETWEEN_SAMPLES = 1.25
@@ -244,8 +245,8 @@ def fibre_length(spline, state, rise):
         i = j + 1
         while i < n - 1 and not touching[i]:
             i += 1
-        before = touchdown(spline, X, uv, j, i, frames, where, here)
-        after = touchdown(spline, X, uv, i, j, frames, where, there)
+        before, left = touchdown(spline, X, uv, j, i, frames, where, here)
+        after, right = touchdown(spline, X, uv, i, j, frames, where, there)
         square = chord = 0.0
         for k in range(3):
             square += (there[k] - here[k]) ** 2
@@ -259,7 +260,7 @@ def fibre_length(spline, state, rise):
         last = detour(X, state.normal, i - 1, distance(X, i - 1, i), rise[i - 1])
         if before + after <= chord and straight - chord <= first + last + ROUNDED * chord:
             total += straight
-            error += LANDED * abs(straight - chord) + max(straight - chord - first - last, 0.0)
+            error += (LANDED + max(left, right)) * abs(straight - chord) + max(straight - chord - first - last, 0.0)
             error += unexplained(first, before, here, row(X, i), chord)
             error += unexplained(last, after, there, row(X, j), chord)
         else:  # the ends lie beyond one another, or further round than the surface stands out

@@ -177,11 +177,10 @@ def level(rough, resist, limits, state, required, residual, counters):
             break
         left, status = settle(rough, resist, limits, True, state, required, counters)
         left = max(left, beyond_law(rough, state))
-        if status != CONVERGED:
+        if status != CONVERGED or left >= least:
             break
-        if left < least:
-            copy(state, best)
-            least = left
+        copy(state, best)
+        least = left
     copy(best, state)
     certify(rough.body, state, required, counters)
     return least

@@ -24,14 +24,15 @@ def touchdown(spline, X, uv, here, there, frames, where, point):
     """End of the bridge from particle `here`, which touches, to `there`.
 
     Leaves its parameters in where (2,) and its position in point (3,); frames (6, 3) is work space.  Returns how far
-    along the surface it is from the particle, towards the bridge; 0, and the particle itself, at a fixed end of
-    the path and where no step along the fibre would do.
+    along the surface it is from the particle, towards the bridge, and what share of the chord's slope to the surface is
+    left there.  Both are 0, and the end is the particle, at a fixed end of the path and where no step along the fibre
+    would do.
     """
     start = row(X, here)
     point[0], point[1], point[2] = start
     where[0], where[1] = uv[here, 0], uv[here, 1]
     if here == 0 or here == len(X) - 1:
-        return 0.0
+        return 0.0, 0.0
     frame(spline, where[0], where[1], frames)
     normal_at = np.empty(3)
     unit_normal(frames, normal_at)
@@ -44,7 +45,7 @@ def touchdown(spline, X, uv, here, there, frames, where, point):
     form = dot(row(frames, SUU), normal), dot(row(frames, SUV), normal), dot(row(frames, SVV), normal)
     press = -second_form(form, rate, rate)
     if press <= 0.0 or abs(dip) > FARTHEST * press * far / abs(there - here):
-        return 0.0
+        return 0.0, 0.0
     step = -dip / press
     u, v = where[0], where[1]
     where[0] += step * rate[0]
@@ -59,10 +60,11 @@ def touchdown(spline, X, uv, here, there, frames, where, point):
     if abs(left) > CLOSER * abs(dip):
         where[0], where[1] = u, v
         point[0], point[1], point[2] = start
-        return 0.0
+        return 0.0, 0.0
     way, bend = minus(row(frames, S), start), press / max(dot(along, along), TINY)
     square = dot(way, way)
-    return np.copysign(np.sqrt(square) * (1.0 + square * bend * bend / 24.0), step)
+    along_it = np.copysign(np.sqrt(square) * (1.0 + square * bend * bend / 24.0), step)
+    return along_it, abs(left) / max(abs(dip), TINY)
 
 
 @njit(cache=True)
