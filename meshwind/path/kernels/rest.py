@@ -29,7 +29,7 @@ from meshwind.path.kernels.survey import blank_survey, survey
 
 MAX_LANDINGS = 4
 """Maximum number of times that a path is relaxed anew because its certificate finds a particle inside the body."""
-PASSES, PRESSED = 20, 1e-9
+PASSES, PRESSED = 8, 1e-6
 """Maximum number of times that contact forces are taken anew, and the change over the largest with which they count."""
 NEAR = 3e-4
 """Longest slip over the length of a path that counts as at rest where it lay."""
@@ -38,8 +38,9 @@ BALANCE = 1e-8
 EVEN = 3
 """Number of times that the springs' natural lengths are made even after particles were moved: each brings the pulls
 closer to one another by the square of the fibre's bends."""
-LEVELLED = 20
-"""Maximum number of times that a path under friction is balanced anew until its springs pull alike."""
+LEVELLED, SLOW = 20, 0.5
+"""Maximum number of times that a path under friction is balanced anew until its springs pull alike, and the share that
+each must leave at most of what was beyond the law for another to be made."""
 
 
 @njit(nogil=True, cache=True)
@@ -180,7 +181,9 @@ def level(rough, resist, limits, state, required, residual, counters):
         if status != CONVERGED or left >= least:
             break
         copy(state, best)
-        least = left
+        slow, least = left > SLOW * least, left
+        if slow:
+            break
     copy(best, state)
     certify(rough.body, state, required, counters)
     return least
