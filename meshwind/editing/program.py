@@ -10,7 +10,7 @@ from meshwind.core.cast import Bools, Floats, Ints
 
 ACCURACY = 1e-6
 """Largest KKT residual that counts as solved, for data of order 1."""
-TOLERANCE = 1e-7
+TOLERANCE = 1e-9
 """Clarabel's own, absolute and relative: its last steps gain two digits each."""
 FEW, EVERY = 0.05, 64
 """Share of the rows violated without a change, below which the program is tried with those, and with every 64th of the
