@@ -236,9 +236,8 @@ def come_to_rest(rough, resist, limits, state, counters):
         residual, status = relax(rough.body, loose, resist, state, counters)
         if status != CONVERGED:
             break
-        before = resist.bound.copy()
-        press_anew(resist, rough, state, contacts)
-        if np.abs(resist.bound - before).max() <= PRESSED * before.max():
+        largest = resist.bound.max()
+        if press_anew(resist, rough, state, contacts) <= PRESSED * largest:
             break
     if status == CONVERGED and farthest_slip(resist, state) > NEAR * spring_energy(state)[1]:
         status = STALLED
