@@ -1,12 +1,12 @@
 """Passes between two caps from given touch points: the slips with which exact half-legs meet half-way."""
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
+from meshwind.core.threads import side_by_side
 from meshwind.filament.polar_legs import End, Legs
 from meshwind.filament.polar_natural import Tables, slips
 from meshwind.march.forward import Marched
@@ -45,9 +45,8 @@ def met(ends: tuple[End, End], tables: Tables, touch: Floats) -> Met:
     """
     first = slips(tables, touch)
     rates = tables.mismatch(touch, first)[2]
-    with ThreadPoolExecutor(2) as pool:  # what one does between its marches, the other marches through
-        ways = (ends, touch[:, :2], first[:, :2], rates[:, 0]), (ends[::-1], touch[:, 1:], first[:, 2:], rates[:, 1])
-        there, back = pool.map(_meet, *zip(*ways, strict=True))
+    ways = (ends, touch[:, :2], first[:, :2], rates[:, 0]), (ends[::-1], touch[:, 1:], first[:, 2:], rates[:, 1])
+    there, back = side_by_side(_meet, ways)
     return Met(np.stack([there[0], back[0]]), (there[1], back[1]), np.stack([there[2], back[2]]))
 
 

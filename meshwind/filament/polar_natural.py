@@ -7,7 +7,6 @@ openings, or a triaxial ellipsoid opened along lines of curvature, no slip is le
 coordinate of their geodesics.  With other turns a circuit than the natural ones the same maps share out the slip.
 """
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import NoReturn
 
@@ -17,6 +16,7 @@ from scipy.interpolate import CubicSpline
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.core.spoken import argument
+from meshwind.core.threads import side_by_side
 from meshwind.filament.half_leg_table import follow, look_up
 from meshwind.filament.polar_legs import End
 
@@ -112,10 +112,9 @@ def tables(ends: tuple[End, End], reach: float = _REACH, steered: int = _STEERED
 
     steered: touch points for each of those from which half-legs with slip are tabulated as well.
     """
-    with ThreadPoolExecutor(2) as pool:  # a kind alone is too few half-legs to keep two cores busy
-        kinds = (ends[0], True), (ends[1], False), (ends[1], True), (ends[0], False)
-        made = [pool.submit(_table, end, leaving, reach, steered) for end, leaving in kinds]
-        first, second, third, fourth = (each.result() for each in made)
+    kinds = (ends[0], True), (ends[1], False), (ends[1], True), (ends[0], False)
+    # a kind alone is too few half-legs to keep two cores busy
+    first, second, third, fourth = side_by_side(_table, [(*kind, reach, steered) for kind in kinds])
     return Tables((first, second, third, fourth))
 
 
