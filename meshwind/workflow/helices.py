@@ -160,7 +160,8 @@ class Helices:
 
     def _on_trial(self, paths: int, revolutions: float, which: Ints | None = None) -> Paths:
         """Lay both families, or some of their paths, with enough particles a turn."""
-        self.say(f"{revolutions:.4g} revolutions")
+        if which is None:  # some go before all
+            self.say(f"{revolutions:.4g} revolutions")
         return self.laid(paths, revolutions, max(_PARTICLES, int(np.ceil(SCOUTS_PER_TURN * revolutions))), which)
 
     def _trials(self, paths: int, v: float) -> Trials:
