@@ -145,19 +145,25 @@ def settle_evenly(rough, resist, limits, final, centred, state, required, counte
 
     If `centred`, pinned particles move to the middle of what they rest on.
     """
-    body, n = rough.body, len(state.X)
-    contacts = no_contacts(n)
     residual, status = np.inf, STALLED
     for _ in range(EVEN):
-        released = spread_stations(state, limits.pull_off * spring_energy(state)[1] / (n - 1), contacts)
-        if released > 0 and len(body.tree.levels) == 0:
-            return residual, NEEDS_TREE
-        if centred:
-            centre(body, state, contacts, counters)
-        residual, status = settle(rough, resist, limits, final, state, required, counters)
+        residual, status = settle_evened(rough, resist, limits, final, centred, state, required, counters)
         if status != CONVERGED:
             break
     return residual, status
+
+
+@njit(inline="always", cache=True)
+def settle_evened(rough, resist, limits, final, centred, state, required, counters):
+    """As `settle_evenly`, with springs made even once."""
+    body, n = rough.body, len(state.X)
+    contacts = no_contacts(n)
+    released = spread_stations(state, limits.pull_off * spring_energy(state)[1] / (n - 1), contacts)
+    if released > 0 and len(body.tree.levels) == 0:
+        return np.inf, NEEDS_TREE
+    if centred:
+        centre(body, state, contacts, counters)
+    return settle(rough, resist, limits, final, state, required, counters)
 
 
 @njit(cache=True)
@@ -167,16 +173,13 @@ def level(rough, resist, limits, state, required, residual, counters):
     The tension is the same all along the fibre, but the springs' pulls only become so, and what friction holds is that
     of the contact force before.
     """
-    best, contacts = blank(len(state.X)), no_contacts(len(state.X))
+    best = blank(len(state.X))
     copy(state, best)
     least = max(residual, beyond_law(rough, state))
     for _ in range(LEVELLED):
         if least <= BALANCE:
             break
-        released = spread_stations(state, limits.pull_off * spring_energy(state)[1] / (len(state.X) - 1), contacts)
-        if released > 0 and len(rough.body.tree.levels) == 0:
-            break
-        left, status = settle(rough, resist, limits, True, state, required, counters)
+        left, status = settle_evened(rough, resist, limits, True, False, state, required, counters)
         left = max(left, beyond_law(rough, state))
         if status != CONVERGED or left >= least:
             break
