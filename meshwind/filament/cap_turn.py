@@ -1,6 +1,7 @@
 """A layer that turns on caps: at one end or both the fibre touches the opening and comes back, with no dwell."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -20,17 +21,25 @@ class Cap:
 
     Parameters
     ----------
-    edge : Edge
-        The prism on its opening, which no fibre reaches.
+    surface : Surface
+        Surface of the part.
+    end : int
+        0 at its start, 1 at its end.
     slip : float
         Largest slip of the half-legs that lead over it.
     """
 
-    edge: Edge
+    surface: Surface
+    end: int
     slip: float
     name: str = field(default=CAP, init=False)
     rule: str = field(default="by the local rule: |kg| at most friction times kn, and kn above 0", init=False)
     reach: float = field(default=0.0, init=False)
+
+    @cached_property
+    def edge(self) -> Edge:
+        """The prism on its opening, which only a fibre reaches that joins another layer."""
+        return edge(self.surface, self.end)
 
 
 def passes_on_caps(surface: Surface, plan: LayerPlan) -> PolarPasses:
@@ -50,7 +59,7 @@ def ends_with_caps(surface: Surface, plan: LayerPlan, laid: PolarPasses) -> list
     """The turnarounds at both ends: caps, or what suits a rim."""
     worst = np.abs(laid.slip).max(axis=0)
     return [
-        Cap(edge(surface, end), float(worst[end])) if word == CAP else choose_end(surface, end, plan, word, laid.paths)
+        Cap(surface, end, float(worst[end])) if word == CAP else choose_end(surface, end, plan, word, laid.paths)
         for end, word in enumerate(plan.turns)
     ]
 

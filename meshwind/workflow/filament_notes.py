@@ -4,6 +4,7 @@ import numpy as np
 
 from meshwind.appearance.words import quantity
 from meshwind.core.spoken import argument
+from meshwind.filament.cap_turn import Cap
 from meshwind.filament.closing import ClosedLayer
 from meshwind.filament.ends import CAP
 from meshwind.filament.lift import leaning
@@ -55,6 +56,8 @@ def about_filament(layer: ClosedLayer, caps: tuple[bool, bool], units: str = "")
                     True,
                 )
             )
+        if isinstance(turn, Cap):
+            continue  # it has no prism that fibres go over to
         before = layer.hung.before[turn.edge.end]
         if before > _AWAY * layer.paths.surface.size:
             standing = -np.degrees(turn.edge.crease[0])
