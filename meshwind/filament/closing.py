@@ -1,21 +1,22 @@
 """Closing a layer: revolutions, phase and turnarounds with which its paths join to one filament."""
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.progress import Progress, silent
+from meshwind.core.threads import side_by_side
 from meshwind.filament.cap_turn import Cap, ends_with_caps, joined_on_caps, passes_on_caps
 from meshwind.filament.course import Course, Courses, Kind, Stretches, in_line
 from meshwind.filament.ends import CAP, LayerPlan, Pairs
 from meshwind.filament.joining import Joining, join, passes
 from meshwind.filament.lift import Hung, hung
 from meshwind.filament.pattern import Pattern
-from meshwind.filament.settling import lay
+from meshwind.filament.settling import Settled, lay
 from meshwind.filament.turnaround import Turnaround
 from meshwind.path import Paths
 from meshwind.path.winding_angle import winding_angle
@@ -100,16 +101,20 @@ def close_layer(surface: Surface, plan: LayerPlan, say: Progress = silent) -> Cl
     if CAP in plan.turns:
         return _on_caps(surface, plan)
     settled, kept, left_out = lay(surface, plan, say)
-    with ThreadPoolExecutor(1) as beside:
-        angle = beside.submit(winding_angle, kept)  # compiled, so that it takes no time from the rest
-        pairs = [end.pairs(kept) for end in settled.ends]
-        joining = _joined(pairs)
-        turns = _turns(pairs, joining)
-        fibres = _hung(kept, pairs, angle.result())
+    turned, angle = side_by_side(partial(_turned, settled, kept), partial(winding_angle, kept))
+    pairs, joining, turns = turned
+    fibres = _hung(kept, pairs, angle)
     filaments = _filaments(_laid(kept, fibres), kept.family, joining, turns)
     turnarounds = (settled.ends[0].turnaround, settled.ends[1].turnaround)
     plan = replace(plan, paths=settled.plan.paths)
     return ClosedLayer(plan, settled.revolutions, kept, fibres, joining, turnarounds, filaments, left_out)
+
+
+def _turned(settled: Settled, paths: Paths) -> tuple[list[Pairs], Joining, tuple[Courses | None, Courses | None]]:
+    """The legs at both ends, which path follows which, and the turnarounds between them."""
+    pairs = [end.pairs(paths) for end in settled.ends]
+    joining = _joined(pairs)
+    return pairs, joining, _turns(pairs, joining)
 
 
 def _on_caps(surface: Surface, plan: LayerPlan) -> ClosedLayer:

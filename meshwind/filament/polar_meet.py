@@ -1,6 +1,7 @@
 """Passes between two caps from given touch points: the slips with which exact half-legs meet half-way."""
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TypeAlias
 
 import numpy as np
@@ -46,7 +47,7 @@ def met(ends: tuple[End, End], tables: Tables, touch: Floats) -> Met:
     first = slips(tables, touch)
     rates = tables.mismatch(touch, first)[2]
     ways = (ends, touch[:, :2], first[:, :2], rates[:, 0]), (ends[::-1], touch[:, 1:], first[:, 2:], rates[:, 1])
-    there, back = side_by_side(_meet, ways)
+    there, back = side_by_side(*(partial(_meet, *way) for way in ways))
     return Met(np.stack([there[0], back[0]]), (there[1], back[1]), np.stack([there[2], back[2]]))
 
 

@@ -8,6 +8,7 @@ coordinate of their geodesics.  With other turns a circuit than the natural ones
 """
 
 from dataclasses import dataclass
+from functools import partial
 from typing import NoReturn
 
 import numpy as np
@@ -22,10 +23,10 @@ from meshwind.filament.polar_legs import End
 
 _AROUND = 128
 """Touch points around an opening from which half-legs are tabulated: the table is a start, exact legs follow it."""
-_SPARSE = 4
-"""One of so many of them comes first, and these are enough where their waves have come to an end, ..."""
+_SPARSE = 8, 4, 1
+"""Of so many of them one comes first, then more, and these are enough where their waves have come to an end, ..."""
 _ENDED = 1e-6
-"""... the last quarter of them being no larger than this, in turns and radians."""
+"""... the last quarter of them, and the miss half-way between two, being no larger than this, in turns and radians."""
 _STEERED = 4
 """Touch points for each of those from which half-legs with slip are tabulated as well, at first."""
 _ROUGH = 1e-9
@@ -114,7 +115,7 @@ def tables(ends: tuple[End, End], reach: float = _REACH, steered: int = _STEERED
     """
     kinds = (ends[0], True), (ends[1], False), (ends[1], True), (ends[0], False)
     # a kind alone is too few half-legs to keep two cores busy
-    first, second, third, fourth = side_by_side(_table, [(*kind, reach, steered) for kind in kinds])
+    first, second, third, fourth = side_by_side(*(partial(_table, *kind, reach, steered) for kind in kinds))
     return Tables((first, second, third, fourth))
 
 
@@ -132,7 +133,7 @@ def _table(end: End, leaving: bool, reach: float, steered: int) -> Table:
             _stays(end, few[np.argmin(legs.arrived) % len(few)])
     left, right = np.split(np.stack([legs.u - np.tile(few, 2), legs.angle], axis=1), 2)
     odd, even = 0.5 * (left - right), 0.5 * (left + right) - free[::steered]
-    powers = np.stack([_finer(each) for each in (free, odd, even)], axis=1)
+    powers = np.stack([_finer(each, _FINER * _AROUND) for each in (free, odd, even)], axis=1)
     closed = np.concatenate([powers, powers[:1]])
     return Table(_splines(closed), reach, len(free))
 
@@ -143,18 +144,22 @@ def _splines(values: Floats) -> Floats:
 
 
 def _free(end: End, leaving: bool) -> Floats:
-    """The way in u and the angle (n, 2) of half-legs without slip: from a few touch points, or from many."""
-    u, found = np.arange(_AROUND) / _AROUND, np.empty((_AROUND, 2))
-    first = np.arange(_AROUND) % _SPARSE == 0
-    for these in (first, ~first):
-        legs = end.march(u[these], np.zeros(np.count_nonzero(these)), leaving, _ROUGH)
+    """The way in u and the angle (n, 2) of half-legs without slip: from as few touch points as tell it."""
+    u, found = np.arange(_AROUND) / _AROUND, np.full((_AROUND, 2), np.nan)
+    for stride in _SPARSE:
+        these = np.flatnonzero(np.isnan(found[:, 0]) & (np.arange(_AROUND) % stride == 0))
+        if stride > 1:
+            these = np.append(these, stride // 2)  # as many lobes as touch points look like none
+        legs = end.march(u[these], np.zeros(len(these)), leaving, _ROUGH)
         if not legs.arrived.all():
             _stays(end, u[these][np.argmin(legs.arrived)])
         found[these] = np.stack([legs.u - u[these], legs.angle], axis=1)
-        waves = np.abs(np.fft.rfft(found[first], axis=0)) / np.count_nonzero(first)
-        if waves[3 * len(waves) // 4 :].max() < _ENDED:
-            return found[first]
-    return found
+        free = found[::stride]
+        last = np.fft.rfft(free, axis=0)[3 * len(free) // 8 :] / len(free)
+        miss = _finer(free, 2 * len(free))[1] - found[stride // 2]
+        if max(np.abs(last).max(), np.abs(miss).max()) < _ENDED:
+            break
+    return free
 
 
 def _stays(end: End, u: float) -> NoReturn:
@@ -166,9 +171,8 @@ def _stays(end: End, u: float) -> NoReturn:
     )
 
 
-def _finer(values: Floats) -> Floats:
-    """Values (n, 2) around an opening at more places, by their Fourier series."""
-    count = _FINER * _AROUND
+def _finer(values: Floats, count: int) -> Floats:
+    """Values (n, 2) around an opening at `count` places, by their Fourier series."""
     return np.asarray(np.fft.irfft(np.fft.rfft(values, axis=0), count, axis=0) * (count / len(values)))
 
 
