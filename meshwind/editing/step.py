@@ -230,19 +230,20 @@ def soft(rows: Rows, most: float = FREE) -> Program:
     """The program of least change, its unknowns the moves and the t by which rows fall short.
 
     With a limit, rows of reach may be short by up to `most`, and t counts there in lengths, not in rows of length 1:
-    near its ends a bridge has short rows, which would outweigh the others.
+    near its ends a bridge has short rows, which would outweigh the others.  Then t is large, and what is minimised is
+    scaled for its price to be of order 1: half the steps lead to a thousandth of the residual.
     """
     count, n, size = len(rows.least), rows.reaching, rows.cost.shape[0]
-    give = np.full(count, np.sqrt(SOFTNESS))
     low, limits = rows.least + rows.beyond, sparse.csr_array((0, size + count))
+    weight, price = 1.0, np.full(count, 1.0 / SOFTNESS)
     if most < FREE:
-        give[:n] /= rows.length[:n]
-        limits = sparse.csr_array((-give[:n], (np.arange(n), size + np.arange(n))), shape=(n, size + count))
+        weight, price = SOFTNESS, np.append(rows.length[:n] ** 2, np.ones(count - n))
+        limits = sparse.csr_array((-np.ones(n), (np.arange(n), size + np.arange(n))), shape=(n, size + count))
         low = np.append(low, -(rows.beyond[:n] + most * rows.part[:n] / rows.unit / rows.length[:n]))
-    A = sparse.vstack([sparse.hstack([rows.free, sparse.diags_array(give)]), limits, _padded_rows(rows.hard, count)])
+    A = sparse.vstack([sparse.hstack([rows.free, sparse.eye_array(count)]), limits, _padded_rows(rows.hard, count)])
     low = np.append(low, rows.hard_least)
-    P = sparse.block_diag([rows.cost, sparse.eye_array(count)])
-    q = np.append(rows.slope, np.zeros(count))
+    P = sparse.block_diag([weight * rows.cost, sparse.diags_array(price)])
+    q = np.append(weight * rows.slope, np.zeros(count))
     return Program(sparse.csc_array(P), q, sparse.csc_array(A), low, _padded(rows.balls, count))
 
 
