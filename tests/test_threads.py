@@ -15,7 +15,7 @@ MANY = 1000
 
 
 @njit(nogil=True)
-def _count(first, last, out):
+def _count(first: int, last: int, out: np.ndarray) -> None:
     for k in range(first, last):
         out[k] += k
 

@@ -13,6 +13,7 @@ from meshwind.editing.demands import press, reach, together
 from meshwind.editing.edited_mesh import within
 from meshwind.editing.freedom import free_moves, frozen_mask
 from meshwind.editing.left import Held, Left, bridges_left
+from meshwind.editing.merit import ALIKE, SAME, is_better
 from meshwind.editing.options import EditOptions
 from meshwind.editing.program import ACCURACY
 from meshwind.editing.result import Outcome, Round
@@ -29,10 +30,6 @@ from meshwind.workflow.options import Options
 
 LEAST_GAP = 1e-6
 """Largest gap, over the part's size, that counts as none on any surface, unless a threshold is given."""
-SAME = 0.01
-"""Share of the largest gap by which two states are alike in it: then that which bridges less is better."""
-ALIKE = 1e-3
-"""The same where the largest gap is to become the least, as not all can be met."""
 LAST = 0.12
 """Of the largest gap before all rounds: below it a round that does not gain much is followed by ones that take nothing
 back, which would lift other fibres again."""
@@ -310,16 +307,6 @@ def _rounds(
     if short and outcome == Outcome.ROUNDS_SPENT:
         outcome = Outcome.OUT_OF_REACH
     return best, Outcome.WINDABLE if best.bridged == 0.0 else outcome, tuple(figures)
-
-
-def is_better(one: tuple[float, float], other: tuple[float, float], same: float = SAME) -> bool:
-    """Whether one state is better than another, by their bridged shares and largest gaps, alike within a share."""
-    (bridged, gap), (bridged_before, gap_before) = one, other
-    if (bridged == 0.0) != (bridged_before == 0.0):
-        return bridged == 0.0
-    if abs(gap - gap_before) > same * gap_before:
-        return gap < gap_before
-    return bridged < bridged_before
 
 
 def lifted(paths: Paths, at_most: float = 0.0) -> Bools:

@@ -8,10 +8,11 @@ from meshwind.chart import Chart
 from meshwind.core.cast import Floats, frozen
 from meshwind.core.progress import Progress
 from meshwind.editing.bound import Bound
-from meshwind.editing.edit import ALIKE, SAME, Edit, edit, is_better
+from meshwind.editing.edit import Edit, edit
 from meshwind.editing.edited_mesh import displaced, displacement, within
 from meshwind.editing.frozen_part import FrozenPart
 from meshwind.editing.left import Left
+from meshwind.editing.merit import ALIKE, SAME, is_better
 from meshwind.editing.options import EditOptions
 from meshwind.editing.proof import Proof, prove
 from meshwind.editing.result import Outcome, Round
@@ -136,7 +137,8 @@ def edit_in_stages(run: Run, first: Candidate) -> Ended:
             outcome = Outcome.WALL_PIERCED
             break
         now = after
-        gains = is_better(now.merit, best.merit, ALIKE if outcome is Outcome.OUT_OF_REACH else SAME)
+        same = ALIKE if outcome is Outcome.OUT_OF_REACH else SAME
+        gains = is_better(now.merit, best.merit, same, SAME)  # by so much another fit may raise a gap that stays
         best, bridges = (now, found.left) if gains else (best, bridges)
         if outcome != Outcome.WINDABLE or now.proof.windable:
             break
