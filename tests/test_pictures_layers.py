@@ -7,9 +7,10 @@ import pytest
 from export_results import leave
 from layup_shapes import HEIGHT, cylinder, helices
 
+from meshwind.appearance.layer_steps import step_firsts, step_words
 from meshwind.appearance.looks import SIGNAL
 from meshwind.layup.bands import bands
-from meshwind.pictures.layers_scene import layers_scene, percent, step_firsts, step_words
+from meshwind.pictures.layers_scene import layers_scene, percent
 from meshwind.pictures.subject import Subject, subject_of
 from meshwind.results.reading import read_results
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from meshwind.appearance.looks import SIGNAL
+from meshwind.appearance.layer_steps import STEP_COLOURS, step_firsts, step_words
 from meshwind.appearance.words import quantity
-from meshwind.core.cast import Floats, Ints
+from meshwind.core.cast import Floats
 from meshwind.layup.bands import bands
 from meshwind.pictures.scenes import LayersScene, Part
 from meshwind.pictures.subject import Subject
@@ -12,8 +12,6 @@ from meshwind.surface.grid import grid_quads, parameter_grid
 
 _ACROSS = 24
 """Cells across a band, so that its edges look straight."""
-_STEPS = "#dbe8f1", "#a9cbe2", "#6fa8d0", "#3b80b5", "#1f5a8c", "#0b2f52"
-"""Colours of the steps above bare, the more layers the darker."""
 
 
 def layers_scene(of: Subject) -> LayersScene:
@@ -28,26 +26,7 @@ def layers_scene(of: Subject) -> LayersScene:
     first = "first layer alone  ·  " if of.laminate is not None and of.laminate.layers > 1 else ""
     subtitle = f"{first}band {quantity(laid.width, of.units, 3)} wide  ·  {percent(float(shares[0]))} of the part bare"
     frame = of.frame(f"{of.name}: layers of band over each place", subtitle)
-    return LayersScene(frame, _cells(of, *laid.layers.shape), steps, (SIGNAL, *_STEPS)[: len(firsts)], words)
-
-
-def step_firsts(most: int) -> Ints:
-    """The least number of layers on each step: one by one up to `most` or, where these are too many, in doublings."""
-    if most <= len(_STEPS):
-        return np.arange(most + 1)
-    return np.concatenate([[0], 2 ** np.arange(min(len(_STEPS), most.bit_length()))])
-
-
-def step_words(firsts: Ints) -> list[str]:
-    """Words for the steps: bare, 1 layer, 2 layers, 4 to 7 layers; the last is open where steps are doublings."""
-    words = ["bare"]
-    for k, first in enumerate(firsts.tolist()[1:], 1):
-        last = int(firsts[k + 1]) - 1 if k + 1 < len(firsts) else first
-        many = f"{first} to {last}" if last > first else str(first)
-        if k + 1 == len(firsts) and k < first:
-            many = f"{first} or more"
-        words.append(f"{many} layer{'s' * (many != '1')}")
-    return words
+    return LayersScene(frame, _cells(of, *laid.layers.shape), steps, STEP_COLOURS[: len(firsts)], words)
 
 
 def percent(share: float) -> str:
