@@ -89,7 +89,7 @@ def test_this_installation() -> None:
     assert printed["meshwind"] == mw.__version__ == version("meshwind")
     assert printed["libraries"]["numpy"] == version("numpy")
     assert None not in printed["libraries"].values()
-    assert printed["extras"] == {"cad": True, "viewer": True, "pandas": True}
+    assert printed["extras"] == {"cad": True, "pandas": True}
 
 
 @pytest.mark.parametrize(("name", "content", "says"), [

@@ -58,7 +58,6 @@ def lacking(names: tuple[str, ...], *arguments: str | Path) -> subprocess.Comple
 
 
 @pytest.mark.parametrize(("module", "arguments", "remedy"), [
-    ("plotly", ["export", "--to", "viewer,inp"], 'pip install "meshwind[viewer]"'),
     ("OCP", ["export", "--to", "inp,step"], "pip install 'meshwind[cad]'"),
     ("imageio_ffmpeg", ["render", "--animate", "mp4", "--quiet"], 'ffmpeg; or: pip install "meshwind[movie]"'),
 ])  # fmt: skip
@@ -78,10 +77,10 @@ def test_what_is_not_installed_is_named_with_its_remedy(
 def test_info_lists_what_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("__EGL_VENDOR_LIBRARY_DIRS", str(tmp_path))
     monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-    done = lacking(("plotly", "OCP", "imageio_ffmpeg"), "info")
+    done = lacking(("OCP", "imageio_ffmpeg"), "info")
     assert done.returncode == 0
     assert f"pictures  {NO_DRIVER}" in done.stdout
-    for remedy in ("meshwind[viewer]", "meshwind[cad]", "meshwind[movie]"):
+    for remedy in ("meshwind[cad]", "meshwind[movie]"):
         assert f'pip install "{remedy}"' in done.stdout
 
 

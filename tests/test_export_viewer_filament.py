@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from selenium import webdriver
 from selenium.webdriver.common.by import By
-from viewer_browser import opened, settled
+from viewer_browser import opened, settled, severe
 
 import meshwind as mw
 from meshwind.core.cast import Floats, Ints
-from meshwind.exporting.packing import packed
+from meshwind.exporting.packing import packed, packed_short
 from meshwind.exporting.targets import write_exports
 from meshwind.exporting.viewer import page_data
 from meshwind.exporting.viewer_filament import FilamentData
@@ -53,15 +53,27 @@ def unpacked(data: FilamentData, name: str) -> Floats | Ints:
 
 
 def test_arrays_are_packed_and_unpacked() -> None:
-    assert packed(np.array([1, 2])) == {"type": "i4", "data": "AQAAAAIAAAA="}
+    assert packed(np.array([1, 2])) == {"type": "u1", "data": "AQI="}
+    assert [packed(np.array([-1, value]))["type"] for value in (1, 32767, 32768)] == ["i2", "i2", "i4"]
+    assert packed_short(np.array([0.25, np.nan]))["type"] == "f2"
+    assert packed_short(np.array([1e-9, 1.0]))["type"] == "f4"  # float16 would lose it
 
 
-def test_triangles_are_in_the_order_of_laying(folder: Path, data: FilamentData) -> None:
-    triangles, ends = unpacked(data, "triangles").reshape(3, -1), unpacked(data, "ends")
-    laid = unpacked(data, "laid")
-    rows = (triangles // data["across"]).max(axis=0)
+def test_triangles_are_in_the_order_of_laying(browser: webdriver.Chrome, data: FilamentData) -> None:
+    triangles = np.array(browser.execute_script("return Array.from(strips.triangles)")).reshape(-1, 3)
+    ends = np.array(browser.execute_script("return Array.from(strips.ends)"))
+    rows = (triangles // data["across"]).max(axis=1)
     assert (np.diff(rows) >= 0).all()
-    assert [int((rows <= row).sum()) for row in (0, 1, 57, len(laid) - 1)] == ends[[0, 1, 57, -1]].tolist()
+    sizes = unpacked(data, "sizes")
+    assert len(triangles) == 2 * (data["across"] - 1) * (sizes - 1).sum()
+    assert [int((rows <= row).sum()) for row in (0, 1, 57, len(ends) - 1)] == ends[[0, 1, 57, -1]].tolist()
+    assert np.array_equal(
+        browser.execute_script("return [half(0x3555), half(0xc000), half(1)]"), [1365 / 4096, -2, 2**-24]
+    )
+
+
+def test_the_page_has_what_the_filament_does(folder: Path, data: FilamentData) -> None:
+    laid = unpacked(data, "laid")
     (filament,) = read_results(folder).filaments
     assert data["total"] == pytest.approx(float(filament.course.arc_length[-1]))
     assert unpacked(data, "circuit").max() == 4
@@ -109,4 +121,4 @@ def test_the_slider_winds_the_band_and_says_where_it_is(browser: webdriver.Chrom
     browser.execute_async_script("setTimeout(arguments[0], 500)")  # a frame may still be on its way
     wind(1.0)
     assert colourful() == pytest.approx(whole, rel=1e-3)
-    assert [line for line in browser.get_log("browser") if line["level"] == "SEVERE"] == []
+    assert severe(browser) == []

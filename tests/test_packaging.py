@@ -13,6 +13,8 @@ from hatchling.builders.wheel import WheelBuilder
 ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
+KINDS = ".py", ".html", ".css", ".js", ".json", ".toml"
+
 
 def sources(folder: str, *kinds: str) -> set[str]:
     """Files below a folder of the repository, as paths from its root."""
@@ -34,14 +36,14 @@ def sdist(tmp_path_factory: pytest.TempPathFactory) -> set[str]:
 
 
 def test_the_wheel_holds_the_package_and_nothing_else(wheel: set[str]) -> None:
-    package = sources("meshwind", ".py", ".html", ".json", ".toml") | {"meshwind/py.typed"}
+    package = sources("meshwind", *KINDS) | {"meshwind/py.typed"}
     assert {name for name in wheel if not re.match(r"meshwind-[\d.]+\.dist-info/", name)} == package
     assert any(name.endswith("licenses/LICENSE") for name in wheel)
 
 
 def test_the_source_distribution_can_be_built_and_tested(sdist: set[str]) -> None:
     top = {"README.md", "LICENSE", "CHANGELOG.md", "CONTRIBUTING.md", "CITATION.cff", "pyproject.toml"}
-    assert top | sources("meshwind", ".py", ".html", ".json", ".toml") | {"meshwind/py.typed"} <= sdist
+    assert top | sources("meshwind", *KINDS) | {"meshwind/py.typed"} <= sdist
     assert sources("tests", ".py", ".json") | sources("data", "") - {"data"} <= sdist
 
 

@@ -84,7 +84,7 @@ def test_the_other_files_name_it_in_their_own_way(inches: Path) -> None:
         assert picture.info["meshwind units"] == "in"
     assert json.loads((inches / "report.json").read_text())["mesh"]["units"] == "in"
     assert '<Information Name="units" Value="in"/>' in (inches / "formats" / "paths.xdmf").read_text()
-    assert '"units": "in"' in (inches / "viewer.html").read_text(encoding="utf-8")
+    assert '"units":"in"' in (inches / "viewer.html").read_text(encoding="utf-8")
 
 
 def test_what_is_in_millimetres_whatever_the_part_is_in(inches: Path) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 from selenium import webdriver
+from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import WebDriverWait
 
@@ -21,10 +22,13 @@ FLAGS = (
 
 
 @contextmanager
-def opened(page: Path, profile: Path, chromium: tuple[str, str]) -> Iterator[webdriver.Chrome]:
-    """A browser that shows a page; profile: an empty folder; chromium: the executables of browser and driver."""
+def opened(page: Path, profile: Path, chromium: tuple[str, str], *more: str) -> Iterator[webdriver.Chrome]:
+    """A browser that shows a page; profile: an empty folder; chromium: the executables of browser and driver.
+
+    more: further flags of the browser.
+    """
     options = webdriver.ChromeOptions()
-    for flag in (*FLAGS.split(), f"--user-data-dir={profile}"):
+    for flag in (*FLAGS.split(), *more, f"--user-data-dir={profile}"):
         options.add_argument(flag)
     options.binary_location, its_driver = chromium
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
@@ -38,13 +42,44 @@ def opened(page: Path, profile: Path, chromium: tuple[str, str]) -> Iterator[web
 
 
 def settled(browser: webdriver.Chrome) -> Floats:
-    """A screenshot of the part, taken when two frames in a row are alike."""
-    last = np.zeros(0)
-    for _ in range(40):
-        browser.execute_async_script("requestAnimationFrame(() => setTimeout(arguments[0], 150))")
-        with Image.open(BytesIO(browser.get_screenshot_as_png())) as shot:
-            image = np.asarray(shot.convert("RGB"), dtype=float)[:, 260:880]
+    """A screenshot of the view, taken when its edges are smooth and two frames in a row are alike."""
+    view, last = browser.find_element(By.ID, "view"), np.zeros(0)
+    for _ in range(60):
+        browser.execute_async_script("requestAnimationFrame(() => setTimeout(arguments[0], 60))")
+        if browser.execute_script("return waiting || document.body.dataset.drawn !== 'smooth'"):
+            continue
+        with Image.open(BytesIO(view.screenshot_as_png)) as shot:
+            image = np.asarray(shot.convert("RGB"), dtype=float)[1:-2]  # without the lines above and below
         if np.array_equal(image, last):
             return image
         last = image
     raise AssertionError("the picture does not come to rest")
+
+
+def pointed(browser: webdriver.Chrome, point: Floats, click: bool = False) -> None:
+    """Move the pointer to where a point of the part is seen, and click there."""
+    canvas = browser.find_element(By.ID, "plot")
+    x, y, wide, high = browser.execute_script(
+        "const [x, y] = camera.project(plus(arguments[0], middle, -1));"
+        "return [x, y, canvas.clientWidth, canvas.clientHeight]",
+        point.tolist(),
+    )
+    chain = ActionChains(browser, duration=0)
+    chain.move_to_element_with_offset(canvas, round(x - wide / 2), round(y - high / 2))
+    (chain.click() if click else chain).perform()
+    browser.execute_async_script("requestAnimationFrame(() => setTimeout(arguments[0], 30))")
+
+
+def rows(browser: webdriver.Chrome, table: str) -> dict[str, str]:
+    """The rows of a table of names and values."""
+    found = browser.execute_script(
+        "return Array.from(document.getElementById(arguments[0]).rows,"
+        " row => Array.from(row.cells, cell => cell.textContent))",
+        table,
+    )
+    return dict(found)
+
+
+def severe(browser: webdriver.Chrome) -> list[str]:
+    """Errors in the browser's log."""
+    return [line["message"] for line in browser.get_log("browser") if line["level"] == "SEVERE"]

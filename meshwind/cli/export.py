@@ -131,7 +131,7 @@ def export(
     Both have the layers of a run with --layers.  frames: frames/*.csv for robots, in mm: filament.csv in the order of
     winding for a run with --continuous, and layer_000.csv and so on for layers that are not one filament.
     step: surface.step for CAD (needs meshwind[cad]).
-    viewer: viewer.html, a page for any browser, without a network (needs meshwind[viewer]).
+    viewer: viewer.html, a page for any browser with WebGL 2, without a network.
     """
     from meshwind.run.export import export as write
 

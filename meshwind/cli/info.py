@@ -39,7 +39,7 @@ _LIBRARIES = (
     "pillow",
     "clarabel",
 )
-_EXTRAS = {"cad": ("OCP", "STEP"), "viewer": ("plotly", "viewer.html"), "pandas": ("pandas", "tables in Python")}
+_EXTRAS = {"cad": ("OCP", "STEP"), "pandas": ("pandas", "tables in Python")}
 """Module that shows whether an optional part is installed, and what the part is for."""
 
 

@@ -1,75 +1,36 @@
 """viewer.html: a run in one page for a browser, which works offline.
 
-The template is `viewer.html` beside this file; plotly.js is copied into it from the installed package plotly.
+The page is made of the files in `viewer_page` and draws by WebGL 2 itself: nothing else is needed to write or show it.
 """
 
 import json
-from importlib.util import find_spec
+import re
 from pathlib import Path
 from typing import TypedDict
 
 import numpy as np
 
-from meshwind.appearance.looks import LAMINATE, MAPS, Look
+from meshwind.appearance.looks import SEQUENTIAL
 from meshwind.appearance.view import best_view
 from meshwind.appearance.words import quantity
-from meshwind.core.cast import Bools, Floats, Ints
-from meshwind.core.errors import BadInputError
+from meshwind.core.cast import Floats
 from meshwind.core.geometry import Block
-from meshwind.exporting.packing import Packed, Stops, packed, stops
+from meshwind.exporting.packing import Stops, stops
+from meshwind.exporting.viewer_fibres import FibreData, fibre_data
 from meshwind.exporting.viewer_filament import FilamentData, filament_data, gear_of
 from meshwind.exporting.viewer_program import ProgramData, Wound
-from meshwind.path.lengths import bridged_share, bridging, lengths
-from meshwind.results.laminate_reading import read_laminate
+from meshwind.exporting.viewer_quads import QuadData, quad_data
+from meshwind.exporting.viewer_surface import SurfaceData, surface_data
+from meshwind.path.lengths import bridged_share, lengths
 from meshwind.results.reading import Results, read_surface_grid
-from meshwind.results.schema import NORMAL, UV, VIEWER
+from meshwind.results.schema import UV, VIEWER
 
-_MOST = 12_000
-"""Number of points of the surface that a browser turns smoothly without a graphics card."""
-_SUNK = 2e-3
-"""Offset below the surface, over its size, at which it is drawn, so that fibres on it are visible."""
-_NO_PLOTLY = 'the viewer needs the Python package plotly, for plotly.js; pip install "meshwind[viewer]"'
-
-
-class MapData(TypedDict):
-    """A map of the surface and how it is shown; marks are positions on its scale."""
-
-    name: str
-    title: str
-    words: str
-    unit: str
-    colours: Stops
-    low: float
-    high: float
-    log: bool
-    values: Packed
-    marks: list[float]
-    mark_words: list[str]
-
-
-class SurfaceData(TypedDict):
-    """The surface: points, points as drawn, triangles, uv and maps."""
-
-    points: Packed
-    drawn: Packed
-    triangles: Packed
-    uv: Packed
-    maps: list[MapData]
-
-
-class LineData(TypedDict):
-    """Segments of fibres of one kind, with data at their points; NaN points separate them."""
-
-    kind: str
-    family: int
-    words: str
-    count: int
-    path: Packed
-    points: Packed
-    uv: Packed
-    gap: Packed
-    slip: Packed
-    arc: Packed
+_PARTS = Path(__file__).parent / "viewer_page"
+_SCRIPTS = (
+    "data", "vectors", "shaders", "drawing", "camera", "bodies", "picking", "maps", "fibres", "tools", "laying",
+    "start",
+)  # fmt: skip
+"""Parts of the script, in the order in which they build on each other."""
 
 
 class CameraData(TypedDict):
@@ -87,138 +48,76 @@ class PageData(TypedDict):
     name: str
     units: str
     facts: list[str]
+    notes: list[str]
     surface: SurfaceData
-    fibres: list[LineData]
+    fibres: FibreData
     colours: dict[str, Stops]
     max_gap: float
     camera: CameraData
+    quads: QuadData | None
     filament: FilamentData | None
     program: ProgramData | None
 
 
 def write_viewer(folder: Path, results: Results, wound: Wound | None = None) -> list[str]:
-    """Write viewer.html, or the page of a program, into a folder; raises BadInputError if plotly is not installed."""
-    if find_spec("plotly") is None:
-        raise BadInputError(_NO_PLOTLY)
-    from plotly.offline import get_plotlyjs
-
-    page = Path(__file__).with_suffix(".html").read_text(encoding="utf-8")
-    data = json.dumps(page_data(results, wound), allow_nan=False).replace("</", "<\\/")
-    for mark, content in (("/*PLOTLY*/", get_plotlyjs()), ("/*SCENE*/", data), ("<!--NAME-->", _escaped(results.name))):
-        before, after = page.split(mark)
-        page = before + content + after
-    (folder / (VIEWER if wound is None else wound.file)).write_text(page, encoding="utf-8")
+    """Write viewer.html, or the page of a program, into a folder."""
+    data = json.dumps(page_data(results, wound), allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
+    (folder / (VIEWER if wound is None else wound.file)).write_text(page(results.name, data), encoding="utf-8")
     return []
+
+
+def page(name: str, data: str) -> str:
+    """The page with its style, its script and its data in it."""
+    script = "\n".join(_part(f"{part}.js") for part in _SCRIPTS)
+    parts = {"/*STYLE*/": _part("page.css"), "/*DATA*/": data, "/*SCRIPT*/": script, "<!--NAME-->": _escaped(name)}
+    marks = "|".join(re.escape(mark) for mark in parts)
+    # in one go: a part's content is not searched for the marks of others
+    return re.sub(marks, lambda mark: parts[mark[0]], _part("page.html"))
+
+
+def _part(name: str) -> str:
+    return (_PARTS / name).read_text(encoding="utf-8")
 
 
 def page_data(results: Results, wound: Wound | None = None) -> PageData:
     """Contents of the page, with the program of a machine if there is one."""
     grid = read_surface_grid(results.folder, results.surface)
     stands = gear_of(results)
+    surface, fibres = surface_data(grid, results), fibre_data(results)
+    quads = quad_data(results)
     beside = stands.points if wound is None else np.concatenate([stands.points, wound.eye])
     return {
         "name": results.name,
         "units": results.units,
         "facts": _facts(results),
-        "surface": _surface(grid, results),
-        "fibres": _fibres(results),
-        "colours": {"gap": stops("gap")},
+        "surface": surface,
+        "fibres": fibres,
+        "colours": {"gap": stops("gap"), "scale": stops(SEQUENTIAL)},
+        "notes": _notes(surface, fibres, quads, results),
         "max_gap": float(lengths(results.paths).max_gap[results.at_rest].max(initial=0.0)),
         "camera": _camera(grid, results, beside),
+        "quads": quads if quads is not None and quads["ends"]["data"] else None,
         "filament": filament_data(results, stands, results.filaments if wound is None else wound.filaments),
         "program": None if wound is None else wound.data,
     }
 
 
-def _surface(grid: Block, results: Results) -> SurfaceData:
-    """The surface, thinned to about `_MOST` points, with its maps."""
-    uv = grid.point_data[UV]
-    nv = int((uv[:, 0] == uv[0, 0]).sum())
-    nu = len(uv) // nv
-    share = min(np.sqrt(_MOST / len(uv)), 1.0)
-    rows = _thinned(nu, share, results.surface.periodic)
-    columns = _thinned(nv, share, False)
-    kept = (rows[:, None] * nv + columns).ravel()
-    number = np.arange(len(kept)).reshape(len(rows), len(columns))
-    number = np.concatenate([number, number[:1]]) if results.surface.periodic else number
-    a, b, c, d = (part.ravel() for part in (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]))
-    points = grid.points[kept]
-    size = np.linalg.norm(np.ptp(points, axis=0))
-    known = [(name, look, grid.point_data[name]) for name, look in MAPS.items() if name in grid.point_data]
-    laminate = read_laminate(results.folder, results.surface)
-    if laminate is not None:
-        known.insert(0, ("laminate", LAMINATE, laminate.thickness))
-    maps = [_map(name, look, values.astype(np.float64), kept, results.units) for name, look, values in known]
-    return {
-        "points": packed(points.T),
-        "drawn": packed((points - _SUNK * size * grid.point_data[NORMAL][kept]).T),
-        "triangles": packed(np.concatenate([np.stack([a, b, c]), np.stack([a, c, d])], axis=1)),
-        "uv": packed(uv[kept].T),
-        "maps": maps,
-    }
-
-
-def _map(name: str, look: Look, values: Floats, kept: Ints, units: str) -> MapData:
-    scale = look.scale(values, units)
-    marks = scale.marks
-    return {
-        "name": name,
-        "title": look.title,
-        "words": "<br>".join(scale.words),
-        "unit": look.unit.format(u=units) if units else "",
-        "colours": stops(scale.colours),
-        "low": scale.low,
-        "high": scale.high,
-        "log": scale.log,
-        "values": packed(values[kept]),
-        "marks": [share for share, _ in marks],
-        "mark_words": [words for _, words in marks],
-    }
-
-
-def _fibres(results: Results) -> list[LineData]:
-    """Fibres of each family on the surface, bridges, and paths that did not converge; empty kinds are left out."""
-    paths, taut = results.paths, results.at_rest
-    off = bridging(paths)
-    touching = ~(off[:, :-1] | off[:, 1:])
-    kinds = [("loose", 0, "not at rest", ~taut, np.ones_like(touching))]
-    for family, words in ((1, "family +1"), (-1, "family −1")):
-        mine = taut & (paths.family == family)
-        kinds += [
-            ("family", family, words, mine, touching),
-            ("bridges", family, f"bridges of {words}", mine, ~touching),
-        ]
-    made = [_lines(results, *kind) for kind in kinds]
-    return [lines for lines in made if lines["count"]]
-
-
-def _lines(results: Results, kind: str, family: int, words: str, mine: Bools, wanted: Bools) -> LineData:
-    """The wanted segments (p, n - 1) of some paths (p,) in sequence, with a NaN point after each run."""
-    paths = results.paths
-    segments = wanted & mine[:, None]
-    used = np.zeros(paths.gap.shape, dtype=bool)
-    used[:, :-1] |= segments
-    used[:, 1:] |= segments
-    path, particle = np.nonzero(used)
-    goes_on = np.zeros(paths.gap.shape, dtype=bool)
-    goes_on[:, :-1] = segments
-    breaks = np.flatnonzero(~goes_on[path, particle]) + 1
-
-    def at_points(values: Floats) -> Packed:
-        return packed(np.insert(values[path, particle], breaks, np.nan, axis=0).T)
-
-    return {
-        "kind": kind,
-        "family": family,
-        "words": words,
-        "count": len(path),
-        "path": packed(np.insert(path, breaks, -1)),
-        "points": at_points(paths.points),
-        "uv": at_points(paths.uv),
-        "gap": at_points(paths.gap),
-        "slip": at_points(paths.slip),
-        "arc": at_points(lengths(paths).arc_length),
-    }
+def _notes(surface: SurfaceData, fibres: FibreData, quads: QuadData | None, results: Results) -> list[str]:
+    """What the page does not show, or only coarsely."""
+    off = f"The part is drawn by facets up to {quantity(surface['off'], results.units, 2)} off its surface"
+    notes = [f"{off}; values under the pointer are those of the nearest node of {surface['whole']} in surface.vtu."]
+    if surface["shown"] < surface["whole"]:
+        notes[0] = notes[0].replace(f"of {surface['whole']}", f"of {surface['shown']} out of {surface['whole']}")
+    if fibres["step"] > 1:
+        notes.append(
+            f"Of the fibres' particles the page has one in {fibres['step']}, and those where bridges begin and end; "
+            "the figures of fibres are from all of them."
+        )
+    if quads is not None and not quads["ends"]["data"]:
+        notes.append(f"The {quads['count']} quads between crossings are too many for the page; quads.vtu has them.")
+    if results.layers:
+        notes.append("Fibres are those of the first layer.")
+    return notes
 
 
 def _camera(grid: Block, results: Results, beside: Floats) -> CameraData:
@@ -252,12 +151,6 @@ def _facts(results: Results) -> list[str]:
     ]
     width = results.band_width
     return lines if width is None else [*lines, f"band {quantity(width, results.units, 3)} wide"]
-
-
-def _thinned(count: int, share: float, closed: bool) -> Ints:
-    """About `share` of the numbers below `count`, evenly spaced, with both ends or around a circle."""
-    many = max(round(share * count), 3)
-    return np.unique(np.rint(np.linspace(0, count - (count / many if closed else 1), many)).astype(np.int64))
 
 
 def _escaped(text: str) -> str:

@@ -28,16 +28,15 @@ class GearData(TypedDict):
 
 
 class FilamentData(TypedDict):
-    """The band of a filament as triangles in the order of laying, and what it does at each row of `across` points.
+    """The band of a filament in the order of laying, and what it does at each row of `across` points.
 
-    ends: number of triangles up to each row; laid: length of fibre laid before it; total: of all fibre; words: what the
-    fibre does, by kind; layers: their number.
+    sizes: rows of each strip, one strip after the other; laid: length of fibre laid before each row; total: of all
+    fibre; words: what the fibre does, by kind; layers: their number.
     """
 
     points: Packed
-    triangles: Packed
     across: int
-    ends: Packed
+    sizes: Packed
     laid: Packed
     total: float
     kind: Packed
@@ -65,16 +64,10 @@ def filament_data(results: Results, stands: Gear, filaments: Sequence[Filament])
         return None
     turned = turned_by(results.patterns)
     made = ribbons(filaments, results.surface, results.band_widths, turned, _FINE)
-    quads = made.quads
-    corner = (made.points.shape[1] - 1) * 2
-    first = np.cumsum(made.sizes) - made.sizes
-    opens = np.zeros(len(made.laid), dtype=np.int64)
-    opens[first] = 1  # no triangles end at the first row of a strip
     return {
         "points": packed(made.points.reshape(-1, 3).T),
-        "triangles": packed(_triangles(quads)),
         "across": made.points.shape[1],
-        "ends": packed(corner * np.cumsum(1 - opens)),
+        "sizes": packed(made.sizes),
         "laid": packed(made.laid),
         "total": float(made.laid[-1]),
         "kind": packed(made.kind),

@@ -20,7 +20,7 @@ _MOST = 40_000
 
 
 def write_page(folder: Path, results: Results, made: Program) -> list[str]:
-    """Write program.html into an existing folder; raises BadInputError if plotly is not installed."""
+    """Write program.html into an existing folder."""
     filaments = backwards(results.filaments) if made.backwards else results.filaments
     return write_viewer(folder, results, Wound(PROGRAM_PAGE, program_data(made), made.blocks.eye, filaments))
 

@@ -1,0 +1,86 @@
+/* Both kinds of things are drawn from the eye's axes: right, up and towards the eye.  "sunk" moves a thing from the eye
+   along its line of sight, so that fibres on the part are seen although it is drawn as facets. */
+const COMMON = `#version 300 es
+precision highp float;
+uniform mat4 view, lens;
+uniform float sunk;
+uniform bool perspective;
+vec4 seen(vec3 point) {
+  vec4 p = view * vec4(point, 1.);
+  if (perspective) p.xyz *= 1. + sunk / max(-p.z, 1e-12);
+  else p.z -= sunk;
+  return lens * p;
+}`;
+// a shader that may discard keeps what is hidden from being left out, so there is one with and one without the cut
+const CUT = `uniform vec4 plane;
+#ifdef CUT
+#define CUT_AT(point) if (dot(plane.xyz, point) > plane.w) discard;
+#else
+#define CUT_AT(point)
+#endif`;
+
+const SHADERS = {
+  body: [`${COMMON}
+in vec3 point, normal;
+in vec2 share;
+out vec3 place, facing;
+out vec2 part;
+flat out vec2 whole;
+void main() {
+  place = point; part = share; whole = share;
+  facing = mat3(view) * normal;
+  gl_Position = seen(point);
+}`, `#version 300 es
+precision highp float;
+${CUT}
+uniform vec4 colour;
+uniform vec3 unknown;
+uniform sampler2D shades;
+uniform int coloured;  // 0 by the one colour, 1 by the share between points, 2 by that of a quad's first point
+in vec3 place, facing;
+in vec2 part;
+flat in vec2 whole;
+out vec4 shown;
+void main() {
+  CUT_AT(place)
+  vec2 share = coloured == 2 ? whole : part;
+  vec3 base = coloured == 0 ? colour.rgb : share.y < .999 ? unknown : texture(shades, vec2(share.x, .5)).rgb;
+  vec3 n = normalize(facing);
+  float inside = n.z < 0. ? .82 : 1.;  // the light is the eye's, from above its left shoulder
+  shown = vec4(base * inside * (.6 + .44 * max(dot(n * sign(n.z + 1e-9), normalize(vec3(-.45, .5, .9))), 0.)), colour.a);
+}`],
+  // each particle is two points, to either side of it; "before" and "after" are the particles next to it
+  line: [`${COMMON}
+uniform vec2 pixels;
+uniform float widths[8], more;
+uniform bool single;
+uniform vec3 colour;
+in vec3 before, here, after;
+in vec4 look;  // colour, and kind with 8 for the first and 16 for the last of its fibre
+out vec3 place;
+flat out vec3 base;
+vec2 flatten(vec4 p) { return p.xy / p.w * pixels; }
+void main() {
+  int code = int(look.a * 255. + .5);
+  base = single ? colour : look.rgb;
+  place = here;
+  vec4 p = seen(here);
+  vec2 at = flatten(p), back = vec2(0.), ahead = vec2(0.);
+  if ((code & 8) == 0) back = at - flatten(seen(before));
+  if ((code & 16) == 0) ahead = flatten(seen(after)) - at;
+  float b = length(back), a = length(ahead);
+  vec2 along = (b > 1e-4 ? back / b : vec2(0.)) + (a > 1e-4 ? ahead / a : vec2(0.));
+  along = length(along) > 1e-4 ? normalize(along) : vec2(1., 0.);
+  p.xy += vec2(-along.y, along.x) * ((gl_VertexID & 1) == 1 ? 1. : -1.) * (widths[code & 7] + more) / pixels * p.w;
+  gl_Position = p;
+}`, `#version 300 es
+precision highp float;
+${CUT}
+in vec3 place;
+flat in vec3 base;
+out vec4 shown;
+void main() {
+  CUT_AT(place)
+  shown = vec4(base, 1.);
+}`],
+};
