@@ -8,9 +8,9 @@ from meshwind.core.cast import Bools
 from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
 from meshwind.core.progress import Progress, silent
-from meshwind.filament.ends import ROOM, End, LayerPlan, choose_end
+from meshwind.filament.ends import ROOM, End, LayerPlan, Wish, choose_end
 from meshwind.filament.pattern import nearest_pattern, patterns
-from meshwind.filament.stations import median_angle
+from meshwind.filament.stations import median_angle, wound_angle
 from meshwind.path import Paths, Status, solve
 from meshwind.planning.families import families
 from meshwind.surface.surface import Surface
@@ -67,19 +67,27 @@ class Settled:
 def lay(surface: Surface, plan: LayerPlan, say: Progress = silent) -> tuple[Settled, Paths, int]:
     """What was settled on, all paths of a layer in equilibrium, as many of each family, and how many are left out.
 
-    Where some of the paths come to rest in one place or another, a few tell the angle of all badly: if it is not met
-    then, all are asked.
+    Where some of the paths come to rest in one place or another, a few tell the angle of all badly, and where some are
+    left out, the others have another one than all would: if it is not met then, all are asked.
     """
     settled = settle(surface, plan, _ANGLED, say)
     say(f"{settled.plan.paths} paths a family at {settled.revolutions:.4g} revolutions")
     kept, left_out = _laid(surface, settled)
-    off = abs(_off(settled, kept))
-    if off > _ENOUGH:
-        other = settle(surface, plan, None, say)
+    if plan.angle is None:
+        return settled, kept, left_out
+    off = _missed(plan.angle, kept)
+    if abs(off) > _ENOUGH:
+        aim = plan.angle.wanted - (off - _off(settled, kept))
+        other = settle(surface, replace(plan, angle=plan.angle._replace(wanted=aim)), None, say)
         nearer, more = _laid(surface, other)
-        if more <= left_out and abs(_off(other, nearer)) < off:
+        if more <= left_out and abs(_missed(plan.angle, nearer)) < abs(off):
             return other, nearer, more
     return settled, kept, left_out
+
+
+def _missed(wish: Wish, paths: Paths) -> float:
+    """By how much the median of paths misses an angle, in radians."""
+    return wound_angle(paths, wish.v) - wish.wanted
 
 
 def _laid(surface: Surface, settled: Settled) -> tuple[Paths, int]:

@@ -77,6 +77,12 @@ def _passing(paths: Paths, values: Floats, v: Floats) -> Floats:
     return np.asarray(np.where(passed, found, np.nan))
 
 
+def wound_angle(paths: Paths, v: float) -> float:
+    """Median winding angle in radians, on the level line v, of the paths that pass it; NaN where none does."""
+    found = angles_at(paths, np.array([v]))
+    return float(np.nanmedian(found)) if np.isfinite(found).any() else np.nan
+
+
 def median_angle(paths: Paths, v: float, count: int, phase: float = 0.0) -> float:
     """Median winding angle in radians, on the level line v, of `count` paths a family, spread and ahead as `families`.
 

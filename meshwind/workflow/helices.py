@@ -14,7 +14,7 @@ from meshwind.filament.cap_turn import passes_on_caps
 from meshwind.filament.ends import CAP, LayerPlan, Wish
 from meshwind.filament.levels import Levels, station
 from meshwind.filament.settling import SCOUTS_PER_TURN
-from meshwind.filament.stations import angles_at, circuits_to_cover, median_angle
+from meshwind.filament.stations import circuits_to_cover, median_angle, wound_angle
 from meshwind.path import Paths, Status, solve
 from meshwind.path.friction import Friction, friction_of
 from meshwind.planning.families import families
@@ -111,7 +111,7 @@ class Turned:
 
     def moved(self, paths: Paths) -> tuple[Note, ...]:
         """Note on the angle that paths have at the place, where it is another one as a filament closes with it."""
-        now = float(np.nanmedian(angles_at(paths, np.array([self.v]))))
+        now = wound_angle(paths, self.v)
         wanted = self.asked if self.met else self.reached
         if abs(now - wanted) <= _ENOUGH:
             return ()
