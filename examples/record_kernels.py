@@ -13,6 +13,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+import numpy as np
+import trimesh
 from numba.core import event
 from numba.core.dispatcher import Dispatcher
 
@@ -61,11 +63,24 @@ def called(kernel: Any) -> set[Any]:
     return found
 
 
+def spiked(file: str) -> trimesh.Trimesh:
+    """A mesh with a vertex in the middle pulled out, which no fit follows."""
+    mesh = trimesh.load(file, force="mesh")
+    high = mesh.vertices[:, 2]
+    mesh.vertices[np.argmin(np.abs(high - high.mean())), :2] *= 1.1
+    return mesh
+
+
 def run(job: str, folder: Path) -> None:
     """What a job of `JOBS` compiles for."""
     vase = str(DATA / "vase.stl")
     if job == "wind":
         mw.wind(vase, out=folder / job, render=False, revolutions=0.8)
+    elif job == "auto":
+        mw.wind(str(DATA / "tank.ply"), out=folder / job, revolutions="auto", **SMALL)
+    elif job == "coarse":
+        mw.wind(str(DATA / "wing.stl"), revolutions=0.5, **SMALL)  # of few facets
+        mw.wind(spiked(vase), revolutions=0.8, **SMALL)
     elif job == "friction":
         mw.wind(vase, out=folder / job, friction=0.2, revolutions=0.8, **SMALL)
     elif job == "continuous":

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 
 from meshwind.core.compile_ahead import compile_ahead
+from meshwind.core.parsing import AUTO
 from meshwind.core.progress import Progress, silent
 from meshwind.workflow.options import Options
 
@@ -13,6 +14,8 @@ def compile_for(options: Iterable[Options], progress: Progress | None = None, la
     for each in options:
         if each.friction != 0.0:
             jobs.add("friction")
+        elif each.revolutions == AUTO:
+            jobs.add("auto")
         if each.continuous or laminate:
             jobs |= {"friction", "continuous"}
     compile_ahead(jobs, progress or silent)
