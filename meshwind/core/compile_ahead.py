@@ -23,7 +23,7 @@ from meshwind.core.processes import cores
 from meshwind.core.progress import Progress, silent
 
 TABLE = Path(__file__).with_name("kernels.json")
-JOBS = ("wind", "auto", "coarse", "friction", "continuous", "program", "redesign")
+JOBS = ("wind", "friction", "continuous", "program", "redesign", "auto", "coarse")
 """What kernels are for, each with those before it; that a mesh is coarse is known too late to compile ahead for it."""
 MAX_PROCESSES = 8
 """More do not help: kernels wait for those that they call."""

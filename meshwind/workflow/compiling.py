@@ -14,8 +14,8 @@ def compile_for(options: Iterable[Options], progress: Progress | None = None, la
     for each in options:
         if each.friction != 0.0:
             jobs.add("friction")
-        elif each.revolutions == AUTO:
-            jobs.add("auto")
+        if each.revolutions == AUTO:  # what would hold where paths do not is tried with friction
+            jobs |= {"friction", "auto"}
         if each.continuous or laminate:
             jobs |= {"friction", "continuous"}
     compile_ahead(jobs, progress or silent)
