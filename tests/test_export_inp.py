@@ -19,7 +19,7 @@ from meshwind.results.schema import SHELL, SHELL_S4R
 
 
 def deck_of(results: Results, elements: Elements, **given: float) -> Deck:
-    return Deck(elements, plies(results, elements, **given), Material(), results.units, results.name)
+    return Deck(elements, plies(results, elements, **given), Material(), results.units, results.name, tolerance=0.0)
 
 
 def blocks(path: Path, keyword: str) -> list[list[str]]:

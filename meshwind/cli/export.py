@@ -102,6 +102,14 @@ class Shell:
             rich_help_panel=_SHELL,
         ),
     ] = None
+    section_tolerance: Annotated[
+        float,
+        typer.Option(
+            metavar="DEGREES",
+            help="Angles of elements of inp that share a section are within this; at 0 each element has its own.",
+            rich_help_panel=_SHELL,
+        ),
+    ] = 2.0
 
 
 @dataclass(frozen=True)

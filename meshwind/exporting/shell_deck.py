@@ -17,9 +17,12 @@ from meshwind.core.errors import BadInputError
 from meshwind.core.units import millimetres
 from meshwind.core.vectors import TINY
 from meshwind.exporting.elements import Elements
-from meshwind.exporting.plies import Plies, Ply
-from meshwind.exporting.shell_loads import listed, step
-from meshwind.exporting.shell_nodes import Nodes, nodes_of
+from meshwind.exporting.plies import Plies
+from meshwind.exporting.shell_groups import SHARES, TOLERANCE, Groups, Laid, grouped
+from meshwind.exporting.shell_loads import step
+from meshwind.exporting.shell_nodes import nodes_of
+from meshwind.exporting.shell_sections import Sections, listed
+from meshwind.path.winding_angle import axes
 from meshwind.results.schema import SHELL, SHELL_S4R
 
 LEAST = 0.05
@@ -72,7 +75,8 @@ class Material:
 class Deck:
     """Contents of a deck: mesh, plies, material, unit of length, name of the part, and pressure inside in MPa.
 
-    Without a pressure the load is a pull.  Raises BadInputError if the pressure is no number, or 0.
+    Without a pressure the load is a pull.  tolerance: degrees within which elements share a section, 0 for sections of
+    their own.  Raises BadInputError if the pressure is no number, or 0.
     """
 
     elements: Elements
@@ -81,6 +85,7 @@ class Deck:
     units: str = ""
     name: str = "part"
     pressure: float | None = None
+    tolerance: float = TOLERANCE
 
     def __post_init__(self) -> None:
         if self.pressure is not None and not (np.isfinite(self.pressure) and self.pressure != 0.0):
@@ -90,6 +95,24 @@ class Deck:
     def levels(self) -> Ints:
         """The step of thickness (k,) that each element is on, from 0."""
         return _levels(self.elements, _unrounded(self.plies).sum(axis=0))
+
+    @cached_property
+    def groups(self) -> Groups:
+        """Which elements share a section, and what each section has."""
+        angle = np.stack([ply.angle for ply in self.plies.families])
+        laid = Laid(angle, thicknesses(self), self.elements.samples()[1].sum(axis=1))
+        return grouped(laid, self.levels, self.tolerance)
+
+    @cached_property
+    def sections(self) -> Sections:
+        """The sections where each element has axes of its own."""
+        along = axes(self.elements.surface, self.elements.centre)[0]
+        return Sections(self.groups, self.plies, along, self.material.name)
+
+    @cached_property
+    def fixed(self) -> Sections:
+        """The sections where axes are fixed in space."""
+        return self.sections.turned() if self.tolerance > 0.0 else self.sections
 
     @property
     def load(self) -> float | None:
@@ -101,8 +124,10 @@ def write_decks(folder: Path, deck: Deck) -> list[str]:
     """Write both decks into an existing folder; return what the user should know."""
     for name, quadratic in ((SHELL, True), (SHELL_S4R, False)):
         with (folder / name).open("w", encoding="ascii", errors="replace") as file:
-            _write(file, deck, nodes_of(deck.elements, quadratic))
+            _write(file, deck, quadratic)
     notes = [f"{SHELL}: {note}" for note in (_of_layers(deck) if deck.plies.wound else _of_families(deck))]
+    counts = f"{len(deck.fixed.groups)} sections, {SHELL_S4R} {len(deck.groups)}"
+    notes.append(f"{SHELL}: {counts}: elements with angles within {deck.tolerance:g} degrees share one")
     if (change := _rounded_by(deck)) > _MUCH:
         notes.append(
             f"{SHELL}: thickness is rounded by up to {100.0 * change:.2g} %, as it varies too much for CalculiX"
@@ -182,8 +207,9 @@ def _median(values: Floats, weight: Floats) -> float:
     return float(values[order][np.searchsorted(passed, 0.5 * passed[-1])])
 
 
-def _write(file: TextIO, deck: Deck, nodes: Nodes) -> None:
-    file.writelines(f"{line}\n" for line in _head(deck))
+def _write(file: TextIO, deck: Deck, quadratic: bool) -> None:
+    nodes = nodes_of(deck.elements, quadratic)
+    file.writelines(f"{line}\n" for line in _head(deck, quadratic))
     file.write("*NODE, NSET=NALL\n")
     np.savetxt(
         file, np.column_stack([np.arange(1, len(nodes.points) + 1), nodes.points]), fmt="%d, %.12g, %.12g, %.12g"
@@ -199,11 +225,12 @@ def _write(file: TextIO, deck: Deck, nodes: Nodes) -> None:
         file.write(f"*NSET, NSET={name}\n")
         file.writelines(f"{line}\n" for line in listed(rim.nodes + 1))
     file.writelines(f"{line}\n" for line in _material(deck))
-    file.writelines(_sections(deck))
+    lines = deck.fixed.fixed() if quadratic else deck.sections.distributed()
+    file.writelines(f"{line}\n" for line in lines)
     file.writelines(f"{line}\n" for line in step(nodes, deck.elements, deck.load))
 
 
-def _head(deck: Deck) -> Iterator[str]:
+def _head(deck: Deck, quadratic: bool) -> Iterator[str]:
     laid = deck.plies
     yield "*HEADING"
     yield f"meshwind: {deck.name}, wound shell"
@@ -211,8 +238,23 @@ def _head(deck: Deck) -> Iterator[str]:
     yield from _about_layers(laid) if laid.wound else _about_families(laid)
     yield f"** The whole of an element is rounded, by at most {100.0 * _rounded_by(deck):.2g} %, with its layers,"
     yield "** at unchanged volume of all, as CalculiX joins elements of different thickness by rigid knots."
-    yield "** Each element has its own orientation: 1 along the fibre, 3 along the outward normal."
+    yield from _about_sections(deck, quadratic)
     yield "** Node sets: START (v=0), END (v=1), NALL; element set: SHELL."
+
+
+def _about_sections(deck: Deck, quadratic: bool) -> Iterator[str]:
+    count = len((deck.fixed if quadratic else deck.sections).groups)
+    tolerance = deck.tolerance
+    if tolerance > 0.0:
+        yield f"** {count} sections: angles of elements in one are within {tolerance:g} degrees, the shares that layers"
+        yield f"** have of the thickness within {100.0 * SHARES:g} %; both have their mean."
+    else:
+        yield f"** {count} sections: each element has its own."
+    if quadratic:
+        yield "** Axes: 1 along the fibre, 3 along the outward normal. CalculiX has axes of layers by section alone,"
+        yield "** and fixed in space: elements that face different ways share none, as they do in the deck for Abaqus."
+    else:
+        yield "** Axes of an element: 1 along the part, 3 along the outward normal; a layer's angle is from 1 about 3."
 
 
 def _contents(laid: Plies) -> str:
@@ -247,36 +289,3 @@ def _material(deck: Deck) -> Iterator[str]:
     yield f"{deck.material.moduli(deck.units)[8]:.9g}"
     yield "*DENSITY"
     yield f"{deck.material.mass(deck.units):.9g}"
-
-
-def _sections(deck: Deck) -> Iterator[str]:
-    """Set, orientations and layers of each element; a family has neither where it is not."""
-    thick, families = thicknesses(deck), deck.plies.families
-    across = [np.cross(deck.plies.normal, ply.direction) for ply in families]
-    stack = [(which, share) for layer in deck.plies.stacks for which, share in _stack(layer)]
-    for k in range(len(deck.elements)):
-        e = k + 1
-        for ply, side, present in zip(families, across, thick[:, k] > 0.0, strict=True):
-            if present:
-                a, b = ply.direction[k], side[k]
-                yield (
-                    f"*ORIENTATION, NAME={_axes(ply, e)}, SYSTEM=RECTANGULAR\n"
-                    f"{a[0]:.9g}, {a[1]:.9g}, {a[2]:.9g}, {b[0]:.9g}, {b[1]:.9g}, {b[2]:.9g}\n3, 0.\n"
-                )
-        yield f"*ELSET, ELSET=E{e}\n{e},\n*SHELL SECTION, ELSET=E{e}, COMPOSITE\n"
-        for which, share in stack:
-            if thick[which, k] > 0.0:
-                yield f"{share * thick[which, k]:.9g}, 3, {deck.material.name}, {_axes(families[which], e)}\n"
-
-
-def _stack(layer: tuple[int, ...]) -> tuple[tuple[int, float], ...]:
-    """Families of a layer from the inside out, by number, each with its share of the family's thickness."""
-    if len(layer) < 2:
-        return ((layer[0], 1.0),)
-    return (layer[0], 0.5), (layer[1], 1.0), (layer[0], 0.5)
-
-
-def _axes(ply: Ply, element: int) -> str:
-    """Name of the axes of a family on an element; of the first layer it has no number."""
-    layer = f"L{ply.layer}" if ply.layer > 1 else ""
-    return f"{layer}{'P' if ply.family > 0 else 'M'}{element}"

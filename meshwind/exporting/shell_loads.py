@@ -1,6 +1,6 @@
 """The load step of a shell deck: a pull, or pressure inside with what it pulls at the ends."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -62,10 +62,3 @@ def _spread(rim: Rim, force: Floats) -> Iterator[str]:
         for direction, part in enumerate(force, start=1):
             if abs(part) > _NOTHING * whole:
                 yield f"{node}, {direction}, {share * part:.9g}"
-
-
-def listed(numbers: Iterable[int]) -> Iterator[str]:
-    """Numbers in lines of at most twelve."""
-    each = [str(number) for number in numbers]
-    for first in range(0, len(each), 12):
-        yield ", ".join(each[first : first + 12]) + ","

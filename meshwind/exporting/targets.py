@@ -17,6 +17,7 @@ from meshwind.exporting.frames import Limits, write_frames
 from meshwind.exporting.ordered_frames import write_ordered_frames
 from meshwind.exporting.plies import laid_on, plies
 from meshwind.exporting.shell_deck import Deck, Material, write_decks
+from meshwind.exporting.shell_groups import TOLERANCE
 from meshwind.exporting.step import write_step
 from meshwind.exporting.viewer import write_viewer
 from meshwind.results.folder import beside
@@ -32,7 +33,7 @@ class ExportOptions:
     thickness: of one layer of band; width: of the band; step, angle: longest step of robot frames and their largest
     turn in degrees; shell: elements of shell deck and fibre field, "grid" or "quads" for the run's quad mesh; count:
     approximate number of elements of the grid; formats: mesh formats of `FORMATS`; pressure: inside, the load of the
-    shell deck in MPa, instead of a pull.
+    shell deck in MPa, instead of a pull; tolerance: degrees within which its elements share a section.
     """
 
     thickness: float | None = None
@@ -43,6 +44,7 @@ class ExportOptions:
     count: int | None = None
     formats: Sequence[str] = ()
     pressure: float | None = None
+    tolerance: float = TOLERANCE
 
     def __post_init__(self) -> None:
         if self.shell not in (GRID, QUADS):
@@ -123,7 +125,8 @@ def _elements(results: Results, options: ExportOptions, count: int) -> Elements:
 def _deck(folder: Path, results: Results, options: ExportOptions) -> list[str]:
     elements = _elements(results, options, 1000)
     laid = plies(results, elements, options.thickness, options.width)
-    return write_decks(folder, Deck(elements, laid, Material(), results.units, results.name, options.pressure))
+    about = results.units, results.name, options.pressure, options.tolerance
+    return write_decks(folder, Deck(elements, laid, Material(), *about))
 
 
 def _fibers(folder: Path, results: Results, options: ExportOptions) -> list[str]:

@@ -23,6 +23,7 @@ def export(  # noqa: PLR0913
     shell: str = ExportOptions.shell,
     elements: int | None = ExportOptions.count,
     pressure: float | None = ExportOptions.pressure,
+    section_tolerance: float = ExportOptions.tolerance,
     step: float | None = ExportOptions.step,
     angle: float | None = ExportOptions.angle,
 ) -> Exported:
@@ -51,6 +52,8 @@ def export(  # noqa: PLR0913
         Approximate number of elements of the grid.  By default 1000 for "inp" and 10000 for "fibers".
     pressure : float, optional
         Pressure inside, in MPa, as the load of "inp".  By default there is a pull instead.
+    section_tolerance : float, default 2
+        Degrees within which angles of elements agree that share a section of "inp"; at 0 each has its own.
     step : float, optional
         Largest distance between frames, in the mesh's units.  By default 2 % of the part's diagonal.
     angle : float, optional
@@ -74,7 +77,8 @@ def export(  # noqa: PLR0913
     >>> [file.name for file in done.files][:3]
     ['fibers.vtk', 'fibers.vtu', 'crossings.vtu']
     """
-    options = ExportOptions(thickness, band_width, step, angle, shell, elements, _several(formats), pressure)
+    deck = pressure, section_tolerance
+    options = ExportOptions(thickness, band_width, step, angle, shell, elements, _several(formats), *deck)
     names = _several(to)
     if isinstance(run, Result):
         if out is None:
