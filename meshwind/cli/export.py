@@ -18,6 +18,9 @@ EXAMPLES = """
     # the same under a pressure of 10 MPa inside, with what it pulls at the end
     meshwind export part-wound --to inp --pressure 10
 
+    # a shaft with a torque of 50 N m on either end
+    meshwind export part-wound --to inp --torque 50 --held none
+
     # robot frames at most 2 long and 3 degrees apart
     meshwind export part-wound --to frames --step 2 --angle 3
 
@@ -30,8 +33,9 @@ EXAMPLES = """
 TARGETS = "inp", "fibers", "frames", "step", "viewer"
 FORMATS = tuple(SUFFIXES)
 SHELLS = "grid", "quads"
+RIMS = "start", "end", "both", "none"
 """Names for help and completion: the modules that define them take long to import."""
-_WHAT, _SHELL, _FRAMES = "What is written", "Elements of inp and fibers", "Frames"
+_WHAT, _SHELL, _LOADS, _FRAMES = "What is written", "Elements of inp and fibers", "Loads of inp", "Frames"
 
 
 @dataclass(frozen=True)
@@ -68,7 +72,7 @@ class What:
 
 @dataclass(frozen=True)
 class Shell:
-    """The elements of a shell deck and of a field of fibre directions."""
+    """The elements of a shell deck and of a field of fibre directions, and loads of the deck."""
 
     thickness: Annotated[
         float | None,
@@ -98,10 +102,37 @@ class Shell:
         float | None,
         typer.Option(
             metavar="MPA",
-            help="Pressure inside, in MPa, as the load of inp, with its pull on the end.  [default: none, a pull]",
-            rich_help_panel=_SHELL,
+            help="Pressure inside, in MPa, with what it has on closed ends; below 0 outside.  [default: none]",
+            rich_help_panel=_LOADS,
         ),
     ] = None
+    axial: Annotated[
+        float | None,
+        typer.Option(
+            metavar="N",
+            help="Axial force, in N, on rims that are not held; below 0 it pushes.  "
+            "[default: 1000 if there is no other load]",
+            rich_help_panel=_LOADS,
+        ),
+    ] = None
+    torque: Annotated[
+        float | None,
+        typer.Option(
+            metavar="NM",
+            help="Torque, in N m, on rims that are not held; above 0 counterclockwise seen from outside the end.  "
+            "[default: none]",
+            rich_help_panel=_LOADS,
+        ),
+    ] = None
+    held: Annotated[
+        str,
+        typer.Option(
+            metavar="RIMS",
+            help=f"Rims that are clamped: {', '.join(RIMS)}; with none the loads on both balance.",
+            autocompletion=one_of(*RIMS),
+            rich_help_panel=_LOADS,
+        ),
+    ] = "start"
     section_tolerance: Annotated[
         float,
         typer.Option(

@@ -5,7 +5,7 @@
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import TextIO
@@ -13,13 +13,12 @@ from typing import TextIO
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints
-from meshwind.core.errors import BadInputError
 from meshwind.core.units import millimetres
 from meshwind.core.vectors import TINY
 from meshwind.exporting.elements import Elements
 from meshwind.exporting.plies import Plies
 from meshwind.exporting.shell_groups import SHARES, TOLERANCE, Groups, Laid, grouped
-from meshwind.exporting.shell_loads import step
+from meshwind.exporting.shell_loads import FORCE, Loads, step
 from meshwind.exporting.shell_nodes import nodes_of
 from meshwind.exporting.shell_sections import Sections, listed
 from meshwind.path.winding_angle import axes
@@ -73,10 +72,9 @@ class Material:
 
 @dataclass(frozen=True)
 class Deck:
-    """Contents of a deck: mesh, plies, material, unit of length, name of the part, and pressure inside in MPa.
+    """Contents of a deck: mesh, plies, material, unit of length, name of the part, and loads.
 
-    Without a pressure the load is a pull.  tolerance: degrees within which elements share a section, 0 for sections of
-    their own.  Raises BadInputError if the pressure is no number, or 0.
+    tolerance: degrees within which elements share a section, 0 for sections of their own.
     """
 
     elements: Elements
@@ -84,12 +82,8 @@ class Deck:
     material: Material
     units: str = ""
     name: str = "part"
-    pressure: float | None = None
+    loads: Loads = field(default_factory=Loads)
     tolerance: float = TOLERANCE
-
-    def __post_init__(self) -> None:
-        if self.pressure is not None and not (np.isfinite(self.pressure) and self.pressure != 0.0):
-            raise BadInputError(f"pressure is {self.pressure:g}; give MPa, above 0 for pressure inside")
 
     @cached_property
     def levels(self) -> Ints:
@@ -114,11 +108,6 @@ class Deck:
         """The sections where axes are fixed in space."""
         return self.sections.turned() if self.tolerance > 0.0 else self.sections
 
-    @property
-    def load(self) -> float | None:
-        """The pressure in N over the unit of length squared, None without one."""
-        return None if self.pressure is None else self.pressure * millimetres(self.units) ** 2
-
 
 def write_decks(folder: Path, deck: Deck) -> list[str]:
     """Write both decks into an existing folder; return what the user should know."""
@@ -132,6 +121,8 @@ def write_decks(folder: Path, deck: Deck) -> list[str]:
         notes.append(
             f"{SHELL}: thickness is rounded by up to {100.0 * change:.2g} %, as it varies too much for CalculiX"
         )
+    if not deck.loads.given:
+        notes.append(f"{SHELL}: no load is given, so there is a pull of {FORCE:g} N to begin with")
     if not deck.units:
         notes.append(f"{SHELL}: the run names no unit, so the material is in N and mm")
     return notes
@@ -227,7 +218,7 @@ def _write(file: TextIO, deck: Deck, quadratic: bool) -> None:
     file.writelines(f"{line}\n" for line in _material(deck))
     lines = deck.fixed.fixed() if quadratic else deck.sections.distributed()
     file.writelines(f"{line}\n" for line in lines)
-    file.writelines(f"{line}\n" for line in step(nodes, deck.elements, deck.load))
+    file.writelines(f"{line}\n" for line in step(nodes, deck.elements, deck.loads, deck.units))
 
 
 def _head(deck: Deck, quadratic: bool) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
 from typing import TypeAlias
@@ -18,6 +18,7 @@ from meshwind.exporting.ordered_frames import write_ordered_frames
 from meshwind.exporting.plies import laid_on, plies
 from meshwind.exporting.shell_deck import Deck, Material, write_decks
 from meshwind.exporting.shell_groups import TOLERANCE
+from meshwind.exporting.shell_loads import Loads
 from meshwind.exporting.step import write_step
 from meshwind.exporting.viewer import write_viewer
 from meshwind.results.folder import beside
@@ -32,8 +33,8 @@ class ExportOptions:
 
     thickness: of one layer of band; width: of the band; step, angle: longest step of robot frames and their largest
     turn in degrees; shell: elements of shell deck and fibre field, "grid" or "quads" for the run's quad mesh; count:
-    approximate number of elements of the grid; formats: mesh formats of `FORMATS`; pressure: inside, the load of the
-    shell deck in MPa, instead of a pull; tolerance: degrees within which its elements share a section.
+    approximate number of elements of the grid; formats: mesh formats of `FORMATS`; loads: of the shell deck, with what
+    holds it; tolerance: degrees within which its elements share a section.
     """
 
     thickness: float | None = None
@@ -43,7 +44,7 @@ class ExportOptions:
     shell: str = GRID
     count: int | None = None
     formats: Sequence[str] = ()
-    pressure: float | None = None
+    loads: Loads = field(default_factory=Loads)
     tolerance: float = TOLERANCE
 
     def __post_init__(self) -> None:
@@ -125,7 +126,7 @@ def _elements(results: Results, options: ExportOptions, count: int) -> Elements:
 def _deck(folder: Path, results: Results, options: ExportOptions) -> list[str]:
     elements = _elements(results, options, 1000)
     laid = plies(results, elements, options.thickness, options.width)
-    about = results.units, results.name, options.pressure, options.tolerance
+    about = results.units, results.name, options.loads, options.tolerance
     return write_decks(folder, Deck(elements, laid, Material(), *about))
 
 

@@ -7,6 +7,7 @@ from os import PathLike
 from pathlib import Path
 
 from meshwind.core.errors import BadInputError
+from meshwind.exporting.shell_loads import Loads
 from meshwind.exporting.targets import Exported, ExportOptions, write_exports
 from meshwind.run.loaded import LoadedResult
 from meshwind.run.result import Result
@@ -22,7 +23,10 @@ def export(  # noqa: PLR0913
     thickness: float | None = ExportOptions.thickness,
     shell: str = ExportOptions.shell,
     elements: int | None = ExportOptions.count,
-    pressure: float | None = ExportOptions.pressure,
+    pressure: float | None = Loads.pressure,
+    axial: float | None = Loads.axial,
+    torque: float | None = Loads.torque,
+    held: str = Loads.held,
     section_tolerance: float = ExportOptions.tolerance,
     step: float | None = ExportOptions.step,
     angle: float | None = ExportOptions.angle,
@@ -51,7 +55,14 @@ def export(  # noqa: PLR0913
     elements : int, optional
         Approximate number of elements of the grid.  By default 1000 for "inp" and 10000 for "fibers".
     pressure : float, optional
-        Pressure inside, in MPa, as the load of "inp".  By default there is a pull instead.
+        Pressure inside, in MPa, as a load of "inp"; below 0 outside.  Rims that are not held bear what it has on closed
+        ends.  Without any load there is a pull of 1000 N to begin with; a load of 0 is none.
+    axial : float, optional
+        Axial force in N on rims that are not held, which pulls them apart, or pushes below 0.
+    torque : float, optional
+        Torque in N m about the line from rim to rim, on the end counterclockwise seen from outside.
+    held : {"start", "end", "both", "none"}, default "start"
+        Rims that are clamped.  With "none" the loads on both rims balance.
     section_tolerance : float, default 2
         Degrees within which angles of elements agree that share a section of "inp"; at 0 each has its own.
     step : float, optional
@@ -77,7 +88,7 @@ def export(  # noqa: PLR0913
     >>> [file.name for file in done.files][:3]
     ['fibers.vtk', 'fibers.vtu', 'crossings.vtu']
     """
-    deck = pressure, section_tolerance
+    deck = Loads(pressure, axial, torque, held), section_tolerance
     options = ExportOptions(thickness, band_width, step, angle, shell, elements, _several(formats), *deck)
     names = _several(to)
     if isinstance(run, Result):
