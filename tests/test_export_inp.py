@@ -11,8 +11,9 @@ from export_results import plain_results, waisted_results
 
 from meshwind.core.errors import BadInputError
 from meshwind.exporting.elements import Elements, on_crossings, regular
+from meshwind.exporting.material import Material
 from meshwind.exporting.plies import plies
-from meshwind.exporting.shell_deck import Deck, Material, thicknesses, write_decks
+from meshwind.exporting.shell_deck import Deck, thicknesses, write_decks
 from meshwind.exporting.shell_loads import FORCE
 from meshwind.results.reading import Results
 from meshwind.results.schema import SHELL, SHELL_S4R

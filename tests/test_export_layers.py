@@ -15,8 +15,9 @@ import meshwind as mw
 from meshwind.core.cast import Bools, Floats
 from meshwind.core.errors import BadInputError
 from meshwind.exporting.elements import on_crossings, regular
+from meshwind.exporting.material import Material
 from meshwind.exporting.plies import laid_on, plies
-from meshwind.exporting.shell_deck import Deck, Material, thicknesses
+from meshwind.exporting.shell_deck import Deck, thicknesses
 from meshwind.exporting.shell_loads import Loads
 from meshwind.exporting.targets import ExportOptions, write_exports
 from meshwind.filament.laminate import Laminate

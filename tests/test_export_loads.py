@@ -12,8 +12,9 @@ from export_results import plain_results
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.exporting.elements import regular
+from meshwind.exporting.material import Material
 from meshwind.exporting.plies import plies
-from meshwind.exporting.shell_deck import Deck, Material, thicknesses, write_decks
+from meshwind.exporting.shell_deck import Deck, thicknesses, write_decks
 from meshwind.exporting.shell_loads import FORCE, Loads
 from meshwind.results.schema import SHELL, SHELL_S4R
 

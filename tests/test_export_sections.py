@@ -11,8 +11,9 @@ from export_results import laminate, layered_results
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.exporting.elements import regular
+from meshwind.exporting.material import Material
 from meshwind.exporting.plies import Ply, laid_on, plies
-from meshwind.exporting.shell_deck import Deck, Material, thicknesses, write_decks
+from meshwind.exporting.shell_deck import Deck, thicknesses, write_decks
 from meshwind.exporting.shell_groups import SHARES, Laid, grouped
 from meshwind.results.schema import SHELL, SHELL_S4R
 

@@ -33,6 +33,7 @@ EXAMPLES = """
 TARGETS = "inp", "fibers", "frames", "step", "viewer"
 FORMATS = tuple(SUFFIXES)
 SHELLS = "grid", "quads"
+MATERIALS = "aramid-epoxy", "as4-epoxy", "dry-tow", "e-glass-epoxy", "epoxy", "t300-epoxy", "t700-epoxy"
 RIMS = "start", "end", "both", "none"
 """Names for help and completion: the modules that define them take long to import."""
 _WHAT, _SHELL, _LOADS, _FRAMES = "What is written", "Elements of inp and fibers", "Loads of inp", "Frames"
@@ -133,6 +134,15 @@ class Shell:
             rich_help_panel=_LOADS,
         ),
     ] = "start"
+    material: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME|FILE",
+            help=f"Material of inp: {', '.join(MATERIALS)}, or a TOML file.",
+            autocompletion=one_of(*MATERIALS),
+            rich_help_panel=_SHELL,
+        ),
+    ] = "t700-epoxy"
     section_tolerance: Annotated[
         float,
         typer.Option(

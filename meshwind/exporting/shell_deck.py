@@ -8,14 +8,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from textwrap import wrap
 from typing import TextIO
 
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints
-from meshwind.core.units import millimetres
 from meshwind.core.vectors import TINY
 from meshwind.exporting.elements import Elements
+from meshwind.exporting.material import STRENGTHS, Material
 from meshwind.exporting.plies import Plies
 from meshwind.exporting.shell_groups import SHARES, TOLERANCE, Groups, Laid, grouped
 from meshwind.exporting.shell_loads import FORCE, Loads, step
@@ -35,39 +36,9 @@ _KNOTS = 0.5
 """Largest share of the nodes that are knots: CalculiX stopped for want of room at 0.7 of them, and not at 0.58."""
 _MUCH = 0.1
 """Change of an element's thickness that is worth a note."""
+_WIDE = 110
+"""Characters of a line of a comment."""
 _SHAPES = {3: "S3", 4: "S4R", 6: "S6", 8: "S8R"}
-
-
-@dataclass(frozen=True)
-class Material:
-    """A transversely isotropic layer, fibres along 1: moduli in MPa (N/mm2), density in t/mm3.
-
-    By default carbon fibre of standard modulus in epoxy, 60 % fibre by volume, with typical values of data sheets.
-    """
-
-    name: str = "CARBON_EPOXY"
-    e1: float = 135000.0
-    e2: float = 9000.0
-    nu12: float = 0.3
-    nu23: float = 0.4
-    g12: float = 4800.0
-    density: float = 1.6e-9
-
-    @property
-    def g23(self) -> float:
-        """Shear modulus of the isotropic plane across the fibres, e2 / (2 (1 + nu23))."""
-        return self.e2 / (2.0 * (1.0 + self.nu23))
-
-    def moduli(self, units: str) -> tuple[float, ...]:
-        """E1, E2, E3, nu12, nu13, nu23, G12, G13, G23; moduli in N over the unit of length squared."""
-        scale = millimetres(units) ** 2
-        stiff = self.e1, self.e2, self.e2
-        shear = self.g12, self.g12, self.g23
-        return (*(scale * e for e in stiff), self.nu12, self.nu12, self.nu23, *(scale * g for g in shear))
-
-    def mass(self, units: str) -> float:
-        """Density in N s2 over the unit of length to the fourth: consistent with newtons and that unit."""
-        return self.density * millimetres(units) ** 4
 
 
 @dataclass(frozen=True)
@@ -273,6 +244,7 @@ def _about_layers(laid: Plies) -> Iterator[str]:
 
 def _material(deck: Deck) -> Iterator[str]:
     stiff = ", ".join(f"{value:.9g}" for value in deck.material.moduli(deck.units)[:8])
+    yield from _about_material(deck.material)
     yield "** unidirectional layer: E1, E2, E3, nu12, nu13, nu23, G12, G13, G23"
     yield f"*MATERIAL, NAME={deck.material.name}"
     yield "*ELASTIC, TYPE=ENGINEERING CONSTANTS"
@@ -280,3 +252,15 @@ def _material(deck: Deck) -> Iterator[str]:
     yield f"{deck.material.moduli(deck.units)[8]:.9g}"
     yield "*DENSITY"
     yield f"{deck.material.mass(deck.units):.9g}"
+
+
+def _about_material(material: Material) -> Iterator[str]:
+    """Comments on what the material is, on its strengths, and on where its figures are from."""
+    if material.words:
+        yield f"** material: {material.words}"
+    if material.strengths:
+        known = ", ".join(f"{name} {material.strengths[name]:.9g}" for name in STRENGTHS)
+        yield f"** strengths in MPa, along the fibre, across it and in shear: {known}"
+    for source in dict.fromkeys(material.sources.values()):
+        of = [name for name, each in material.sources.items() if each == source]
+        yield from (f"** {line}" for line in wrap(f"{', '.join(of)}: {source}", _WIDE))

@@ -14,9 +14,10 @@ from meshwind.exporting.elements import Elements, on_crossings, regular
 from meshwind.exporting.fibers import write_fibers
 from meshwind.exporting.formats import FORMATS, write_formats
 from meshwind.exporting.frames import Limits, write_frames
+from meshwind.exporting.material import DEFAULT, read_material
 from meshwind.exporting.ordered_frames import write_ordered_frames
 from meshwind.exporting.plies import laid_on, plies
-from meshwind.exporting.shell_deck import Deck, Material, write_decks
+from meshwind.exporting.shell_deck import Deck, write_decks
 from meshwind.exporting.shell_groups import TOLERANCE
 from meshwind.exporting.shell_loads import Loads
 from meshwind.exporting.step import write_step
@@ -34,7 +35,8 @@ class ExportOptions:
     thickness: of one layer of band; width: of the band; step, angle: longest step of robot frames and their largest
     turn in degrees; shell: elements of shell deck and fibre field, "grid" or "quads" for the run's quad mesh; count:
     approximate number of elements of the grid; formats: mesh formats of `FORMATS`; loads: of the shell deck, with what
-    holds it; tolerance: degrees within which its elements share a section.
+    holds it; tolerance: degrees within which its elements share a section; material: name of one that is
+    shipped, or a TOML file.
     """
 
     thickness: float | None = None
@@ -46,6 +48,7 @@ class ExportOptions:
     formats: Sequence[str] = ()
     loads: Loads = field(default_factory=Loads)
     tolerance: float = TOLERANCE
+    material: str = DEFAULT
 
     def __post_init__(self) -> None:
         if self.shell not in (GRID, QUADS):
@@ -127,7 +130,7 @@ def _deck(folder: Path, results: Results, options: ExportOptions) -> list[str]:
     elements = _elements(results, options, 1000)
     laid = plies(results, elements, options.thickness, options.width)
     about = results.units, results.name, options.loads, options.tolerance
-    return write_decks(folder, Deck(elements, laid, Material(), *about))
+    return write_decks(folder, Deck(elements, laid, read_material(options.material), *about))
 
 
 def _fibers(folder: Path, results: Results, options: ExportOptions) -> list[str]:

@@ -27,6 +27,7 @@ def export(  # noqa: PLR0913
     axial: float | None = Loads.axial,
     torque: float | None = Loads.torque,
     held: str = Loads.held,
+    material: str = ExportOptions.material,
     section_tolerance: float = ExportOptions.tolerance,
     step: float | None = ExportOptions.step,
     angle: float | None = ExportOptions.angle,
@@ -63,6 +64,8 @@ def export(  # noqa: PLR0913
         Torque in N m about the line from rim to rim, on the end counterclockwise seen from outside.
     held : {"start", "end", "both", "none"}, default "start"
         Rims that are clamped.  With "none" the loads on both rims balance.
+    material : str, default "t700-epoxy"
+        Material of "inp": name of one that is shipped, or a TOML file.
     section_tolerance : float, default 2
         Degrees within which angles of elements agree that share a section of "inp"; at 0 each has its own.
     step : float, optional
@@ -88,7 +91,7 @@ def export(  # noqa: PLR0913
     >>> [file.name for file in done.files][:3]
     ['fibers.vtk', 'fibers.vtu', 'crossings.vtu']
     """
-    deck = Loads(pressure, axial, torque, held), section_tolerance
+    deck = Loads(pressure, axial, torque, held), section_tolerance, material
     options = ExportOptions(thickness, band_width, step, angle, shell, elements, _several(formats), *deck)
     names = _several(to)
     if isinstance(run, Result):

@@ -1,0 +1,124 @@
+"""Materials of shell decks: shipped ones by name, each figure with its source, or one's own from a file."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from importlib.resources import files
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import nearest, read_toml
+from meshwind.core.units import millimetres
+
+DEFAULT = "t700-epoxy"
+"""Material of a deck that is asked for none."""
+_FOLDER = "materials"
+_STIFF = "e1", "e2", "nu12", "nu23", "g12", "density"
+STRENGTHS = "xt", "xc", "yt", "yc", "s"
+"""Strengths along the fibre in tension and compression, across it, and in shear."""
+_KG_M3 = 1e-12
+"""A kilogram per cubic metre in t/mm3."""
+
+
+@dataclass(frozen=True)
+class Material:
+    """A transversely isotropic layer, fibres along 1: moduli and strengths in MPa (N/mm2), density in t/mm3.
+
+    By default that of `DEFAULT`.  words: what it is; strengths: those of `STRENGTHS` that are known, as compression's
+    above 0; sources: where each figure is from, by its name.
+    """
+
+    name: str = "T700_EPOXY"
+    e1: float = 135000.0
+    e2: float = 9000.0
+    nu12: float = 0.3
+    nu23: float = 0.4
+    g12: float = 4800.0
+    density: float = 1.6e-9
+    words: str = ""
+    strengths: Mapping[str, float] = field(default_factory=dict)
+    sources: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def g23(self) -> float:
+        """Shear modulus of the isotropic plane across the fibres, e2 / (2 (1 + nu23))."""
+        return self.e2 / (2.0 * (1.0 + self.nu23))
+
+    def moduli(self, units: str) -> tuple[float, ...]:
+        """E1, E2, E3, nu12, nu13, nu23, G12, G13, G23; moduli in N over the unit of length squared."""
+        scale = millimetres(units) ** 2
+        stiff = self.e1, self.e2, self.e2
+        shear = self.g12, self.g12, self.g23
+        return (*(scale * e for e in stiff), self.nu12, self.nu12, self.nu23, *(scale * g for g in shear))
+
+    def mass(self, units: str) -> float:
+        """Density in N s2 over the unit of length to the fourth: consistent with newtons and that unit."""
+        return self.density * millimetres(units) ** 4
+
+
+def material_names() -> list[str]:
+    """Names of the materials that are shipped."""
+    shipped = files(__package__).joinpath(_FOLDER)
+    return sorted(each.name.removesuffix(".toml") for each in shipped.iterdir() if each.name.endswith(".toml"))
+
+
+def read_material(name: str = DEFAULT) -> Material:
+    """Read a material by its name or from a TOML file; raises BadInputError where it is not one."""
+    if name.lower() in material_names():
+        file = Path(str(files(__package__).joinpath(_FOLDER, f"{name.lower()}.toml")))
+    elif name.lower().endswith(".toml"):
+        file = Path(name)
+    else:
+        raise BadInputError(f"no material {name!r}; {nearest(name, material_names())}, or give a file.toml")
+    return _material_of(read_toml(file, "material"), file)
+
+
+def _material_of(table: dict[str, Any], file: Path) -> Material:
+    """A material from the table of its file, with the density in kg/m3 there."""
+    where, known = f"material {file}", (*_STIFF, *STRENGTHS)
+    for key in table:
+        if key not in (*known, "words", "sources"):
+            raise BadInputError(f"{where} has no {key!r}; {nearest(key, known)}")
+    lacking = [key for key in _STIFF if key not in table]
+    if lacking:
+        raise BadInputError(f"{where} has no {lacking[0]}; give {', '.join(_STIFF)}")
+    values = {key: _number(table[key], key, where) for key in known if key in table}
+    found = {key: values[key] for key in STRENGTHS if key in values}
+    if found and len(found) < len(STRENGTHS):
+        lacking = [key for key in STRENGTHS if key not in found]
+        raise BadInputError(f"{where} has no {lacking[0]}; give all of {', '.join(STRENGTHS)}, or none")
+    words, sources = table.get("words", ""), table.get("sources", {})
+    if not isinstance(words, str):
+        raise BadInputError(f"words of {where} is {words!r}; give text in quotes")
+    if not (isinstance(sources, dict) and all(isinstance(each, str) for each in sources.values())):
+        raise BadInputError(f"sources of {where} is no table of texts; give [sources] with a text for each figure")
+    stiff = {key: values[key] for key in _STIFF}
+    stiff["density"] *= _KG_M3
+    made = Material(_name(file.stem), **stiff, words=words, strengths=found, sources=sources)
+    _check(made, where)
+    return made
+
+
+def _number(value: Any, key: str, where: str) -> float:
+    if not isinstance(value, int | float) or isinstance(value, bool) or not isfinite(value):
+        raise BadInputError(f"{key} of {where} is {value!r}; give a number")
+    if value <= 0.0 and not key.startswith("nu"):
+        raise BadInputError(f"{key} of {where} is {value:g}; give a number above 0")
+    return float(value)
+
+
+def _name(stem: str) -> str:
+    """Name for the deck: letters, digits and underscores, a letter first, as solvers take it."""
+    plain = "".join(each if each.isascii() and each.isalnum() else "_" for each in stem.upper())[:70]
+    return plain if plain[:1].isalpha() else f"M_{plain}"
+
+
+def _check(material: Material, where: str) -> None:
+    """Raise BadInputError where a deformation of the material would cost no energy."""
+    cross = material.nu12**2 * material.e2 / material.e1
+    if not -1.0 < material.nu23 < 1.0 - 2.0 * cross:
+        raise BadInputError(
+            f"{where} is not stable: nu23 is {material.nu23:g}; give one above -1 and below 1 - 2 nu12^2 e2 / e1, "
+            f"{1.0 - 2.0 * cross:.3g}"
+        )
