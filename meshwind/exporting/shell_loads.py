@@ -16,7 +16,7 @@ from meshwind.exporting.shell_nodes import Nodes, Rim
 FORCE = 1000.0
 """Axial force, in N, of a deck that is asked for no load: something to begin with."""
 START, END, BOTH, NONE = HELD = "start", "end", "both", "none"
-"""What holds the part: a clamped rim, both, or nothing, where six displacements are 0 that carry no load."""
+"""What holds the part: a clamped rim, both, or nothing, where six displacements are 0 to keep the part in place."""
 _NOTHING = 1e-12
 """Share of a load along an axis below which it is left out."""
 
@@ -100,7 +100,8 @@ def _about(nodes: Nodes, loads: Loads, given: bool) -> Iterator[str]:
     pressure, axial, torque = loads.pressure or 0.0, loads.axial or 0.0, loads.torque or 0.0
     free = {START: "END", END: "START", NONE: "START and END", BOTH: ""}[loads.held]
     if loads.held == NONE:
-        yield "** held: neither rim; six displacements of START are 0, to keep the part in place, and bear no load"
+        yield "** held: neither rim; six displacements of START and END are 0, to keep the part in place; they bear"
+        yield "** no more than what pressure on the mesh's faces leaves out of balance"
     else:
         yield f"** held: {'START and END are' if loads.held == BOTH else loads.held.upper() + ' is'} clamped"
     if not given and axial:
@@ -139,11 +140,12 @@ def _held(nodes: Nodes, held: str) -> Iterator[str]:
 
 
 def _fixing(nodes: Nodes) -> list[tuple[int, int]]:
-    """Six displacements of nodes of the start rim, by node and direction, that no motion as a rigid body leaves 0.
+    """Six displacements of nodes of both rims, by node and direction, that no motion as a rigid body leaves 0.
 
-    The best conditioned ones, by a QR decomposition with pivoting of what the motions do.
+    The best conditioned ones, by a QR decomposition with pivoting of what the motions do: they are far apart, so that
+    what a rim deforms by turns the part but little.
     """
-    rim = nodes.rims[0].nodes
+    rim = np.concatenate([each.nodes for each in nodes.rims])
     away = nodes.points[rim] - nodes.points[rim].mean(axis=0)
     away = away / max(float(np.abs(away).max()), TINY)
     turns = np.stack([np.cross(axis, away) for axis in np.eye(3)])
