@@ -58,7 +58,7 @@ def lacking(names: tuple[str, ...], *arguments: str | Path) -> subprocess.Comple
 
 
 @pytest.mark.parametrize(("module", "arguments", "remedy"), [
-    ("OCP", ["export", "--to", "inp,step"], "pip install 'meshwind[cad]'"),
+    ("OCP", ["export", "--to", "inp,step", "--thickness", "0.01"], "pip install 'meshwind[cad]'"),
     ("imageio_ffmpeg", ["render", "--animate", "mp4", "--quiet"], 'ffmpeg; or: pip install "meshwind[movie]"'),
 ])  # fmt: skip
 def test_what_is_not_installed_is_named_with_its_remedy(

@@ -30,7 +30,9 @@ def leave(folder: Path) -> None:
         for name, options in RUNS.items():
             out = folder / f"{name}-{threads}"
             mw.wind(DATA / name, out=out, render=False, paths=3, **{"particles": 101, **options})  # type: ignore[arg-type]
-    write_exports(folder / "vase.stl-1", tuple(TARGETS), folder / "exports", ExportOptions(formats=tuple(FORMATS)))
+    write_exports(
+        folder / "vase.stl-1", tuple(TARGETS), folder / "exports", ExportOptions(thickness=0.01, formats=tuple(FORMATS))
+    )
 
 
 def hashes(folder: Path) -> dict[str, str]:

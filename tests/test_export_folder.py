@@ -92,7 +92,7 @@ def test_an_export_replaces_the_last_one_and_leaves_all_else(tmp_path: Path) -> 
     (tmp_path / "frames").mkdir()
     for name in ("path_999.csv", "mine.txt"):
         (tmp_path / "frames" / name).write_text("old")
-    done = write_exports(tmp_path, ["inp", "frames"])
+    done = write_exports(tmp_path, ["inp", "frames"], options=ExportOptions(thickness=0.01))
     after = set(everything(tmp_path))
     assert before < after
     assert after - before == {str(file.relative_to(tmp_path)) for file in done.files} | {"frames", "frames/mine.txt"}
@@ -129,7 +129,8 @@ def run(*arguments: object) -> subprocess.CompletedProcess[str]:
 def test_the_command_line(tmp_path: Path) -> None:
     waisted_results(tmp_path)
     out = tmp_path / "given"
-    done = run(tmp_path, "--to", "inp,fibers, frames", "--formats", "ply", "--out", out, "--shell", "quads")
+    asked = "--to", "inp,fibers, frames", "--formats", "ply", "--shell", "quads", "--thickness", "0.01"
+    done = run(tmp_path, *asked, "--out", out)
     assert done.stderr == ""
     assert done.returncode == 0
     lines = [line.split(None, 1) for line in done.stdout.splitlines()]

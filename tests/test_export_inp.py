@@ -15,6 +15,7 @@ from meshwind.exporting.material import Material
 from meshwind.exporting.plies import plies
 from meshwind.exporting.shell_deck import Deck, thicknesses, write_decks
 from meshwind.exporting.shell_loads import FORCE
+from meshwind.exporting.targets import ExportOptions, write_exports
 from meshwind.results.reading import Results
 from meshwind.results.schema import SHELL, SHELL_S4R
 
@@ -112,6 +113,17 @@ def test_a_layer_is_as_thick_as_the_band_of_the_run(tmp_path: Path) -> None:
     results.report["fibre"] = {**results.report["fibre"], "band_thickness": 0.02}
     assert plies(results, elements).layer == 0.02
     assert plies(results, elements, layer=0.03).layer == 0.03
+
+
+def test_a_deck_needs_a_thickness(tmp_path: Path) -> None:
+    """It is not guessed; a field of fibres has one for want of a better."""
+    plain_results(tmp_path)
+    with pytest.raises(BadInputError, match="how thick its band is; give thickness"):
+        write_exports(tmp_path, ("inp",))
+    assert not (tmp_path / SHELL).exists()
+    write_exports(tmp_path, ("inp",), options=ExportOptions(thickness=0.02, count=100))
+    assert "a layer of band is 0.02 thick" in (tmp_path / SHELL).read_text()
+    write_exports(tmp_path, ("fibers",))
 
 
 def test_units_scale_the_material() -> None:

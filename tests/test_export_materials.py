@@ -45,7 +45,7 @@ def test_decks_have_the_material_of_a_file_and_say_its_sources(tmp_path: Path) -
         (str(tmp_path / "2 glass.toml"), "M_2_GLASS", "** e1: coupons of our own"),
         ("e-glass-epoxy", "E_GLASS_EPOXY", "xt 1280, xc 800, yt 40, yc 145, s 73"),
     ):
-        write_exports(tmp_path, ("inp",), options=ExportOptions(count=100, material=material))
+        write_exports(tmp_path, ("inp",), options=ExportOptions(count=100, thickness=0.01, material=material))
         for deck in (SHELL, SHELL_S4R):
             text = (tmp_path / deck).read_text()
             assert max(map(len, text.splitlines())) < 125

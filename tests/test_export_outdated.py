@@ -26,7 +26,7 @@ def everything(folder: Path) -> set[str]:
 
 def exported(folder: Path) -> None:
     waisted_results(folder)
-    write_exports(folder, tuple(TARGETS), options=ExportOptions(formats=tuple(FORMATS)))
+    write_exports(folder, tuple(TARGETS), options=ExportOptions(thickness=0.01, formats=tuple(FORMATS)))
 
 
 def test_all_that_an_export_writes_is_known(tmp_path: Path) -> None:

@@ -38,7 +38,7 @@ def inches(tmp_path_factory: pytest.TempPathFactory) -> Path:
     waisted_results(folder, "in")
     formats = "vtu", "vtk", "xdmf", "ply", "obj", "gmsh"
     notes = write_exports(
-        folder, ["inp", "fibers", "frames", "step", "viewer"], options=ExportOptions(formats=formats)
+        folder, ["inp", "fibers", "frames", "step", "viewer"], options=ExportOptions(thickness=0.01, formats=formats)
     ).notes
     assert "gmsh: no entry for the unit of length; lengths in in" in notes
     return folder

@@ -13,13 +13,13 @@ from meshwind.results.schema import SUFFIXES
 
 EXAMPLES = """
     # a shell deck for CalculiX and Abaqus, fibre directions for ParaView
-    meshwind export part-wound --to inp,fibers
+    meshwind export part-wound --to inp,fibers --thickness 0.4
 
     # the same under a pressure of 10 MPa inside, with what it pulls at the end
-    meshwind export part-wound --to inp --pressure 10
+    meshwind export part-wound --to inp --thickness 0.4 --pressure 10
 
     # a shaft with a torque of 50 N m on either end
-    meshwind export part-wound --to inp --torque 50 --held none
+    meshwind export part-wound --to inp --thickness 0.4 --torque 50 --held none
 
     # robot frames at most 2 long and 3 degrees apart
     meshwind export part-wound --to frames --step 2 --angle 3
@@ -79,7 +79,7 @@ class Shell:
         float | None,
         typer.Option(
             help="Thickness of one layer of band, in the mesh's units; layers of --layers have their own.  "
-            "[default: that of the run's band, or 1e-3 of the part's diagonal]",
+            "[default: that of the run's band; without one inp needs it, fibers has 1e-3 of the part's diagonal]",
             rich_help_panel=_SHELL,
         ),
     ] = None

@@ -33,7 +33,7 @@ EXAMPLES = """
     meshwind wind part.stl --paths 24
 
     # for a robot, a solver and a browser
-    meshwind export part-wound --to frames,inp,viewer
+    meshwind export part-wound --to frames,step,viewer
 
     # for a filament winding machine
     meshwind program part-wound

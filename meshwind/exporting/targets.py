@@ -127,6 +127,10 @@ def _elements(results: Results, options: ExportOptions, count: int) -> Elements:
 
 
 def _deck(folder: Path, results: Results, options: ExportOptions) -> list[str]:
+    if results.wound_layers is None and results.band_thickness is None and options.thickness is None:
+        raise BadInputError(
+            f"the run does not say how thick its band is; give {argument('thickness')}, which inp needs"
+        )
     elements = _elements(results, options, 1000)
     laid = plies(results, elements, options.thickness, options.width)
     about = results.units, results.name, options.loads, options.tolerance

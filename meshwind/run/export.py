@@ -49,8 +49,8 @@ def export(  # noqa: PLR0913
     band_width : float, optional
         Width of the fibre band, in the mesh's units.  By default that of the run's coverage, or of the layer.
     thickness : float, optional
-        Thickness of one layer of band, in the mesh's units.  By default that of the run's band, or 1e-3 of the part's
-        diagonal.
+        Thickness of one layer of band, in the mesh's units.  By default that of the run's band; where that is not
+        known, "inp" needs it, and "fibers" has 1e-3 of the part's diagonal.
     shell : {"grid", "quads"}, default "grid"
         Elements of "inp" and "fibers": a regular grid, or the quad mesh on the crossings.
     elements : int, optional
