@@ -11,7 +11,7 @@ from export_results import plain_results, waisted_results
 
 from meshwind.core.errors import BadInputError
 from meshwind.exporting.elements import Elements, on_crossings, regular
-from meshwind.exporting.material import Material
+from meshwind.exporting.material import read_material
 from meshwind.exporting.plies import plies
 from meshwind.exporting.shell_deck import Deck, thicknesses, write_decks
 from meshwind.exporting.shell_loads import FORCE
@@ -21,7 +21,9 @@ from meshwind.results.schema import SHELL, SHELL_S4R
 
 
 def deck_of(results: Results, elements: Elements, **given: float) -> Deck:
-    return Deck(elements, plies(results, elements, **given), Material(), results.units, results.name, tolerance=0.0)
+    return Deck(
+        elements, plies(results, elements, **given), read_material(), results.units, results.name, tolerance=0.0
+    )
 
 
 def blocks(path: Path, keyword: str) -> list[list[str]]:
@@ -128,16 +130,16 @@ def test_a_deck_needs_a_thickness(tmp_path: Path) -> None:
 
 def test_units_scale_the_material() -> None:
     """The same part in metres: moduli in Pa, density in kg/m3."""
-    assert Material().moduli("m")[0] == pytest.approx(135e9)
-    assert Material().mass("m") == pytest.approx(1600.0)
-    assert Material().moduli("mm")[3:6] == Material().moduli("in")[3:6] == (0.3, 0.3, 0.4)
+    assert read_material().moduli("m")[0] == pytest.approx(135e9)
+    assert read_material().mass("m") == pytest.approx(1600.0)
+    assert read_material().moduli("mm")[3:6] == read_material().moduli("in")[3:6] == (0.3, 0.3, 0.4)
     with pytest.raises(BadInputError, match="no known length"):
-        Material().mass("furlong")
+        read_material().mass("furlong")
 
 
 def axial_modulus(angle: float) -> float:
     """Classical laminate theory: E_x of a balanced symmetric stack at +-angle from x, in closed form."""
-    m = Material()
+    m = read_material()
     nu21 = m.nu12 * m.e2 / m.e1
     q = np.array([[m.e1, m.nu12 * m.e2, 0.0], [m.nu12 * m.e2, m.e2, 0.0], [0.0, 0.0, 0.0]]) / (1.0 - m.nu12 * nu21)
     q[2, 2] = m.g12

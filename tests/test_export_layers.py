@@ -15,7 +15,7 @@ import meshwind as mw
 from meshwind.core.cast import Bools, Floats
 from meshwind.core.errors import BadInputError
 from meshwind.exporting.elements import on_crossings, regular
-from meshwind.exporting.material import Material
+from meshwind.exporting.material import read_material
 from meshwind.exporting.plies import laid_on, plies
 from meshwind.exporting.shell_deck import Deck, thicknesses
 from meshwind.exporting.shell_loads import Loads
@@ -77,7 +77,7 @@ def sections(path: Path) -> list[Section]:
 
 def deck_of(results: Results, count: int = 400) -> Deck:
     elements = regular(laid_on(results), count, results.surface)
-    return Deck(elements, plies(results, elements), Material(), results.units, results.name, LOADS)
+    return Deck(elements, plies(results, elements), read_material(), results.units, results.name, LOADS)
 
 
 @pytest.mark.parametrize("name", ["shell.inp", "shell_s4r.inp"])
@@ -251,7 +251,7 @@ def test_a_filament_has_frames_in_order(tmp_path: Path) -> None:
 
 def stiffness(angle: float) -> Floats:
     """Reduced stiffness (3, 3) along z, around and in shear, of fibres at an angle from z."""
-    m = Material()
+    m = read_material()
     q = np.array([[m.e1, m.nu12 * m.e2, 0.0], [m.nu12 * m.e2, m.e2, 0.0], [0.0, 0.0, 0.0]])
     q /= 1.0 - m.nu12**2 * m.e2 / m.e1
     q[2, 2] = m.g12

@@ -12,7 +12,7 @@ from export_results import plain_results
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError
 from meshwind.exporting.elements import regular
-from meshwind.exporting.material import Material
+from meshwind.exporting.material import read_material
 from meshwind.exporting.plies import plies
 from meshwind.exporting.shell_deck import Deck, thicknesses, write_decks
 from meshwind.exporting.shell_loads import FORCE, Loads
@@ -50,7 +50,7 @@ def deck(tmp_path_factory: pytest.TempPathFactory) -> Deck:
     """A cylinder of radius 1 and height 4 along z, with fibres at half a turn, start at z = 0."""
     results = plain_results(tmp_path_factory.mktemp("loads"))
     elements = regular(results.surface, 300)
-    return Deck(elements, plies(results, elements, layer=THICKNESS), Material(), results.units)
+    return Deck(elements, plies(results, elements, layer=THICKNESS), read_material(), results.units)
 
 
 def written(deck: Deck, folder: Path, loads: Loads) -> Path:

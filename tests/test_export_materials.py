@@ -32,7 +32,9 @@ def test_each_figure_of_a_material_has_a_source(name: str) -> None:
 
 def test_the_default_is_t700_and_help_names_all() -> None:
     made = read_material()
-    assert replace(made, words="", strengths={}, sources={}) == Material()
+    assert replace(made, words="", strengths={}, sources={}) == Material(
+        "T700_EPOXY", 135000.0, 9000.0, 0.3, 0.4, 4800.0, 1.6e-9
+    )
     assert list(command.MATERIALS) == material_names()
     assert read_material("EPOXY").g12 == pytest.approx(4200.0 / (2.0 * 1.34), rel=1e-3)
     assert not read_material("dry-tow").strengths

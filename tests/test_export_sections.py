@@ -11,7 +11,7 @@ from export_results import laminate, layered_results
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.exporting.elements import regular
-from meshwind.exporting.material import Material
+from meshwind.exporting.material import read_material
 from meshwind.exporting.plies import Ply, laid_on, plies
 from meshwind.exporting.shell_deck import Deck, thicknesses, write_decks
 from meshwind.exporting.shell_groups import SHARES, Laid, grouped
@@ -85,7 +85,7 @@ def deck(tmp_path_factory: pytest.TempPathFactory) -> Deck:
     laid = plies(results, elements)
     by = np.radians(12.0) * np.sin(5.0 * elements.centre[:, 1])
     families = tuple(turned(ply, laid.normal, ply.family * by) for ply in laid.families)
-    return Deck(elements, replace(laid, families=families), Material(), results.units, tolerance=TOLERANCE)
+    return Deck(elements, replace(laid, families=families), read_material(), results.units, tolerance=TOLERANCE)
 
 
 def expected(deck: Deck) -> list[list[tuple[Floats, float]]]:

@@ -2,18 +2,18 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from importlib.resources import files
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import nearest, read_toml
+from meshwind.core.shipped import Shipped
 from meshwind.core.units import millimetres
 
 DEFAULT = "t700-epoxy"
 """Material of a deck that is asked for none."""
-_FOLDER = "materials"
+_SHIPPED = Shipped(__package__, "materials", "material")
 _STIFF = "e1", "e2", "nu12", "nu23", "g12", "density"
 STRENGTHS = "xt", "xc", "yt", "yc", "s"
 """Strengths along the fibre in tension and compression, across it, and in shear."""
@@ -25,17 +25,17 @@ _KG_M3 = 1e-12
 class Material:
     """A transversely isotropic layer, fibres along 1: moduli and strengths in MPa (N/mm2), density in t/mm3.
 
-    By default that of `DEFAULT`.  words: what it is; strengths: those of `STRENGTHS` that are known, as compression's
-    above 0; sources: where each figure is from, by its name.
+    words: what it is; strengths: those of `STRENGTHS` that are known, as compression's above 0; sources: where each
+    figure is from, by its name.
     """
 
-    name: str = "T700_EPOXY"
-    e1: float = 135000.0
-    e2: float = 9000.0
-    nu12: float = 0.3
-    nu23: float = 0.4
-    g12: float = 4800.0
-    density: float = 1.6e-9
+    name: str
+    e1: float
+    e2: float
+    nu12: float
+    nu23: float
+    g12: float
+    density: float
     words: str = ""
     strengths: Mapping[str, float] = field(default_factory=dict)
     sources: Mapping[str, str] = field(default_factory=dict)
@@ -59,18 +59,12 @@ class Material:
 
 def material_names() -> list[str]:
     """Names of the materials that are shipped."""
-    shipped = files(__package__).joinpath(_FOLDER)
-    return sorted(each.name.removesuffix(".toml") for each in shipped.iterdir() if each.name.endswith(".toml"))
+    return _SHIPPED.names
 
 
 def read_material(name: str = DEFAULT) -> Material:
     """Read a material by its name or from a TOML file; raises BadInputError where it is not one."""
-    if name.lower() in material_names():
-        file = Path(str(files(__package__).joinpath(_FOLDER, f"{name.lower()}.toml")))
-    elif name.lower().endswith(".toml"):
-        file = Path(name)
-    else:
-        raise BadInputError(f"no material {name!r}; {nearest(name, material_names())}, or give a file.toml")
+    file = _SHIPPED.file(name)
     return _material_of(read_toml(file, "material"), file)
 
 

@@ -1,13 +1,13 @@
 """Machines as data: their axes, feed and dialect, from a TOML file that is shipped or the user's own."""
 
 from dataclasses import dataclass, fields
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from meshwind.core.brief import brief
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import nearest, read_toml
+from meshwind.core.shipped import Shipped
 
 DEFAULT = "lathe-4"
 """The machine of a program for which none is named: a lathe of four axes, as large as the part needs."""
@@ -25,7 +25,7 @@ _FARTHEST = 1e6
 """Largest zero and travel in mm or degrees: at more of them numbers of a program hold no hundredth of a degree."""
 _DECIMALS = 3, 6
 """Fewest and most decimals: fewer hold no hundredth of a degree after many moves, more are none of a machine's."""
-_FOLDER = "machines"
+_SHIPPED = Shipped(__package__, "machines", "machine")
 _NEEDED = "mandrel", "carriage"
 """Axes without which nothing can be wound."""
 _NEEDED_OF_AXIS = "moves", "letter", "speed", "acceleration"
@@ -146,18 +146,12 @@ class Machine:
 
 def machine_names() -> list[str]:
     """Names of the machines that are shipped."""
-    shipped = files(__package__).joinpath(_FOLDER)
-    return sorted(each.name.removesuffix(".toml") for each in shipped.iterdir() if each.name.endswith(".toml"))
+    return _SHIPPED.names
 
 
 def read_machine(name: str = DEFAULT) -> Machine:
     """Read a machine by its name or from a TOML file; raises BadInputError where it is not one."""
-    if name.lower() in machine_names():
-        file = Path(str(files(__package__).joinpath(_FOLDER, f"{name.lower()}.toml")))
-    elif name.lower().endswith(".toml"):
-        file = Path(name)
-    else:
-        raise BadInputError(f"no machine {name!r}; {nearest(name, machine_names())}, or give a file.toml")
+    file = _SHIPPED.file(name)
     return machine_of(read_toml(file, "machine"), str(file))
 
 
