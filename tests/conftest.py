@@ -2,12 +2,18 @@
 
 import os
 from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
 from shutil import which
+from typing import TYPE_CHECKING
 
 import pytest
 from needs import CHROMIUM, NEEDS, STRICT
 
 from meshwind.core.compile_ahead import compile_ahead
+
+if TYPE_CHECKING:
+    from selenium import webdriver
 
 _MISSING = "missing"
 """Property of a test's report: the need that was not met."""
@@ -23,6 +29,17 @@ def chromium() -> tuple[str, str]:
     """For tests in a browser: the executables of Chromium and of its driver."""
     browser, driver = (which(program) or "" for program in CHROMIUM)
     return browser, driver
+
+
+@pytest.fixture(scope="module")
+def browser(
+    page: Path, tmp_path_factory: pytest.TempPathFactory, chromium: tuple[str, str]
+) -> "Iterator[webdriver.Chrome]":
+    """For tests of a page, which a module has as the fixture of this name: a browser that shows it."""
+    from viewer_browser import opened
+
+    with opened(page, tmp_path_factory.mktemp("chromium"), chromium) as driver:
+        yield driver
 
 
 @pytest.fixture(scope="session")

@@ -2,7 +2,6 @@
 
 import base64
 import json
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,7 @@ from layup_shapes import bridged
 from selenium import webdriver
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import Select
-from viewer_browser import opened, pointed, settled, severe
+from viewer_browser import pointed, settled, severe
 
 from meshwind.appearance.looks import MAPS
 from meshwind.core.cast import Floats
@@ -40,14 +39,6 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (file,) = write_exports(folder, ["viewer"]).files
     assert [each.name for each in folder.glob("viewer*")] == ["viewer.html"]
     return file
-
-
-@pytest.fixture(scope="module")
-def browser(
-    page: Path, tmp_path_factory: pytest.TempPathFactory, chromium: tuple[str, str]
-) -> Iterator[webdriver.Chrome]:
-    with opened(page, tmp_path_factory.mktemp("chromium"), chromium) as driver:
-        yield driver
 
 
 def share(image: Floats, colour: tuple[int, int, int]) -> float:

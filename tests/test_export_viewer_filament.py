@@ -1,14 +1,13 @@
 """The viewer's page of a continuous winding: a slider along the filament, and what is said beside it."""
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 from selenium import webdriver
 from selenium.webdriver.common.by import By
-from viewer_browser import opened, settled, severe
+from viewer_browser import settled, severe
 
 import meshwind as mw
 from meshwind.core.cast import Floats, Ints
@@ -38,11 +37,8 @@ def data(folder: Path) -> FilamentData:
 
 
 @pytest.fixture(scope="module")
-def browser(
-    folder: Path, tmp_path_factory: pytest.TempPathFactory, chromium: tuple[str, str]
-) -> Iterator[webdriver.Chrome]:
-    with opened(folder / "viewer.html", tmp_path_factory.mktemp("chromium"), chromium) as driver:
-        yield driver
+def page(folder: Path) -> Path:
+    return folder / "viewer.html"
 
 
 def unpacked(data: FilamentData, name: str) -> Floats | Ints:

@@ -1,6 +1,5 @@
 """The viewer's tools in a browser: fibres' figures, distances, clip plane, opacity, views, keys, and what it says."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -40,11 +39,8 @@ def results(folder: Path) -> Results:
 
 
 @pytest.fixture(scope="module")
-def browser(
-    folder: Path, tmp_path_factory: pytest.TempPathFactory, chromium: tuple[str, str]
-) -> Iterator[webdriver.Chrome]:
-    with opened(folder / "viewer.html", tmp_path_factory.mktemp("chromium"), chromium) as driver:
-        yield driver
+def page(folder: Path) -> Path:
+    return folder / "viewer.html"
 
 
 def click(browser: webdriver.Chrome, name: str) -> None:
