@@ -95,7 +95,7 @@ def where() -> Path | None:
     """The folder that kernels are kept in or below; None where no folder for them can be written."""
     from numba.core import config
 
-    from meshwind.core.kernel import folders
+    from meshwind.core.kernel_files import folders
 
     package = Path(__file__).parents[1]
     for folder in folders(__file__):
@@ -240,7 +240,7 @@ def work() -> None:
 
     from numba.core.errors import NumbaError
 
-    from meshwind.core.kernel import is_kept
+    from meshwind.core.kernel_files import is_kept
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process that started it ends it
     gc.disable()  # the compiler makes hundreds of thousands of objects that stay

@@ -126,7 +126,7 @@ def add_lengths(uv: Floats, steps: Floats, length: Floats) -> None:
                 done = share
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def _to_wall(x: float, dx: float, done: float) -> float:
     """Share of the step at which coordinate x + f dx reaches its next whole number strictly after f = done."""
     if dx == 0.0:

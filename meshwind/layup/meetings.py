@@ -86,14 +86,14 @@ def _grid(a: Floats, b: Floats) -> Grid:
     return Grid(int(nu), int(nv))
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def _columns(low: float, high: float, count: int) -> tuple[int, int]:
     """First column and number of columns that [low, high] covers; columns repeat with period 1."""
     first = floor((low - REACH) * count)
     return first, min(floor((high + REACH) * count) - first + 1, count)
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def _rows(low: float, high: float, count: int) -> tuple[int, int]:
     """First and last row that [low, high] covers, clipped to the grid."""
     first, last = floor((low - REACH) * count), floor((high + REACH) * count)
@@ -125,7 +125,7 @@ def _bins(segments: Floats, grid: Grid) -> Bins:
     return Bins(starts, members)
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def _meet(a: Floats, b: Floats, turn: float) -> tuple[float, float, float]:
     """Fractions along a and along b (moved by `turn`) where they meet, and d_a x d_b; 0 where they do not."""
     du, dv, eu, ev = a[2] - a[0], a[3] - a[1], b[2] - b[0], b[3] - b[1]

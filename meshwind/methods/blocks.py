@@ -44,7 +44,7 @@ def chain_matrix(n, step, stiffness, damping):
     return matrix
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def project(n, out):
     """Remove a vector's component along the unit vector n."""
     dot = out[0] * n[0] + out[1] * n[1] + out[2] * n[2]
@@ -52,7 +52,7 @@ def project(n, out):
         out[k] -= dot * n[k]
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def times(s, x, out):
     """Symmetric block s (6,) times x (3,)."""
     out[0] = s[XX] * x[0] + s[XY] * x[1] + s[XZ] * x[2]
@@ -60,7 +60,7 @@ def times(s, x, out):
     out[2] = s[XZ] * x[0] + s[YZ] * x[1] + s[ZZ] * x[2]
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def sandwich(n, s, y):
     """Replace s by P s P with P = I - n n', in place; y (3,) is work space."""
     times(s, n, y)
@@ -75,7 +75,7 @@ def sandwich(n, s, y):
     s[ZZ] -= 2.0 * n[2] * y[2]
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def invert(s, out):
     """Write the inverse of a symmetric block; returns whether its determinant is positive to working precision."""
     a, b, c = s[YY] * s[ZZ] - s[YZ] * s[YZ], s[XZ] * s[YZ] - s[XY] * s[ZZ], s[XY] * s[YZ] - s[XZ] * s[YY]
@@ -90,7 +90,7 @@ def invert(s, out):
     return True
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def project_between(i, j, normal, pinned, out):
     """Apply P_i, then P_j to a vector, where the particles are pinned."""
     if pinned[i]:

@@ -8,7 +8,7 @@ from meshwind.core.kernel import njit
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def velocity_term(frame, u, v):
     """J' times the velocity term J-dot V of (4.4), as two numbers."""
     fu = fv = 0.0

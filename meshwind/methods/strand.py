@@ -63,7 +63,7 @@ def update_gaps(body, strand, step, width, tally):
         touching[i] = gap[i] <= width
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def at_end(periodic, uv):
     """Whether a foot lies on a rim or an edge."""
     return uv[1] <= 0.0 or uv[1] >= 1.0 or (not periodic and (uv[0] <= 0.0 or uv[0] >= 1.0))

@@ -127,7 +127,7 @@ def _nearest(here, place, line, near):
     return near
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def _squared(here, du, dv):
     """Squared length of a step in (u, v) by the metric of a frame."""
     total = 0.0

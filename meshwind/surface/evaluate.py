@@ -29,13 +29,13 @@ class Spline(NamedTuple):
     periodic: bool
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def spans_of(net):
     """Number of spans in u and in v of a net."""
     return net.shape[0] - DEGREE, net.shape[1] - DEGREE
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def locate(t, spans, periodic):
     """Span index and local coordinate of parameter t."""
     if periodic:
@@ -46,7 +46,7 @@ def locate(t, spans, periodic):
     return k, x - k
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def basis(x):
     """The four cubic weights at local coordinate x of a span."""
     y = 1.0 - x
@@ -58,7 +58,7 @@ def basis(x):
     )
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def slope(x, spans):
     """First derivatives of the weights by the parameter."""
     y = 1.0 - x
@@ -70,7 +70,7 @@ def slope(x, spans):
     )
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def bend(x, spans):
     """Second derivatives of the weights by the parameter."""
     square = float(spans) * spans
@@ -139,7 +139,7 @@ def position(spline, u, v, out):
         out[k] = s
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def unit_normal(frame, out):
     """Write the outward unit normal s_u x s_v of a frame into out (3,); return |s_u x s_v|."""
     a, b = frame[1], frame[2]

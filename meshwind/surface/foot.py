@@ -53,7 +53,7 @@ class Expansion(NamedTuple):
     curvature: Symmetric
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def newton_step(periodic, u, v, g):
     """Step (du, dv) from (u, v) towards the minimum of the expansion g; none across an end.
 
@@ -80,7 +80,7 @@ def newton_step(periodic, u, v, g):
     return du, dv
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def expand(at, point):
     """The expansion of the distance to a point about where the frame `at` (6, 3) stands."""
     square = gu = gv = 0.0
@@ -151,7 +151,7 @@ def foot(spline, point, guess, at):
     return count
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def squared_distance(at, point):
     """Squared distance of a point to where the frame `at` (6, 3) stands."""
     total = 0.0
@@ -160,7 +160,7 @@ def squared_distance(at, point):
     return total
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def _expand_at(net, i, x, j, y, point):
     """The expansion of the distance to a point at local coordinates (x, y) of span (i, j), with no frame on the way."""
     nu, nv = spans_of(net)
@@ -186,7 +186,7 @@ def _expand_at(net, i, x, j, y, point):
     return Expansion(square, Gradient(gu, gv), Symmetric(auu, auv, avv), Symmetric(huu, huv, hvv))
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def _squared_distance_at(net, i, x, j, y, point):
     """Squared distance of a point to the surface at local coordinates (x, y) of span (i, j)."""
     b, c = basis(x), basis(y)

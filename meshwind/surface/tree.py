@@ -95,13 +95,13 @@ def build(spline):
     return boxes, levels, samples
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def parent(level, i, j):
     """The node of a level that holds child (i, j)."""
     return level[FIRST] + (i // WIDE) * level[COLUMNS] + j // WIDE
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def child(i, j):
     """Number of child (i, j) among its parent's children."""
     return (i % WIDE) * WIDE + j % WIDE

@@ -127,7 +127,7 @@ def _boxes(corners: Floats) -> Floats:
     return out
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def _to_box(boxes: Floats, box: int, x: float, y: float, z: float) -> float:
     """Squared distance of a point to a box."""
     a = max(boxes[box, 0] - x, x - boxes[box, 3], 0.0)

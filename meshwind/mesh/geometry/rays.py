@@ -55,7 +55,7 @@ class _Met(NamedTuple):
     distance: Floats
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def _enters(boxes: Floats, box: int, x: float, y: float, z: float, ax: float, ay: float, az: float) -> float:
     """Distance at which the ray enters a box (Kay and Kajiya 1986), infinity where it misses; a: 1 over its vector."""
     if boxes[box, 0] > boxes[box, 3]:  # a node without triangles
@@ -70,7 +70,7 @@ def _enters(boxes: Floats, box: int, x: float, y: float, z: float, ax: float, ay
     return low if high >= 0.0 and low <= high + 1e-9 * abs(high) else np.inf
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def _inverse(d: float) -> float:
     """1 over a component of the ray, finite so that 0 times it is a number."""
     return 1.0 / d if abs(d) > 1e-100 else 1e100

@@ -97,7 +97,7 @@ def assemble(state, periodic, resist, contacts, system, faint):
     return count, np.sqrt(worst), leaning
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def force_squared(fu, fv, auu, auv, avv):
     """Square of a force in the tangent plane of which the products with s_u and s_v are known."""
     det = auu * avv - auv * auv

@@ -10,14 +10,14 @@ RIM = 1e-9
 """Particles closer than this to a rim or an edge, in v or u, are on it: a step that short lowers no energy visibly."""
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def pull(X, i, before, after):
     """Force on particle i from its nearest touching neighbours, per unit of spring: the row j of (5.2)."""
     here = row(X, i)
     return combine(1.0 / (i - before), minus(row(X, before), here), 1.0 / (after - i), minus(row(X, after), here))
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def spring_pull(X, station, i, before, after):
     """As `pull`, by springs between the particles' stations."""
     here = row(X, i)

@@ -135,13 +135,13 @@ def blank_balance(n):
     )  # fmt: skip
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def slips(mode):
     """Whether a particle slips on the surface, neither stuck nor held at a rim."""
     return mode == 1 or mode == -1
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def slipping(side):
     """Mode of a particle that slips to the side of the given sign: friction points the other way."""
     return np.int8(-1 if side > 0.0 else 1)
@@ -274,7 +274,7 @@ def residuals(springs, ways, mode, back):
     return uneven, dot(springs.force, ways.b) + mode * springs.bound
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def note(springs, ways, mu, uneven, balance, i):
     """Write the ways and forces of particle i into the balance."""
     put(ways.t, balance.along, i)
@@ -285,7 +285,7 @@ def note(springs, ways, mu, uneven, balance, i):
     balance.press[i], balance.mu[i], balance.excess[i] = springs.press, mu, balance.pull_along[i] - uneven
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def fixed(mode, i, n):
     """Whether particle i of n cannot move across: an end of the path, stuck, or at a rim."""
     return i == 0 or i == n - 1 or not slips(mode[i])

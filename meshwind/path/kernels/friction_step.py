@@ -103,7 +103,7 @@ def workspace(n):
     )  # fmt: skip
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def take_step(rough, fibre, trial, work, count, start, shift, counters):
     """Shift Newton's step towards the force until it counts; meanwhile particles that would move the wrong way stick.
 
@@ -173,7 +173,7 @@ def measure_step(inner, ways, system, count):
     return slope, square, reach
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def line_search(rough, fibre, trial, work, count, start, direction, counters):
     """Shorten the step until the merit falls and no neighbours leap too far.
 

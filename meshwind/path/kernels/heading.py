@@ -12,7 +12,7 @@ ALONG, AROUND, ANGLE = range(3)
 """Columns of a heading: components of a direction along the part and around it, and its angle from along, to pi/2."""
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def rate(values, i, k):
     """Change of column k of values (n, m) from particle to particle at i, of second order where there are three."""
     last = len(values) - 1
@@ -25,7 +25,7 @@ def rate(values, i, k):
     return 1.5 * values[last, k] - 2.0 * values[last - 1, k] + 0.5 * values[last - 2, k]
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def heading(su, sv, way, out):
     """Write the heading (3,) of a direction (3,) where the surface has the tangents su and sv (3,)."""
     aa = su[0] * su[0] + su[1] * su[1] + su[2] * su[2]

@@ -128,7 +128,7 @@ def turn_surface(frames, normal, mu, lever, balance, i, diagonal, count):
         diagonal[count, 1, a] += lever.grip * (balance.pull_along[i] * dn_t + balance.pull_across[i] * dn_b)
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def drop_fixed(mode, p, i, q, lower, diagonal, upper, count):
     """Take out of a row what cannot move: across a particle that is stuck or held, and the path's ends."""
     n = len(mode)

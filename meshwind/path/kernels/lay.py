@@ -78,7 +78,7 @@ def solve_on_surface(body, limits, rough, curve, state, factors, required, count
     return residual, True
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def solve_nested(body, limits, rough, curve, state, required, counters):
     """Relax a path from its starting curve (m, 2) on ever more particles; the finest level is `state`."""
     n = len(state.X)

@@ -44,7 +44,7 @@ def refine(coarse, fine):
     fine.touching[0] = fine.touching[n - 1] = True
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def between(i, m, n):
     """Where among m particles number i of n lies: the one before it, and the share of the way to the next."""
     at = i * (m - 1.0) / (n - 1.0)

@@ -295,7 +295,7 @@ def leaving_by(uv, i):
     return SLID_OFF_END if uv[i, 1] >= 1.0 - RIM else LEFT_CHART
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def at_rim(v):
     """Whether v is on a rim, or u on an edge, of a surface that ends there."""
     return v <= RIM or v >= 1.0 - RIM

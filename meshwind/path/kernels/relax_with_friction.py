@@ -144,7 +144,7 @@ def relax_all_with_friction(first, last, rough, limits, resume, final, batch):
         batch.residual[p], batch.status[p] = residual, status
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def certified_with_friction(rough, limits, final, resume, stalled, fibre, required, counters):
     """As `relax_and_certify`, under friction.
 

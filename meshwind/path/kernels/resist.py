@@ -100,7 +100,7 @@ def lay_particle(resist, state, p, i, q, mu):
     return held_by(state, p, i, q, mu)
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def held_by(state, p, i, q, mu):
     """Force mu N that friction can hold at particle i between touching ones p and q."""
     return mu * max(-dot(spring_pull(state.X, state.station, i, p, q), row(state.normal, i)), 0.0)
@@ -180,7 +180,7 @@ def resist_slip(resist, i, c, system):
     system.right[c, 1] = resist.pull[i, 1] - held * v
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def brace(diagonal, c, stiffness, w, v):
     """Add a stiffness along the gradient (w, v) to block c."""
     diagonal[c, 0] += stiffness * w * w
@@ -223,7 +223,7 @@ def choose_sides(resist, inner, system, shift, count, counters):
     return True
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def slip_after(resist, system, i, c):
     """Slip of particle i, of block c, after a whole step."""
     return resist.slip[i] + resist.ways[i, 0] * system.x[c, 0] + resist.ways[i, 1] * system.x[c, 1]
@@ -257,7 +257,7 @@ def slip_energy(resist, X, inner, count):
     return total
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def slip_at(resist, X, i):
     """Slip d of particle i."""
     return dot(minus(row(X, i), row(resist.lain, i)), row(resist.across, i))

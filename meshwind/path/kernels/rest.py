@@ -153,7 +153,7 @@ def settle_evenly(rough, resist, limits, final, centred, state, required, counte
     return residual, status
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def settle_evened(rough, resist, limits, final, centred, state, required, counters):
     """As `settle_evenly`, with springs made even once."""
     body, n = rough.body, len(state.X)

@@ -35,7 +35,7 @@ def sample_all(first, last, curves, out):
             out[p, i, 0], out[p, i, 1], _, _ = curve_at(curves[p], scale * i)
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def catmull_rom(curve, k, m, a, x):
     """Coordinate a, and its derivative, at share x from sample k of m to the next."""
     p0, p1 = curve[k, a], curve[k + 1, a]

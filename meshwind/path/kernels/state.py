@@ -105,7 +105,7 @@ def copy(source, target):
         target.station[i], target.pinned[i] = source.station[i], source.pinned[i]
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def copy_particle(source, target, i):
     """Copy particle i of a state into another, but for its station and pin."""
     move_particle(source, i, target, i)
@@ -149,7 +149,7 @@ def put_on_surface(spline, state, i, u, v):
     clear[i] = 0.0
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def distance(X, i, j):
     """Distance of two particles."""
     return np.sqrt((X[i, 0] - X[j, 0]) ** 2 + (X[i, 1] - X[j, 1]) ** 2 + (X[i, 2] - X[j, 2]) ** 2)

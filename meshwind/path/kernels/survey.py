@@ -105,7 +105,7 @@ def over_segment(body, state, i, air, work, counters):
     return high, low, where
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def knots_passed(spline, uv, i):
     """Number of knots that segment i passes, in u or in v."""
     spans_u, spans_v = spans_of(spline.net)
@@ -157,13 +157,13 @@ def predicted(state, i, segment):
     return high, low, where, bow
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def height_at(bow, t):
     """The polynomial with coefficients bow (6,) at t."""
     return bow[0] + t * (bow[1] + t * (bow[2] + t * (bow[3] + t * (bow[4] + t * bow[5]))))
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def heights(frames, i, du, dv, segment):
     """Height over a segment of the surface at particle i, its slope and its bend along (du, dv)."""
     out = segment.out
@@ -206,7 +206,7 @@ def follows(spline, state, i, segment, bow):
     return True
 
 
-@njit(inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def between_points(spline, frames, i, segment, across_u, across_v):
     """Second differences of the control net at particle i, across a segment: in u and v, as far as it moves on."""
     spans_u, spans_v = spans_of(spline.net)
