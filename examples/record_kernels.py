@@ -49,18 +49,9 @@ class Recorder(event.Listener):  # type: ignore[misc]
 
 
 def called(kernel: Any) -> set[Any]:
-    """The functions of the kernels that a kernel calls, also through those that are put in their place."""
-    found: set[Any] = set()
-    left = [kernel]
-    while left:
-        function = left.pop()
-        for name in function.__code__.co_names:
-            other = function.__globals__.get(name)
-            if isinstance(other, Dispatcher) and other.py_func not in found:
-                found.add(other.py_func)
-                if other.targetoptions.get("inline", "never") == "always":
-                    left.append(other.py_func)
-    return found
+    """The functions of the kernels that a kernel calls."""
+    named = (kernel.__globals__.get(name) for name in kernel.__code__.co_names)
+    return {other.py_func for other in named if isinstance(other, Dispatcher)}
 
 
 def spiked(file: str) -> trimesh.Trimesh:

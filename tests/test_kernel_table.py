@@ -18,40 +18,25 @@ ROOT = Path(__file__).parents[1]
 RECORD = "run NUMBA_CACHE_DIR=$(mktemp -d) python examples/record_kernels.py"
 LOADED = """
 import json, sys
-from meshwind.core import kernel
+from meshwind.core import kernel_files
 from meshwind.core.kernel_types import to_text
 used = []
-load = kernel.KernelFiles.load_overload
+load = kernel_files.KernelFiles.load_overload
 def seen(self, sig, context):
     f = self._py_func
     used.append([f.__module__, f.__qualname__, [to_text(each) for each in sig]])
     return load(self, sig, context)
-kernel.KernelFiles.load_overload = seen
+kernel_files.KernelFiles.load_overload = seen
 import meshwind
 meshwind.wind(sys.argv[1], paths=2, particles=51, revolutions=0.8, out=sys.argv[2], render=False)
 print(json.dumps(used))
 """
 
 
-def in_place(kernel: Dispatcher) -> bool:
-    """Whether a kernel is put in the place of its calls instead of being compiled."""
-    return str(kernel.targetoptions.get("inline", "never")) == "always"
-
-
 def called(kernel: Dispatcher) -> set[tuple[str, str]]:
-    """The kernels that a kernel calls, also through those that are put in their place."""
-    found, left, seen = set(), [kernel], {kernel}
-    while left:
-        function = left.pop().py_func
-        for name in function.__code__.co_names:
-            other = function.__globals__.get(name)
-            if isinstance(other, Dispatcher) and other not in seen:
-                seen.add(other)
-                if in_place(other):
-                    left.append(other)
-                else:
-                    found.add((other.py_func.__module__, other.py_func.__qualname__))
-    return found
+    """The kernels that a kernel calls."""
+    named = (kernel.py_func.__globals__.get(name) for name in kernel.py_func.__code__.co_names)
+    return {(each.py_func.__module__, each.py_func.__qualname__) for each in named if isinstance(each, Dispatcher)}
 
 
 def test_types_come_back_as_they_were() -> None:

@@ -1,15 +1,21 @@
 """Kernels are kept in files that survive whatever happens to the processes that write them."""
 
+import ast
 import os
 import resource
 import signal
 import subprocess
 import sys
 import time
+from importlib import import_module
 from pathlib import Path
 from random import Random
 
+import numba
 import pytest
+from numba.core.dispatcher import Dispatcher
+
+from meshwind.core.kernel import njit
 
 ROOT = Path(__file__).parents[1]
 SOURCE = """
@@ -17,7 +23,7 @@ from meshwind.core.kernel import njit
 from meshwind.tried.inner import grown
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def twice(x):
     return grown(x) + x
 """
@@ -33,6 +39,12 @@ def grown(x):
 NUMBERS = """
 STEP = 1
 """
+LONG = (
+    INNER.replace("return", "x =")
+    + "    "
+    + "\n    ".join(f"x = x * x + {k} if x < {k} else x - {k}" for k in range(1, 60))
+    + "\n    return x\n"
+)
 CALL = """
 import sys, meshwind
 meshwind.__path__.append(sys.argv[1])
@@ -57,7 +69,7 @@ def tried(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def start(tried: Path, kept: Path | None, **options: object) -> "subprocess.Popen[str]":
+def start(tried: Path, kept: Path | None, code: str = CALL, **options: object) -> "subprocess.Popen[str]":
     environment = dict(
         os.environ, PYTHONPATH=str(ROOT), XDG_CACHE_HOME=str(tried / "user"), PYTHONDONTWRITEBYTECODE="1"
     )
@@ -65,7 +77,7 @@ def start(tried: Path, kept: Path | None, **options: object) -> "subprocess.Pope
     if kept is not None:
         environment["NUMBA_CACHE_DIR"] = str(kept)
     return subprocess.Popen(
-        [sys.executable, "-c", CALL, str(tried)],
+        [sys.executable, "-c", code, str(tried)],
         env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options,  # type: ignore[call-overload]
     )  # fmt: skip
 
@@ -163,3 +175,69 @@ def test_kernels_beside_the_sources_are_used_where_they_cannot_be_written(tried:
     for file in files(tried / "user"):
         file.unlink()
     assert call(tried, None) == ("5 6.0 0", "")
+
+
+def test_a_long_kernel_is_compiled_once_and_found_by_those_that_call_it(tried: Path) -> None:
+    """Also where its file was lost, or is of a process that named it otherwise."""
+    kept, inner = tried / "kept", tried / "tried" / "inner.py"
+    inner.write_text(LONG)
+    first, err = call(tried, kept)
+    assert first.endswith(" 4") and err == ""
+    sizes = {name: [len(file.read_bytes()) for file in files(kept) if name in file.name] for name in ("outer", "inner")}
+    assert max(sizes["outer"]) < 0.5 * min(sizes["inner"])
+    results = first.rsplit(" ", 1)[0]
+    assert call(tried, kept) == (f"{results} 0", "")
+    for file in kept.rglob("inner*.nbc"):
+        file.unlink()
+    assert call(tried, kept) == (f"{results} 2", "")  # under the same names: those that call them are as they were
+    for file in kept.rglob("inner*.nbc"):
+        file.unlink()
+    taken = CALL.replace(
+        "compiled = []",
+        """compiled = []
+from meshwind.tried import inner
+from meshwind.core import kernel_library
+kernel_library.sources = lambda module: "others"
+""",
+    )
+    out, err = start(tried, kept, code=taken).communicate(timeout=300)
+    assert out.strip() == f"{results} 4" and err == ""
+
+
+def test_kernels_of_kernels_can_be_called_by_python_and_know_no_literals() -> None:
+    @njit()
+    def inner(x: int, y: float) -> float:
+        return x + y
+
+    @njit(nogil=True)
+    def outer(x: int) -> float:
+        return inner(1, 2.0) + inner(x, 2.0)
+
+    assert outer(1) == 6.0
+    assert inner.signatures == [(numba.int64, numba.float64)]
+    assert inner(3, 2.0) == 5.0 and inner(3, 2.5) == 5.5
+    assert inner(y=1.0, x=2.0) == 3.0
+    assert len(inner.signatures) == 2
+
+
+def test_kernels_that_python_calls_are_declared_so() -> None:
+    """They have `nogil`: those without it are called by a way round."""
+    told = []
+    for file in sorted((ROOT / "meshwind").rglob("*.py")):
+        text = file.read_text(encoding="utf-8")
+        if "__main__" in file.name:
+            continue
+        module = import_module(".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"))
+        kernels = {name: each for name, each in vars(module).items() if isinstance(each, Dispatcher)}
+        for function in ast.parse(text).body:
+            own = kernels.get(getattr(function, "name", ""))
+            if own is not None and own.py_func.__module__ == module.__name__:
+                continue
+            nodes = [node for node in ast.walk(function) if isinstance(node, ast.Name)]
+            names = {node.id for node in nodes} - {node.id for node in nodes if isinstance(node.ctx, ast.Store)}
+            through = [node for node in ast.walk(function) if isinstance(node, ast.Attribute)]
+            others = [getattr(vars(module).get(getattr(node.value, "id", "")), node.attr, None) for node in through]
+            called = [each for each in others if isinstance(each, Dispatcher)]
+            told += [f"{file}: {each}" for each in called if not each.targetoptions["nogil"]]
+            told += [f"{file}: {n}" for n in names & set(kernels) if not kernels[n].targetoptions["nogil"]]
+    assert not told

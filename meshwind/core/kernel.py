@@ -14,9 +14,9 @@ from functools import cached_property
 from typing import Any
 
 import numba
-from numba.core import types
-from numba.core.dispatcher import _FunctionCompiler
+from numba.core.dispatcher import _FunctionCompiler  # type: ignore[attr-defined]
 from numba.core.registry import CPUDispatcher
+from numba.core.types import Literal, unliteral  # type: ignore[attr-defined]
 
 from meshwind.core.kernel_files import KernelFiles
 from meshwind.core.kernel_library import KernelCompiler
@@ -46,7 +46,7 @@ class _Types(_FunctionCompiler):  # type: ignore[misc]
     def fold_argument_types(self, args: Any, kws: Any) -> tuple[Any, tuple[Any, ...]]:
         """The types of the arguments: those of literals are those of their values."""
         signature, folded = super().fold_argument_types(args, kws)
-        return signature, tuple(types.unliteral(each) if isinstance(each, types.Literal) else each for each in folded)
+        return signature, tuple(unliteral(each) if isinstance(each, Literal) else each for each in folded)
 
     def _customize_flags(self, flags: Any) -> Any:
         flags.no_cfunc_wrapper = True
@@ -85,5 +85,5 @@ class Kernel(CPUDispatcher):  # type: ignore[misc]
     def _door(self) -> "Kernel":
         """A kernel that calls this one and can be called by Python."""
         names = ", ".join(self._compiler.pysig.parameters)
-        through = eval(f"lambda {names}: kernel({names})", {"kernel": self})
+        through = eval(f"lambda {names}: kernel({names})", {"kernel": self, "__name__": __name__})
         return Kernel(through, targetoptions=dict(self.targetoptions, nogil=True))

@@ -104,7 +104,8 @@ class KernelFiles(FunctionCache):  # type: ignore[misc]
 
     def _mark(self, sig: tuple[Any, ...], codegen: Any) -> bytes:
         """What the file is compiled from: its first bytes."""
-        key = (self._index_key(sig, codegen), numba.__version__, sources(self._py_func.__module__))
+        compiler = [sources(f"{_PACKAGE}.core.{name}") for name in ("kernel", "kernel_library", "kernel_files")]
+        key = (self._index_key(sig, codegen), numba.__version__, sources(self._py_func.__module__), *compiler)
         return hashlib.sha256(repr(key).encode()).digest()
 
     def _read(self, folder: Path, sig: tuple[Any, ...], codegen: Any, whole: bool = True) -> bytes | None:

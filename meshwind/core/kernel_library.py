@@ -10,6 +10,7 @@ from numba.core.caching import NullCache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import LoweringPass, register_pass
+from numba.core.registry import CPUDispatcher
 from numba.core.typed_passes import IRLegalization
 
 from meshwind.core.kernel_sources import sources
@@ -52,6 +53,7 @@ class KernelLibrary(JITCodeLibrary):  # type: ignore[misc]
         self.symbols: tuple[str, ...] = ()
         self.instructions = 0
         self._bitcode = b""
+        self._shared_module: Any = None
         self.enable_object_caching()
 
     def finalize(self) -> None:
@@ -154,10 +156,10 @@ def is_transient(types: tuple[Any, ...]) -> bool:
 
 def _origin(state: Any) -> Origin | None:
     """Where the kernel that is compiled is found again; None where it is not, or has no files."""
-    function = state.func_id.func
+    function: Any = state.func_id.func
     module = sys.modules.get(function.__module__)
-    kernel = vars(module).get(function.__name__) if module is not None else None
-    if getattr(kernel, "py_func", None) is not function or isinstance(kernel._cache, NullCache):
+    kernel: Any = vars(module).get(function.__name__) if module is not None else None
+    if not isinstance(kernel, CPUDispatcher) or kernel.py_func is not function or isinstance(kernel._cache, NullCache):
         return None
     if is_transient(state.args):
         return None

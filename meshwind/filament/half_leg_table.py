@@ -13,7 +13,7 @@ def piece_of(splines, u):
     return k, rest - k / many
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def look_up(splines, reach, u, slip, found, by_u, by_slip):
     """Write where half-legs lead (n, 2) from touch points u (n,) with slips (n,), and its derivatives by both.
 
@@ -41,7 +41,7 @@ def look_up(splines, reach, u, slip, found, by_u, by_slip):
         by_u[i, 0] += 1.0
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def follow(splines, start, leads, orbit):
     """Write the circuits (n, m) that lead from start (m,) on by a periodic spline (4, k): how far, and from where."""
     at = start.copy()

@@ -189,7 +189,7 @@ class Window(NamedTuple):
     top: int
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def _paint(strips, cells, layers):
     """Add a layer at every point within half a width of a path's feet, once each time that the path passes it.
 

@@ -108,7 +108,7 @@ def cell_areas(surface: Surface, nu: int, nv: int) -> Floats:
     return np.asarray(patches.sum(axis=(1, 3)))
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def add_lengths(uv: Floats, steps: Floats, length: Floats) -> None:
     """Add the length of every segment to the cells it passes, in the share it spends in each in (u, v)."""
     nu, nv = length.shape

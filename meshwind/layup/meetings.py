@@ -139,7 +139,7 @@ def _meet(a: Floats, b: Floats, turn: float) -> tuple[float, float, float]:
     return s, r, cross
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def segment_meetings(a: Floats, b: Floats, grid: Grid) -> Meetings:
     """Every meeting of a segment of a (m, 4) with one of b (k, 4), rows u0, v0, u1, v1, modulo turns.
 

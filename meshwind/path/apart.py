@@ -7,7 +7,7 @@ where that is as short as the geodesic, and otherwise by the geodesic itself, on
 
 import numpy as np
 
-from meshwind.core.cast import Floats, Ints
+from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.kernel import njit
 from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import TINY
@@ -64,7 +64,7 @@ def both_ways(paths: Paths, first: Ints, second: Ints) -> tuple[Floats, Floats]:
     shift = to_next(paths, first, second)
     there, back = (np.empty((len(first), len(which))) for _ in range(2))
     for a, b, way, out in ((first, second, shift, there), (second, first, -shift, back)):
-        parallel_for(_measure, len(a), 1, paths.surface.spline, paths.uv, (a, b), which, way, out)
+        parallel_for(_measure, len(a), 1, paths.surface.spline, frozen(paths.uv), (a, b), which, way, out)
     return there, back
 
 

@@ -46,7 +46,7 @@ def locate(t, spans, periodic):
     return k, x - k
 
 
-@njit(forceinline=True, cache=True)
+@njit(nogil=True, forceinline=True, cache=True)
 def basis(x):
     """The four cubic weights at local coordinate x of a span."""
     y = 1.0 - x
@@ -58,7 +58,7 @@ def basis(x):
     )
 
 
-@njit(forceinline=True, cache=True)
+@njit(nogil=True, forceinline=True, cache=True)
 def slope(x, spans):
     """First derivatives of the weights by the parameter."""
     y = 1.0 - x
@@ -70,7 +70,7 @@ def slope(x, spans):
     )
 
 
-@njit(forceinline=True, cache=True)
+@njit(nogil=True, forceinline=True, cache=True)
 def bend(x, spans):
     """Second derivatives of the weights by the parameter."""
     square = float(spans) * spans

@@ -69,7 +69,7 @@ class Body(NamedTuple):
     size: float
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def build(spline):
     """The arrays of a surface's search tree: boxes, levels, samples."""
     spans_u, spans_v = spans_of(spline.net)

@@ -101,7 +101,7 @@ def solve_nested(body, limits, rough, curve, state, required, counters):
     return residual, status
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def turn_of(curve):
     """Turns of u along a curve (m, 2), to and fro."""
     turn = 0.0
@@ -110,7 +110,7 @@ def turn_of(curve):
     return turn
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def halvings(curve, n):
     """How often n particles can be halved so that enough are left for the turn of a curve (m, 2)."""
     fewest = int(FEWEST * max(1.0, turn_of(curve)))

@@ -38,6 +38,8 @@ BALANCE = 1e-8
 EVEN = 3
 """Number of times that the springs' natural lengths are made even after particles were moved: each brings the pulls
 closer to one another by the square of the fibre's bends."""
+NO_FRICTION = np.zeros((1, 1))
+"""Coefficients over a body without friction; of the same type as those of one with it."""
 LEVELLED, SLOW = 20, 0.5
 """Maximum number of times that a path under friction is balanced anew until its springs pull alike, and the share that
 each must leave at most of what was beyond the law for another to be made."""
@@ -250,7 +252,7 @@ def come_to_rest(rough, resist, limits, state, counters):
 @njit(cache=True)
 def frictionless(body):
     """A body without friction, and what resists a slip there: nothing."""
-    return RoughBody(body, np.zeros((1, 1))), resistance(0, 0.0, 0.0, 0.0)
+    return RoughBody(body, NO_FRICTION), resistance(0, 0.0, 0.0, 0.0)
 
 
 @njit(cache=True)

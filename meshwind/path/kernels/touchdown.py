@@ -67,7 +67,7 @@ def touchdown(spline, X, uv, here, there, frames, where, point):
     return along_it, abs(left) / max(abs(dip), TINY)
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def _touchdowns(spline, X, uv, path, first, last, points, where):
     frames = np.empty((6, 3))
     for b in range(len(path)):

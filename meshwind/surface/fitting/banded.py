@@ -22,7 +22,7 @@ def _fold(rows: int) -> Ints:
     return number
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def _fill(stencil, number, band):
     """Write a stencil (nu, nv, 4, 7) into the lower band (unknowns, width); number (nu, nv) is that of an unknown."""
     nu, nv = number.shape

@@ -68,7 +68,7 @@ def solve_iteratively(stencil: Floats, right: Floats, tolerance: Floats, start: 
     return None
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def _multiply(stencil, net, out):
     """Write the symmetric matrix of a stencil (nu, nv, 4, 7) times nets (nu, nv, m) into `out`."""
     rows, columns, sides = net.shape

@@ -123,7 +123,8 @@ def _nearest_feet(first: int, last: int, body: Body, points: Floats, guesses: Fl
     """Write the feet (n, 3) of points (n, 3) first to last, each found from its guess (n, 2)."""
     frame = np.empty((6, 3))
     for i in range(first, last):
-        nearest_foot(body, points[i], guesses[i], frame)
+        feet[i] = points[i]  # of one type, whatever the points are
+        nearest_foot(body, feet[i], guesses[i], frame)
         feet[i] = frame[0]
 
 

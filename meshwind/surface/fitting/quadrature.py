@@ -100,9 +100,9 @@ def _heights(first, last, spline, uv, above, below, high, low):
 @njit(nogil=True, cache=True)
 def _count(first, last, corners, count):
     """Write the numbers of the points on facets first to last."""
-    none, stack = np.empty((0, 3)), np.empty((DEPTH + 1, 3, 3))
+    share, area, stack = np.empty((0, 3)), np.empty(0), np.empty((DEPTH + 1, 3, 3))
     for m in range(first, last):
-        count[m] = _points(corners[m], stack, 0, none, none[:, 0])
+        count[m] = _points(corners[m], stack, 0, share, area)
 
 
 @njit(nogil=True, cache=True)
