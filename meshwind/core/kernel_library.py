@@ -77,6 +77,10 @@ class KernelLibrary(JITCodeLibrary):  # type: ignore[misc]
             len(list(block.instructions)) for each in own if not each.name.startswith(_WRAPPER) for block in each.blocks
         )
 
+    def _optimize_functions(self, ll_module: Any) -> None:
+        """Leave each function to the passes over the whole module, which do the same again."""
+        ll_module.data_layout = self._codegen._data_layout
+
     def serialize_using_object_code(self) -> tuple[Any, ...]:
         """What `unpacked` makes the library of; code that is never taken in is kept as machine code alone."""
         code = b"" if self.instructions > SHORT else self._get_module_for_linking().as_bitcode()

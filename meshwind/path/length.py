@@ -13,6 +13,7 @@ import numpy as np
 
 from meshwind.core.cast import Bools, Floats, frozen
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import copy_row
 from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.geometry import dot, minus, row
@@ -171,10 +172,10 @@ def peak(body, state, counters):
             if reach <= most + enough or size == DEEPEST_HALF - 1:
                 beyond = reach
                 continue
-            stack[size + 1, 1] = stack[size, 1]
+            copy_row(stack[size, 1], stack[size + 1, 1])
             middle = stack[size, 1]
             halve(body, X, i, stack[size, 0], middle, work, counters)
-            stack[size + 1, 0] = middle
+            copy_row(middle, stack[size + 1, 0])
             most = max(most, middle[GAP])
             size += 2
     return max(most, beyond) - largest

@@ -11,6 +11,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import fill
 
 DEGREE = 3
 """Degree of the polynomials in both directions."""
@@ -150,7 +151,7 @@ def unit_normal(frame, out):
     if size > 0.0:
         out[0], out[1], out[2] = x / size, y / size, z / size
     else:
-        out[:] = 0.0
+        fill(out, 0.0)
     return size
 
 

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import copy_table
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, S, basis, bend, frame, locate, position, slope, spans_of
 
 MAX_STEPS = 40
@@ -141,7 +142,7 @@ def foot(spline, point, guess, at):
             break
         u, v = nu_, nv_
         if whole:
-            at[:] = trial
+            copy_table(trial, at)
             if reach <= CLOSE * scale:
                 break
         else:

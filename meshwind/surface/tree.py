@@ -13,6 +13,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import fill, fill_table
 from meshwind.core.vectors import TINY
 from meshwind.surface.boxes import ALONG, CENTRE, EXTENT, FAR, NORMAL, WIDE, bezier, enclose, enclose_children, to_boxes
 from meshwind.surface.evaluate import Spline, position, spans_of
@@ -75,7 +76,10 @@ def build(spline):
     spans_u, spans_v = spans_of(spline.net)
     levels = levels_over(spans_u, spans_v)
     boxes = np.zeros((levels[-1, FIRST] + 1, 12, WIDE * WIDE))
-    boxes[:, CENTRE : CENTRE + 3], boxes[:, NORMAL + 2], boxes[:, ALONG] = FAR, 1.0, 1.0
+    for box in boxes:
+        fill_table(box[CENTRE : CENTRE + 3], FAR)
+        fill(box[NORMAL + 2], 1.0)
+        fill(box[ALONG], 1.0)
     samples = np.empty((spans_u * spans_v, 3, SIDE * SIDE))
     corners, at = np.empty((16, 3)), np.empty(3)
     for i in range(spans_u):

@@ -11,6 +11,7 @@ import numpy as np
 from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import fill
 from meshwind.core.threads import parallel_for
 
 LEAF = 2
@@ -113,7 +114,9 @@ def _boxes(corners: Floats) -> Floats:
     while leaves * LEAF < len(corners):
         leaves *= 2
     out = np.empty((2 * leaves, 6))
-    out[:, :3], out[:, 3:] = np.inf, -np.inf
+    for box in out:
+        fill(box[:3], np.inf)
+        fill(box[3:], -np.inf)
     for m in range(len(corners)):
         box = leaves + m // LEAF
         for k in range(3):

@@ -6,6 +6,7 @@ import numpy as np
 
 from meshwind.core.cast import Bools
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import fill
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.block_tridiagonal import GeneralSystem, general_system, solve_general
 from meshwind.path.kernels.certificate import largest_leap
@@ -124,7 +125,7 @@ def take_step(rough, fibre, trial, work, count, start, shift, counters):
             _, left = balance_forces(rough, fibre, contacts, work.barred, balance)
             if left <= ALONE * start.residual:  # nothing else moves: let them go, but by a small step
                 firm = True  # type: ignore[assignment]
-                work.barred[:] = False
+                fill(work.barred, False)
                 shift = max(FAST_UP * shift, start.least)
                 balance_forces(rough, fibre, contacts, work.barred, balance)
             differentiate(rough, fibre, contacts, balance, system)

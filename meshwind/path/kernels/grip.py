@@ -3,11 +3,12 @@
 import numpy as np
 
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import copy_row, fill
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.coulomb import HELD, ON_CURVE, STUCK, slipping
 from meshwind.path.kernels.geometry import derivative
 from meshwind.path.kernels.starting_curve import curve_at, nearest_on, offset_from
-from meshwind.path.kernels.state import EVALUATIONS, copy_particle, put_on_surface
+from meshwind.path.kernels.state import EVALUATIONS, copy_particle, distance, put_on_surface
 from meshwind.surface.evaluate import SU, SV
 
 ROUNDS = 2
@@ -120,8 +121,8 @@ def attach_to_curve(spline, fibre, counters):
     """Stick all particles to the starting curve, evenly by length in space."""
     X, curve, anchor = fibre.state.X, fibre.curve, fibre.grip.anchor
     n = len(X)
-    fibre.grip.mode[:] = STUCK
-    fibre.grip.offset[:] = 0.0
+    fill(fibre.grip.mode, STUCK)
+    fill(fibre.grip.offset, 0.0)
     for i in range(n):
         anchor[i] = (len(curve) - 1.0) * i / (n - 1)
     for _ in range(ROUNDS):
@@ -129,8 +130,8 @@ def attach_to_curve(spline, fibre, counters):
             put_on_curve(spline, curve, anchor[i], fibre.state, i)
         s = np.zeros(n)
         for i in range(1, n):
-            s[i] = s[i - 1] + np.sqrt(((X[i] - X[i - 1]) ** 2).sum())
-        anchor[:] = np.interp(np.linspace(0.0, s[n - 1], n), s, anchor)
+            s[i] = s[i - 1] + distance(X, i - 1, i)
+        copy_row(np.interp(np.linspace(0.0, s[n - 1], n), s, anchor), anchor)
     for i in range(n):
         put_on_curve(spline, curve, anchor[i], fibre.state, i)
     counters[EVALUATIONS] += (ROUNDS + 1) * n

@@ -14,6 +14,7 @@ import numpy as np
 
 from meshwind.core.cast import Bools
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import copy_row
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.assembly import assemble
 from meshwind.path.kernels.block_tridiagonal import SymmetricSystem, solve, symmetric_system
@@ -103,8 +104,8 @@ def minimise(body, limits, resist, state, trial, counters):
     """As `relax`; where the third result says so the answer is left in `trial`."""
     n, periodic = len(state.X), body.spline.periodic
     swapped = False
-    trial.station[:] = state.station
-    trial.pinned[:] = state.pinned
+    copy_row(state.station, trial.station)
+    copy_row(state.pinned, trial.pinned)
     work = Workspace(no_contacts(n), symmetric_system(n), np.empty(n, np.bool_), resist)
     contacts, system = work.contacts, work.system
     shift, least = 0.0, LEAST_SHIFT * (np.pi / n) ** 2

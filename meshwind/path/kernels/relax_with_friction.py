@@ -10,6 +10,7 @@ holds only where the surface presses.
 import numpy as np
 
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import fill
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.certificate import HALF_TURN, certify, largest_leap
 from meshwind.path.kernels.contact import DEEP, NOTHING, lift, release
@@ -82,7 +83,7 @@ def relax_with_friction(rough, limits, fibre, counters):
         released = release(state, slack, caution, work.contacts)
         if released > 0 and len(body.tree.levels) == 0:
             return residual, NEEDS_TREE
-        work.barred[:] = False
+        fill(work.barred, False)
         changed, force = balance_forces(rough, fibre, work.contacts, work.barred, work.balance)
         residual = max(force, sag(state.X, work.contacts.after, state.station)) / spacing
         if released == 0 and changed == 0 and residual <= limits.tolerance:

@@ -10,6 +10,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import fill
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.block_tridiagonal import solve
 from meshwind.path.kernels.contact import link, spring_pull
@@ -77,7 +78,7 @@ def lay_down(resist, rough, state, contacts):
     """Note where the fibre lies, and what friction resists its slip from there with."""
     n = len(state.X)
     link(state.touching, contacts)
-    resist.bound[:] = -1.0
+    fill(resist.bound, -1.0)
     i = contacts.after[0]
     while i < n - 1:
         mu, _, _ = coefficient(rough.friction, rough.body.spline.periodic, state.uv[i, 0], state.uv[i, 1])

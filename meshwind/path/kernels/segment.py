@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import copy_table
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.geometry import dot, minus, over, plus, row, times, to_parameters
 from meshwind.path.kernels.state import EVALUATIONS, FEET
@@ -79,7 +80,7 @@ def followed(body, state, i, segment, stride, work, counters):
     end = segment.length - state.clear[i + 1]
     deep, where = 0.0, 0.0
     gap, s = state.clear[i], 0.0
-    work[:] = state.frames[i]
+    copy_table(state.frames[i], work)
     entering = -dot(ahead, row(state.normal, i))
     for _ in range(MOST_STEPS):
         du, dv = to_parameters(row(work, SU), row(work, SV), ahead)

@@ -14,6 +14,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import copy_table, fill, fill_table
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.contact import pull
 from meshwind.path.kernels.coulomb import Fibre, Grip, blank_grip
@@ -94,7 +95,7 @@ def slide_all(first, last, rough, limits, batch, held, own):
         state, grip = state_of(batch, p, frames), Grip(batch.anchor[p], offset, batch.mode[p])
         fibre = Fibre(state, grip, start)
         attach_to_curve(rough.body.spline, fibre, counters)
-        held[p] = state.uv
+        copy_table(state.uv, held[p])
         residual, status = slide_one_way(rough, limits, fibre, counters)
         own[p] = status == CONVERGED
         if status in (NEEDS_TREE, CONVERGED):
@@ -102,11 +103,11 @@ def slide_all(first, last, rough, limits, batch, held, own):
             continue
         attach_to_curve(rough.body.spline, fibre, counters)
         residual, status, steps = slide(rough, limits, state, track, counters)
-        held[p] = track.lain[steps]
+        copy_table(track.lain[steps], held[p])
         if status == CONVERGED:
             residual, status, k = settle(rough, limits, fibre, track, steps, counters)
             own[p] = k == 0
-            held[p] = track.lain[k]
+            copy_table(track.lain[k], held[p])
         batch.residual[p], batch.status[p] = residual, status
 
 
@@ -149,11 +150,12 @@ def slide(rough, limits, state, track, counters):
     loose = Limits(limits.pull_off, max(limits.tolerance, BALANCE), ROUNDS)
     time, steps, leant = FIRST, 0, 0
     past = 0.0  # length of the increment before
-    track.lain[0], track.turned[:] = state.uv, 0
+    copy_table(state.uv, track.lain[0])
+    fill_table(track.turned, 0)
     length = energy(state.X)[1]
     resist = resistance(n, 0.0, ROOM * length, FIRM * length)
     lay_down(resist, rough, state, contacts)
-    resist.bound[:] = FIRM * length
+    fill(resist.bound, FIRM * length)
     spent = counters[EVALUATIONS] + DEAREST * n
     residual, status = relax(rough.body, limits, resist, state, counters)
     if status == NEEDS_TREE:
@@ -167,7 +169,7 @@ def slide(rough, limits, state, track, counters):
         lay_down(resist, rough, state, contacts)
         if past > 0.0:
             aim_ahead(resist, before, older, ratio * ratio / (1.0 + 2.0 * ratio))
-        aimed[:] = resist.lain
+        copy_table(resist.lain, aimed)
         move, settled = 0.0, False
         for turn in range(PASSES):
             copy(state, last)
@@ -195,7 +197,7 @@ def slide(rough, limits, state, track, counters):
             time *= SHORTER
             continue
         steps += 1
-        track.lain[steps] = state.uv
+        copy_table(state.uv, track.lain[steps])
         note_ways(track.turned, resist, before, state, AT_REST * length, steps)
         copy(before, older)
         past = time
@@ -265,7 +267,7 @@ def note_ways(turned, resist, before, state, least, step):
         if not state.touching[i]:
             continue
         if not before.touching[i]:
-            turned[i] = step
+            turned[i, 0] = turned[i, 1] = step
             continue
         d = slip_from(before, i, row(state.X, i), row(resist.across, i))
         if abs(d) > least:

@@ -13,6 +13,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import fill_table
 from meshwind.core.vectors import TINY
 from meshwind.mesh.geometry.rays import DEEPEST, first_met
 from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, S, frame, unit_normal
@@ -272,7 +273,7 @@ def pull_all(first, last, body, below, friction, eyes, out):
             moved, out.bridge[i], out.press[i], became = follow(body, below, uv, both, work, tree_work)
             if light and abs(aside) > MARGIN * friction * (press + out.press[i]) + SWING:
                 # a fibre that hardly touches where it landed slides there, as if it landed only now
-                out.point[landed:i] = np.nan
+                fill_table(out.point[landed:i], np.nan)
                 uv[0], uv[1], laid, light = lifts[0], lifts[1], before_bridge, False
                 start_u, start_v, start, aside, press = uv[0], uv[1], laid, 0.0, 0.0
                 moved, out.bridge[i], out.press[i], became = follow(body, below, uv, both, work, tree_work)

@@ -10,6 +10,7 @@ from scipy.linalg import cho_solve_banded, cholesky_banded
 
 from meshwind.core.cast import Floats
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import fill_table
 from meshwind.core.vectors import TINY
 from meshwind.surface.fitting.normal_equations import REACH, gram_bands
 
@@ -72,7 +73,8 @@ def solve_iteratively(stencil: Floats, right: Floats, tolerance: Floats, start: 
 def _multiply(stencil, net, out):
     """Write the symmetric matrix of a stencil (nu, nv, 4, 7) times nets (nu, nv, m) into `out`."""
     rows, columns, sides = net.shape
-    out[:] = 0.0
+    for row in out:
+        fill_table(row, 0.0)
     for i in range(rows):
         for r in range(REACH + 1):
             far = (i + r) % rows

@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import copy_row
 from meshwind.core.threads import parallel_for
 from meshwind.mesh.geometry.mesh import Annulus
 from meshwind.surface.grid import Grid, grid
@@ -123,9 +124,9 @@ def _nearest_feet(first: int, last: int, body: Body, points: Floats, guesses: Fl
     """Write the feet (n, 3) of points (n, 3) first to last, each found from its guess (n, 2)."""
     frame = np.empty((6, 3))
     for i in range(first, last):
-        feet[i] = points[i]  # of one type, whatever the points are
+        copy_row(points[i], feet[i])  # of one type, whatever the points are
         nearest_foot(body, feet[i], guesses[i], frame)
-        feet[i] = frame[0]
+        copy_row(frame[0], feet[i])
 
 
 def _worst(distance: Floats, pairs: Floats, corners: Ints, annulus: Annulus) -> list[int]:

@@ -7,6 +7,7 @@ import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import fill
 from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import TINY
 
@@ -40,7 +41,7 @@ def _curved(first, last, facet, corners, share, points, normals, out):
     """Write the points first to last."""
     edge, middle = np.empty((3, 3, 3)), np.empty(3)
     for k in range(first, last):
-        middle[:] = 0.0
+        fill(middle, 0.0)
         for a in range(3):
             for b in range(3):
                 if a == b:

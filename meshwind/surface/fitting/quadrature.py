@@ -6,6 +6,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import copy_table, fill_table
 from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import TINY
 from meshwind.surface.evaluate import SU, SV, S, frame
@@ -121,7 +122,9 @@ def _points(corners, stack, at, share, area):
     parts, as shares of the facet's.
     """
     depths, count = np.zeros(DEPTH + 1, dtype=np.int64), 0
-    stack[0] = np.eye(3)
+    fill_table(stack[0], 0.0)
+    for c in range(3):
+        stack[0, c, c] = 1.0
     top = 0
     while top >= 0:
         depth, part = depths[top], stack[top].copy()
@@ -135,9 +138,9 @@ def _points(corners, stack, at, share, area):
                 longest, edge = du * du + dv * dv, c
         if widest > WIDEST and depth < DEPTH:
             after = (edge + 1) % 3
-            stack[top + 1] = part
-            middle = 0.5 * (part[edge] + part[after])
-            stack[top, edge], stack[top + 1, after] = middle, middle
+            copy_table(part, stack[top + 1])
+            for c in range(3):
+                stack[top, edge, c] = stack[top + 1, after, c] = 0.5 * (part[edge, c] + part[after, c])
             depths[top], depths[top + 1] = depth + 1, depth + 1
             top += 1
             continue
