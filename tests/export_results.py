@@ -20,7 +20,7 @@ from meshwind.results.filament_file import write_filaments
 from meshwind.results.laminate_files import laminate_figures, write_laminate
 from meshwind.results.reading import Results, read_results
 from meshwind.results.report import RunFacts, report, write_report
-from meshwind.results.write import write_files
+from meshwind.results.write import surface_maps, write_files
 from meshwind.surface.grid import grid
 
 
@@ -29,7 +29,7 @@ def leave(folder: Path, paths: Paths, units: str = "mm") -> Results:
     layup = assess(paths)
     on = grid(paths.surface)
     part = Mesh(on.points, np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]]), "part.stl", units=units)
-    write_files(folder, layup, units=units)
+    write_files(folder, layup, surface_maps(layup), units)
     write_report(folder / "report.json", report(layup, part, None, RunFacts(0.25)))
     return read_results(folder)
 

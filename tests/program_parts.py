@@ -13,7 +13,7 @@ from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.program.work import Work
 from meshwind.results.filament_file import write_filaments
 from meshwind.results.report import RunFacts, report, write_report
-from meshwind.results.write import write_files
+from meshwind.results.write import surface_maps, write_files
 from meshwind.surface import Surface
 from meshwind.surface.grid import grid
 
@@ -85,7 +85,7 @@ def write_run(out: Path, circuits: int) -> Path:
     surface = layup.paths.surface
     on = grid(surface)
     mesh = Mesh(on.points, np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]]))
-    write_files(out, layup, mesh)
+    write_files(out, layup, surface_maps(layup, mesh))
     write_filaments(out / "filament.vtp", [filament(surface, circuits, 0.6, 0.2)])
     write_report(out / "report.json", report(layup, mesh, None, RunFacts(0.6)))
     return out

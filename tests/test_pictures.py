@@ -31,7 +31,7 @@ from meshwind.pictures.subject import subject_of
 from meshwind.pictures.winding_scene import winding_scene
 from meshwind.results.reading import read_results
 from meshwind.results.schema import PICTURES
-from meshwind.results.write import write_files
+from meshwind.results.write import surface_maps, write_files
 from meshwind.surface.grid import grid
 
 OF_ANY = tuple(name for name in PICTURES if name not in ("filament", "laminate"))
@@ -45,7 +45,7 @@ def left(folder: Path, paths: Paths) -> Path:
     results = leave(folder, paths)
     on = grid(paths.surface)
     triangles = np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]])
-    write_files(folder, results.layup, Mesh(1.001 * on.points, triangles, "part.stl"))
+    write_files(folder, results.layup, surface_maps(results.layup, Mesh(1.001 * on.points, triangles, "part.stl")))
     return folder
 
 

@@ -17,9 +17,10 @@ from program_parts import filament, work, write_run
 import meshwind as mw
 from meshwind.cli import program as command
 from meshwind.core.cast import Floats
+from meshwind.core.defaults import MACHINE
 from meshwind.core.errors import BadInputError
 from meshwind.program.axes import limits_of
-from meshwind.program.machine import DEFAULT, FEEDS, MOVES, Eye, machine_names, machine_of, read_machine
+from meshwind.program.machine import FEEDS, MOVES, Eye, machine_names, machine_of, read_machine
 from meshwind.program.posts.dialects import DIALECTS
 from meshwind.program.program import Program, program
 from meshwind.program.robot import APPROACH, robot_poses
@@ -131,7 +132,7 @@ def test_the_command_says_what_it_wrote(run: Path, tmp_path: Path) -> None:
     assert listed.returncode == 0
     assert [line.split()[0] for line in listed.stdout.splitlines()] == machine_names()
     assert (*TARGETS, *SEEN, *DIALECTS) == command.TARGETS
-    assert DEFAULT in machine_names()
+    assert MACHINE in machine_names()
     assert len(machine_names()) == 6
 
 

@@ -20,7 +20,7 @@ from meshwind.layup.layup import assess
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.path.kernels.state import NEEDS_TREE
 from meshwind.results.schema import RESULTS
-from meshwind.results.write import write_files
+from meshwind.results.write import surface_maps, write_files
 from meshwind.surface import shapes
 from meshwind.surface.grid import grid
 from meshwind.workflow.options import Options
@@ -40,7 +40,7 @@ def test_every_field_is_described_and_no_other(tmp_path: Path) -> None:
     layup = assess(replace(paths, surface=replace(paths.surface, uncertainty=np.full((2, 3), 1e-9))))
     on = grid(layup.paths.surface)
     faces = np.concatenate([on.quads[:, [0, 1, 2]], on.quads[:, [0, 2, 3]]])
-    write_files(tmp_path, layup, Mesh(on.points, faces))
+    write_files(tmp_path, layup, surface_maps(layup, Mesh(on.points, faces)))
     held: set[tuple[str, str]] = set()
     for file in (*tmp_path.glob("*.vtp"), *tmp_path.glob("*.vtu")):
         read = pv.read(file)

@@ -16,7 +16,7 @@ from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.path.lengths import bridges, lengths
 from meshwind.results import schema
 from meshwind.results.report import RunFacts, plain, report, write_report
-from meshwind.results.write import write_files
+from meshwind.results.write import surface_maps, write_files
 from meshwind.surface.grid import grid
 
 DOUBTED = bridged()
@@ -39,7 +39,7 @@ def part_of(layup: Layup) -> Mesh:
 def written(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[Layup, Path]:
     layup = LAID[request.param]
     out = tmp_path_factory.mktemp(request.param)
-    write_files(out, layup, part_of(layup))
+    write_files(out, layup, surface_maps(layup, part_of(layup)))
     return layup, out
 
 

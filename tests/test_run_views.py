@@ -243,6 +243,8 @@ def test_a_window_opens_only_where_there_is_a_screen(
     assert both[1].plot() is None and opened == [both[1].name]
     monkeypatch.delenv("DISPLAY")
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    monkeypatch.setattr("meshwind.run.views.render", lambda *_, **__: (_ for _ in ()).throw(mw.BadInputError("drawn")))
+    monkeypatch.setattr(
+        "meshwind.pictures.render.render", lambda *_, **__: (_ for _ in ()).throw(mw.BadInputError("drawn"))
+    )
     with pytest.raises(mw.BadInputError, match="drawn"):
         both[1].plot()

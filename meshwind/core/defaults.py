@@ -14,5 +14,7 @@ SIDES = ("outer", "inner")
 """Skins of a part with a wall; the first is wound by default."""
 OPENED_BY = ("auto", "level", "plane")
 """How a closed end is opened: along a level line of the distance to its pole, or by a plane square to the axis."""
+MACHINE = "lathe-4"
+"""The machine of a program for which none is named: a lathe of four axes, as large as the part needs."""
 TURNAROUNDS = ("collar", "pins", "shaft", "cap")
 """Turnarounds: over a rim, and on the cap of a closed end."""

@@ -12,12 +12,13 @@ from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.geometry import Block, Data, Geometric, joined
 from meshwind.core.table import data_frame
-from meshwind.filament.closing import ClosedLayer
 from meshwind.filament.course import Course, in_a_row
-from meshwind.filament.laminate import LaidLayer, Laminate
 
 if TYPE_CHECKING:
     import pandas
+
+    from meshwind.filament.closing import ClosedLayer
+    from meshwind.filament.laminate import LaidLayer, Laminate
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,10 @@
-"""Scenes with their pages, packed for the process that draws.
+"""Scenes with their pages and files, packed for the process that draws.
 
 Importing this module loads nothing heavy, as both processes need it.
 """
 
 import io
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
 from types import NoneType, UnionType
@@ -27,27 +27,19 @@ class Drawing:
     page: Page = field(default_factory=Page)
 
 
-def pack(drawings: Mapping[Path, Drawing]) -> bytes:
-    """Drawings, by their files, as an .npz whose arrays are named 0/file, 0/page/width, 0/scene/part/points, ..."""
-    arrays: dict[str, Any] = {}
-    for number, (file, drawing) in enumerate(drawings.items()):
-        named = {"file": str(file.absolute()), "kind": type(drawing.scene).__name__} | _arrays(drawing)
-        arrays |= {f"{number}/{name}": value for name, value in named.items()}
+def pack(file: Path, drawing: Drawing) -> bytes:
+    """A drawing and its file as an .npz whose arrays are named picture, page/width, scene/part/points, ..."""
     packed = io.BytesIO()
-    np.savez(packed, **arrays)
+    np.savez(packed, picture=str(file.absolute()), kind=type(drawing.scene).__name__, **_arrays(drawing))
     return packed.getvalue()
 
 
-def unpack(packed: bytes) -> Iterator[tuple[Path, Drawing]]:
-    """The drawings that were packed, in their order."""
-    if not packed:
-        return
+def unpack(packed: bytes) -> tuple[Path, Drawing]:
+    """The drawing that was packed, and its file."""
     with np.load(io.BytesIO(packed)) as held:
         arrays = dict(held)
-    for number in dict.fromkeys(name.split("/")[0] for name in arrays):
-        mine = _below(arrays, number)
-        scene = _record(_KINDS[str(mine["kind"])], _below(mine, "scene"))
-        yield Path(str(mine["file"])), Drawing(scene, _record(Page, _below(mine, "page")))
+    scene = _record(_KINDS[str(arrays["kind"])], _below(arrays, "scene"))
+    return Path(str(arrays["picture"])), Drawing(scene, _record(Page, _below(arrays, "page")))
 
 
 def _arrays(record: Any) -> dict[str, Any]:

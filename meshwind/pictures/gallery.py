@@ -5,8 +5,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from PIL import Image
-
 from meshwind.pictures.angles_scene import angles_scene
 from meshwind.pictures.drawings import Drawing
 from meshwind.pictures.filament_scene import bands_scene, filament_scene
@@ -40,13 +38,18 @@ _SCENES: tuple[Callable[[Subject], Scene], ...] = (
 
 
 def scenes_of(of: Subject) -> dict[str, Scene]:
-    """Scenes of a winding by name of the picture.
+    """Scenes of a winding by name of the picture."""
+    return {name: make(of) for name, make in makers_of(of).items()}
+
+
+def makers_of(of: Subject) -> dict[str, Callable[[Subject], Scene]]:
+    """What makes the scenes of a winding, by name of the picture.
 
     That of the fit error is missing if the error is not known, and those of a filament or a laminate if there is none.
     """
     lacking = {FIT} if FIT_ERROR not in of.maps else set()
     lacking |= {FILAMENTS, LAMINATE_PICTURE} - set(names_of(of))
-    return {name: make(of) for name, make in zip(PICTURES, _SCENES, strict=True) if name not in lacking}
+    return {name: make for name, make in zip(PICTURES, _SCENES, strict=True) if name not in lacking}
 
 
 def names_of(of: Subject) -> tuple[str, ...]:
@@ -85,19 +88,38 @@ def cell(page: Page) -> Page:
     return replace(page, width=round(share * page.width), height=round(share * page.height))
 
 
-def write_sheet(sheet: Path, pictures: Sequence[Path], transparent: bool = False) -> None:
-    """Arrange pictures of the same shape on a sheet, row by row."""
-    columns, rows = layout(len(pictures))
-    images = []
-    for file in pictures:
-        with Image.open(file) as opened:
-            opened.thumbnail(CELL, Image.Resampling.LANCZOS)
-            images.append(opened.convert("RGBA" if transparent else "RGB"))
-    width, height = (max(image.size[k] for image in images) for k in (0, 1))
-    page = Image.new(images[0].mode, (columns * width, rows * height), "#ffffff00" if transparent else "#ffffff")
-    for k, image in enumerate(images):
-        page.paste(image, (k % columns * width, k // columns * height))
-    page.save(sheet, compress_level=1)
+class Sheet:
+    """A sheet of pictures of the same shape, row by row, which are taken from their files one by one."""
+
+    def __init__(self, pictures: Sequence[Path], transparent: bool = False) -> None:
+        self._pictures = list(pictures)
+        self._mode, self._paper = ("RGBA", "#ffffff00") if transparent else ("RGB", "#ffffff")
+        self._taken: dict[Path, Any] = {}
+
+    def take(self, name: str) -> None:
+        """Take the pictures of a name, if any is on the sheet, while others are still drawn."""
+        from PIL import Image  # late, as all that draws
+
+        for file in self._pictures:
+            if file.name == name:
+                with Image.open(file) as opened:
+                    opened.thumbnail(CELL, Image.Resampling.LANCZOS)
+                    self._taken[file] = opened.convert(self._mode)
+
+    def write(self, sheet: Path) -> None:
+        """Write the sheet, when all are drawn."""
+        from PIL import Image
+
+        for file in self._pictures:
+            if file not in self._taken:
+                self.take(file.name)
+        columns, rows = layout(len(self._pictures))
+        images = [self._taken[file] for file in self._pictures]
+        width, height = (max(image.size[k] for image in images) for k in (0, 1))
+        page = Image.new(self._mode, (columns * width, rows * height), self._paper)
+        for k, image in enumerate(images):
+            page.paste(image, (k % columns * width, k // columns * height))
+        page.save(sheet, compress_level=1)
 
 
 def layout(count: int) -> tuple[int, int]:

@@ -1,8 +1,9 @@
 """Drawing in a process of its own.
 
 Without an OpenGL driver VTK ends its process, and it is slow to import and to draw its first frame.  A second process
-makes the first harmless, and started early it hides the second behind the solver.  Importing this module loads nothing
-heavy, so that the process can start before the numerical libraries are there.
+makes the first harmless, and started early it hides the second behind the solver.  It draws what it is sent while this
+process goes on, and is kept for the pictures of later runs.  Importing this module loads nothing heavy, so that it can
+start before the numerical libraries are there.
 """
 
 import atexit
@@ -10,10 +11,11 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from threading import Timer
+from queue import SimpleQueue
+from threading import Thread, Timer
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -29,12 +31,15 @@ _SILENT_SECONDS = 120.0
 Drawn = Callable[[str], None]
 """Called with the name of each picture when it is drawn, and with "frame" for each frame of a movie."""
 
-_waiting: "list[Painter]" = []
-"""The renderer that was started and has not drawn yet; at most one."""
+READY, DONE = "ready", "done"
+"""What the renderer says when it has found that it can draw, and when it has drawn all that it was sent."""
+
+_idle: "list[Painter]" = []
+"""The renderer that has nothing to draw; at most one, but for a moment."""
 
 
 class Painter:
-    """A process that can draw once."""
+    """A process that draws: it is sent pictures, in any number of batches."""
 
     def __init__(self) -> None:
         environment = dict(os.environ)
@@ -51,75 +56,112 @@ class Painter:
             stdout=subprocess.PIPE,
             stderr=self._complaint,
         )
+        self._sent: list[Path] = []
+        self._blocks: SimpleQueue[bytes | None] = SimpleQueue()
+        self._ready = False
+        # a thread, as scenes fill the pipe while the process draws the one before
+        self._feeder = Thread(target=self._feed, daemon=True)
+        self._feeder.start()
+
+    @property
+    def spent(self) -> bool:
+        """Whether the process has drawn and ended; of one that has ended before it is to be told why."""
+        return self._ready and self._process.poll() is not None
 
     def close(self) -> None:
         """End the process if it still runs."""
         if self._process.returncode is None:
             self._process.kill()
-            self._process.communicate()
+            self._process.wait()
+        self._blocks.put(None)
+        self._feeder.join()
+        assert self._process.stdout is not None
+        self._process.stdout.close()
         self._complaint.close()
 
-    def paint(self, drawings: "Mapping[Path, Drawing]", drawn: Drawn | None = None) -> str:
-        """Draw each into its file; return "" or one line that says which picture is missing and why."""
+    def send(self, picture: Path, drawing: "Drawing") -> None:
+        """Have a drawing drawn into its file, after those that were sent before."""
         from meshwind.pictures.drawings import pack
 
-        names = [picture.name for picture in drawings]
-        words, late = self._work(pack(drawings), drawn)
-        complaint = self._complained()
+        self._sent.append(picture)
+        self._put(pack(picture, drawing))
+
+    def finish(self, drawn: Drawn | None = None) -> str:
+        """Wait for all that was sent; return "" or one line that says which picture is missing and why.
+
+        A process that can go on is kept, and any other one is ended.
+        """
+        self._put(b"")
+        pictures, self._sent = self._sent, []
+        words, late = self._work(drawn)
+        if words[-1:] == [DONE]:
+            _keep(self)
+            return ""
+        self._process.wait()
+        self._complaint.seek(0)
+        complaint = self._complaint.read().decode(errors="replace")
         self.close()
-        for picture in drawings:
+        for picture in pictures:
             if picture.name not in words:
                 picture.unlink(missing_ok=True)  # a process that was ended may leave an incomplete file
-        missing = " and ".join(name for name in names if name not in words)
+        missing = " and ".join(picture.name for picture in pictures if picture.name not in words)
         if late:
             return f"no {missing}: drawing took more than {_SILENT_SECONDS:.0f} s"
-        if self._process.returncode == 0:
-            return ""
-        if "ready" not in words and (self._process.returncode < 0 or "OpenGL" in complaint):
+        if not self._ready and (self._process.returncode < 0 or "OpenGL" in complaint):
             return NO_DRIVER
         last = complaint.strip().splitlines()[-1:]
         return f"no {missing or 'picture'}: {''.join(last) or 'the renderer stopped'}"
 
-    def _work(self, packed: bytes, drawn: Drawn | None) -> tuple[list[str], bool]:
-        """Send the scenes and wait for the end of the process: its output, and whether it was too slow and killed."""
-        process, words, late = self._process, [], False
-        stdin, stdout = process.stdin, process.stdout
-        assert stdin is not None and stdout is not None
+    def _put(self, packed: bytes) -> None:
+        """Send bytes, after their number; none end a batch."""
+        self._blocks.put(len(packed).to_bytes(8, "little") + packed)
+
+    def _feed(self) -> None:
+        """In a thread: write what is sent to the process."""
+        stdin = self._process.stdin
+        assert stdin is not None
+        while (block := self._blocks.get()) is not None:
+            with suppress(OSError):  # it has crashed: its output and return code say why
+                stdin.write(block)
+                stdin.flush()
+        with suppress(OSError):
+            stdin.close()
+
+    def _work(self, drawn: Drawn | None) -> tuple[list[str], bool]:
+        """Wait for the end of a batch or of the process: its output, and whether it was too slow and killed."""
+        process, words = self._process, list[str]()
+        stdout = process.stdout
+        assert stdout is not None
         watch = Timer(_SILENT_SECONDS, process.kill)
         watch.start()
         try:
-            for send in (lambda: stdin.write(packed), stdin.close):
-                with suppress(BrokenPipeError):  # it has crashed: its output and return code say why
-                    send()
             for line in stdout:
-                words.append(line.decode(errors="replace").strip())
+                word = line.decode(errors="replace").strip()
+                words.append(word)
+                self._ready |= word == READY
                 watch.cancel()
+                if word == DONE:
+                    break
                 watch = Timer(_SILENT_SECONDS, process.kill)
                 watch.start()
-                if drawn is not None and words[-1] != "ready":
-                    drawn(words[-1])
-            process.wait()
+                if drawn is not None and word != READY:
+                    drawn(word)
         finally:
-            late = watch.finished.is_set()
+            late = watch.finished.is_set() and words[-1:] != [DONE]
             watch.cancel()
-            stdout.close()
         return words, late
-
-    def _complained(self) -> str:
-        self._complaint.seek(0)
-        return self._complaint.read().decode(errors="replace")
 
 
 def start_probe() -> None:
     """Start the renderer, which tests whether this machine can draw while other work runs."""
-    if not _waiting:
-        _waiting.append(Painter())
+    if not _idle:
+        _keep(Painter())
 
 
 def stop() -> None:
-    """End a renderer that was started but is not needed."""
-    while _waiting:
-        _waiting.pop().close()
+    """End a renderer that is not needed."""
+    while _idle:
+        _idle.pop().close()
 
 
 def can_draw() -> str:
@@ -129,8 +171,37 @@ def can_draw() -> str:
 
 def paint(drawings: "Mapping[Path, Drawing]", drawn: Drawn | None = None) -> str:
     """Draw into files in one process; return "" or one line that says which picture is missing and why."""
-    start_probe()
-    return _waiting.pop().paint(drawings, drawn)
+    with painter() as one:
+        for picture, drawing in drawings.items():
+            one.send(picture, drawing)
+        return one.finish(drawn)
+
+
+@contextmanager
+def painter() -> Iterator[Painter]:
+    """A renderer for one batch: the one that waits, or a new one; it is ended where an error leaves it at work."""
+    one = _taken()
+    try:
+        yield one
+    except BaseException:
+        one.close()
+        raise
+
+
+def _taken() -> Painter:
+    with suppress(IndexError):  # none is idle, or another thread has taken it
+        if not (one := _idle.pop()).spent:
+            return one
+        one.close()
+    return Painter()
+
+
+def _keep(one: Painter) -> None:
+    """Keep a renderer for what is drawn next, unless another one waits already."""
+    if _idle:
+        one.close()
+    else:
+        _idle.append(one)
 
 
 atexit.register(stop)

@@ -14,7 +14,7 @@ from meshwind.core.units import reported_unit
 from meshwind.pictures import driver
 from meshwind.pictures.animation_scene import animation_scene, reel_scene
 from meshwind.pictures.drawings import Drawing
-from meshwind.pictures.gallery import placed, scenes_of, write_sheet
+from meshwind.pictures.gallery import Sheet, placed, scenes_of
 from meshwind.pictures.movie import encoder
 from meshwind.pictures.page import Page
 from meshwind.pictures.redesign_scene import redesign_in
@@ -93,24 +93,22 @@ def render(
     ffmpeg = encoder() if "mp4" in animate else ""
     source, target = Path(folder), Path(folder if out is None else out)
     driver.start_probe()
-    try:
-        of = _subject(source, paper)
-        scenes = _scenes(source, of, paper)
-        lacking = [name for name in only if name != SHEET and name not in scenes]
-        if lacking or (animate and of is None):
-            raise BadInputError(f"{source} holds nothing to draw {(lacking or list(animate))[0]} from; leave it out")
-        with beside(target) as staging, tempfile.TemporaryDirectory(dir=staging) as cells:
-            drawings = placed(scenes, only or (() if animate else (*scenes, SHEET)), paper, staging, Path(cells))
-            pictures = list(drawings)
-            if animate and of is not None:
-                movies = [staging / movie(kind) for kind in dict.fromkeys(animate)]
-                drawings[movies[0]] = _animation(of, seconds, movies, ffmpeg, paper)
-            _paint(drawings, progress)
-            if SHEET in only or not (only or animate):
-                write_sheet(staging / picture(SHEET), pictures, paper.transparent)
-            names = sorted(path.name for path in staging.iterdir() if path.is_file())
-    finally:
-        driver.stop()
+    of = _subject(source, paper)
+    scenes = _scenes(source, of, paper)
+    lacking = [name for name in only if name != SHEET and name not in scenes]
+    if lacking or (animate and of is None):
+        raise BadInputError(f"{source} holds nothing to draw {(lacking or list(animate))[0]} from; leave it out")
+    with beside(target) as staging, tempfile.TemporaryDirectory(dir=staging) as cells:
+        drawings = placed(scenes, only or (() if animate else (*scenes, SHEET)), paper, staging, Path(cells))
+        whole = SHEET in only or not (only or animate)
+        sheet = Sheet(list(drawings) if whole else [], paper.transparent)
+        if animate and of is not None:
+            movies = [staging / movie(kind) for kind in dict.fromkeys(animate)]
+            drawings[movies[0]] = _animation(of, seconds, movies, ffmpeg, paper)
+        _paint(drawings, sheet, progress)
+        if whole:
+            sheet.write(staging / picture(SHEET))
+        names = sorted(path.name for path in staging.iterdir() if path.is_file())
     return Rendered(tuple(target / name for name in names))
 
 
@@ -157,7 +155,7 @@ def _animation(of: Subject, seconds: float, movies: list[Path], ffmpeg: str, pag
     return Drawing(make(of, seconds, movies, ffmpeg), replace(page, transparent=False))
 
 
-def _paint(drawings: Mapping[Path, Drawing], progress: PictureProgress | None) -> None:
+def _paint(drawings: Mapping[Path, Drawing], sheet: Sheet, progress: PictureProgress | None) -> None:
     scenes = [drawing.scene for drawing in drawings.values()]
     total = sum(1 + (scene.motion.frames if isinstance(scene, AnimationScene | ReelScene) else 0) for scene in scenes)
     done = 0
@@ -165,6 +163,7 @@ def _paint(drawings: Mapping[Path, Drawing], progress: PictureProgress | None) -
     def count(word: str) -> None:
         nonlocal done
         done += 1
+        sheet.take(word)
         if progress is not None:
             progress(word, done, total)
 

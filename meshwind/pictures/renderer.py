@@ -1,11 +1,12 @@
-"""Draws scenes in a process of its own: `python -P renderer.py < scenes.npz`.
+"""Draws scenes in a process of its own: `python -P renderer.py`, sent blocks by `painter.py`.
 
-Prints "ready" after a test that the machine can draw, then the name of each picture that it has saved, and "frame" for
-each frame of a movie; without input it does nothing more.  It loads only those parts of meshwind that draw.
+Prints "ready" after a test that the machine can draw, then the name of each picture that it has saved, "frame" for
+each frame of a movie, and "done" at the end of a batch; it ends with its input.  It loads only those parts of meshwind
+that draw.
 """
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,7 @@ from meshwind.pictures import (
     layers_picture,
     machine_picture,
     map_picture,
+    painter,
     quads_picture,
     redesign_picture,
     reel_picture,
@@ -64,8 +66,12 @@ FRAME = "frame"
 def main() -> None:
     """Test that the machine can draw, read scenes, draw them."""
     window = canvas.plotter()
-    say("ready")
-    for file, drawing in drawings.unpack(sys.stdin.buffer.read()):
+    say(painter.READY)
+    for packed in blocks():
+        if not packed:
+            say(painter.DONE)
+            continue
+        file, drawing = drawings.unpack(packed)
         window.clear_actors()
         if isinstance(drawing.scene, scenes.AnimationScene | scenes.ReelScene | scenes.MachineScene):
             frames = MOVED_BY[type(drawing.scene)](window, drawing.scene, drawing.page)
@@ -75,6 +81,12 @@ def main() -> None:
             image.save(str(file), compress_level=1)
         say(file.name)
     window.close()
+
+
+def blocks() -> Iterator[bytes]:
+    """The blocks that are sent, each after the number of its bytes."""
+    while len(size := sys.stdin.buffer.read(8)) == 8:
+        yield sys.stdin.buffer.read(int.from_bytes(size, "little"))
 
 
 def say(word: str) -> None:

@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -131,37 +130,23 @@ class Subject:
 
 
 def subject(
-    layup: Layup, name: str, units: str = "", revolutions: float | None = None, seen_from: str | View = "auto"
-) -> Subject:
-    """A layup to draw, without maps."""
-    on = grid(layup.paths.surface)
-    normals = np.cross(on.frames[:, 1], on.frames[:, 2])
-    return Subject(layup, on.points, on.quads, normals, name, units, revolutions, seen_from=seen_from)
-
-
-def subject_in(
-    folder: Path,
     layup: Layup,
     name: str,
     units: str = "",
     revolutions: float | None = None,
-    seen_from: str = "auto",
-    trusted: bool = True,
+    seen_from: str | View = "auto",
+    maps: Mapping[str, NDArray[Any]] | None = None,
 ) -> Subject:
-    """A layup to draw with the maps of the surface.vtu in a folder; raises BadInputError if it has none.
-
-    trusted: the file was written by this process.
-    """
-    read = read_surface_grid(folder, layup.paths.surface, trusted)
-    maps = dict(read.point_data)
-    normals = maps.pop(NORMAL)
-    return Subject(layup, read.points, read.quads, normals, name, units, revolutions, maps, seen_from)
+    """A layup to draw; maps: those of surface.vtu, where they are needed."""
+    on, maps = grid(layup.paths.surface), dict(maps or {})
+    normals = maps.pop(NORMAL) if maps else np.cross(on.frames[:, 1], on.frames[:, 2])
+    return Subject(layup, on.points, on.quads, normals, name, units, revolutions, maps, seen_from)
 
 
 def subject_of(results: Results, seen_from: str = "auto") -> Subject:
-    """The winding of a run's folder."""
-    turns = results.revolutions
-    of = subject_in(results.folder, results.layup, results.name, results.units, turns, seen_from, trusted=False)
+    """The winding of a run's folder; raises BadInputError if it has no surface.vtu."""
+    maps = read_surface_grid(results.folder, results.surface).point_data
+    of = subject(results.layup, results.name, results.units, results.revolutions, seen_from, maps)
     of = replace(of, partings=results.partings)
     of = of.layered(read_laminate(results.folder, results.surface), results.layers)
     return of.wound(results.filaments, results.patterns) if results.filaments else of

@@ -5,12 +5,11 @@ from pathlib import Path
 from typing import Any
 
 from meshwind.core.brief import brief
+from meshwind.core.defaults import MACHINE
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import nearest, read_toml
 from meshwind.core.shipped import Shipped
 
-DEFAULT = "lathe-4"
-"""The machine of a program for which none is named: a lathe of four axes, as large as the part needs."""
 MOVES = {"mandrel": "deg", "carriage": "mm", "cross": "mm", "roll": "deg", "yaw": "deg"}
 """What an axis may move, and in which unit."""
 FEEDS = "G93", "G93-seconds", "G94"
@@ -149,7 +148,7 @@ def machine_names() -> list[str]:
     return _SHIPPED.names
 
 
-def read_machine(name: str = DEFAULT) -> Machine:
+def read_machine(name: str = MACHINE) -> Machine:
     """Read a machine by its name or from a TOML file; raises BadInputError where it is not one."""
     file = _SHIPPED.file(name)
     return machine_of(read_toml(file, "machine"), str(file))

@@ -11,12 +11,13 @@ import numpy as np
 
 from meshwind.core.brief import brief
 from meshwind.core.compile_ahead import compile_ahead
+from meshwind.core.defaults import MACHINE
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import nearest
 from meshwind.core.units import UNKNOWN, millimetres
 from meshwind.core.version import version
 from meshwind.program.blocks import LEGEND, TRAVEL, columns
-from meshwind.program.machine import DEFAULT, read_machine
+from meshwind.program.machine import read_machine
 from meshwind.program.posts.dialects import DIALECTS
 from meshwind.program.program import Program, program
 from meshwind.program.readback.compare import ReadBack
@@ -56,7 +57,7 @@ class Written:
 
 def write_program(
     folder: str | PathLike[str],
-    machine: str = DEFAULT,
+    machine: str = MACHINE,
     to: Sequence[str] = (),
     out: str | PathLike[str] | None = None,
     tension: float = 0.0,

@@ -1,8 +1,10 @@
 """The laminate's files and figures: what each layer is, along the part and over it."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +12,6 @@ from numpy.typing import NDArray
 from meshwind.core.cast import Floats
 from meshwind.core.geometry import Block
 from meshwind.core.units import MILLIMETRES, millimetres
-from meshwind.filament.joins import Strand
-from meshwind.filament.laminate import LaidLayer, Laminate
 from meshwind.filament.stations import Stations
 from meshwind.filament.thickness import Thickness
 from meshwind.layup.direction import winding_angle
@@ -21,6 +21,10 @@ from meshwind.results.legends import write_legend
 from meshwind.results.station_figures import angle_figures, cover_figures, thickness_figures
 from meshwind.results.vtk_files import write_faces, write_lines
 from meshwind.surface.grid import Grid, grid
+
+if TYPE_CHECKING:
+    from meshwind.filament.joins import Strand
+    from meshwind.filament.laminate import LaidLayer, Laminate
 
 LEGEND = {
     "v": ("", "place along the part, from 0 at the start rim to 1 at the end rim"),

@@ -1,5 +1,9 @@
 """Figures of the layup for report.json: crossings, coverage, spacing, windability, quads, fibre, revolutions."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from meshwind.core.cast import Floats, Ints
@@ -8,8 +12,6 @@ from meshwind.layup.crossings import Crossings, counts
 from meshwind.layup.layup import Layup
 from meshwind.layup.windability import CONCAVE, CONVEX, SADDLE, Windability
 from meshwind.planning.alternatives import FRICTION, WIDER
-from meshwind.planning.revolutions import Revolutions
-from meshwind.planning.spacing import Spaced
 from meshwind.results.pattern_types import Spread
 from meshwind.results.report_types import (
     CoverageFigures,
@@ -21,6 +23,10 @@ from meshwind.results.report_types import (
     WindabilityFigures,
 )
 from meshwind.results.station_figures import angle_figures, cover_figures, thickness_figures
+
+if TYPE_CHECKING:
+    from meshwind.planning.revolutions import Revolutions
+    from meshwind.planning.spacing import Spaced
 
 REGIONS = (4, 8)
 """Number of equal parts of u and of v in which crossings are counted."""

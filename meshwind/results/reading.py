@@ -164,12 +164,12 @@ def read_report(folder: str | PathLike[str]) -> Report | RedesignReport:
     return _report(_folder(folder, (REPORT,)) / REPORT)
 
 
-def read_surface_grid(folder: Path, surface: Surface, trusted: bool = False) -> Block:
+def read_surface_grid(folder: Path, surface: Surface) -> Block:
     """Read surface.vtu, the grid of a folder's surface with its maps.
 
-    trusted: the file was written by this process.  Raises BadInputError if it is damaged or of another surface.
+    Raises BadInputError if it is damaged or of another surface.
     """
-    read, on = read_faces(folder / SURFACE, trusted), grid(surface)
+    read, on = read_faces(folder / SURFACE), grid(surface)
     if (
         read.points.shape != on.points.shape
         or not np.array_equal(read.quads, on.quads)

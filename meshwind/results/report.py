@@ -1,28 +1,24 @@
 """report.json: the figures of a run as plain Python values."""
 
+from __future__ import annotations
+
 import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from meshwind.chart.chart import Chart
 from meshwind.core.units import UNKNOWN
 from meshwind.core.version import version
-from meshwind.filament.closing import ClosedLayer
-from meshwind.filament.filament import Filament
-from meshwind.filament.laminate import Laminate
 from meshwind.filament.plain_layer import PlainLayer
 from meshwind.layup.layup import Layup
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.path.paths import Paths, Status
-from meshwind.planning.revolutions import Revolutions
-from meshwind.planning.spacing import Spaced
 from meshwind.results.figures import path_figures
-from meshwind.results.laminate_files import laminate_figures
 from meshwind.results.layup_figures import (
     coverage_figures,
     crossing_figures,
@@ -33,7 +29,6 @@ from meshwind.results.layup_figures import (
     windability_figures,
 )
 from meshwind.results.other_rest_figures import other_rest_figures
-from meshwind.results.pattern_figures import pattern_figures, patterns_of_layers
 from meshwind.results.report_types import (
     AdviceFigures,
     Distances,
@@ -48,6 +43,13 @@ from meshwind.results.report_types import (
 )
 from meshwind.results.station_figures import station_figures
 from meshwind.surface.surface import Surface
+
+if TYPE_CHECKING:
+    from meshwind.filament.closing import ClosedLayer
+    from meshwind.filament.filament import Filament
+    from meshwind.filament.laminate import Laminate
+    from meshwind.planning.revolutions import Revolutions
+    from meshwind.planning.spacing import Spaced
 
 
 @dataclass(frozen=True)
@@ -99,14 +101,25 @@ def report(layup: Layup, mesh: Mesh, chart: Chart | None, run: RunFacts) -> Repo
         figures["revolutions"] = revolution_figures(run.chosen)
     if run.plain.stations is not None:
         figures["angle_stations"] = station_figures(run.plain.stations)
+    if run.closed is not None or run.laminate is not None:
+        figures = figures | _layers(run, mesh.units)
+    result: Report = plain(figures)
+    return result
+
+
+def _layers(run: RunFacts, units: str) -> Any:
+    """Figures of a filament or a laminate: imported here, as most runs are without."""
+    from meshwind.results.laminate_files import laminate_figures
+    from meshwind.results.pattern_figures import pattern_figures, patterns_of_layers
+
+    figures: dict[str, Any] = {}
     if run.laminate is not None and run.filaments:
-        figures["pattern"] = patterns_of_layers(run.laminate, run.filaments, mesh.units)
+        figures["pattern"] = patterns_of_layers(run.laminate, run.filaments, units)
     elif run.closed is not None:
         figures["pattern"] = [pattern_figures(run.closed, run.plain)]
     if run.laminate is not None:
-        figures["laminate"] = laminate_figures(run.laminate, mesh.units)
-    result: Report = plain(figures)
-    return result
+        figures["laminate"] = laminate_figures(run.laminate, units)
+    return figures
 
 
 def write_report(path: Path, figures: Mapping[str, object]) -> None:

@@ -34,12 +34,9 @@ def read_vertices(path: Path) -> tuple[Floats, dict[str, NDArray[Any]]]:
     return held["points"], _named(held, POINT)
 
 
-def read_faces(path: Path, trusted: bool = False) -> Block:
-    """Read the quads and triangles of a .vtu file; raises BadInputError if it cannot be read.
-
-    trusted: read it in this process, which saves starting another one.
-    """
-    held = faces_by_vtk(path) if trusted else _held(faces_by_vtk, path)
+def read_faces(path: Path) -> Block:
+    """Read the quads and triangles of a .vtu file; raises BadInputError if it cannot be read."""
+    held = _held(faces_by_vtk, path)
     starts, corners = held["starts"], held["corners"]
     sizes = np.diff(starts)
     fours, threes = (

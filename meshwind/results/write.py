@@ -30,17 +30,17 @@ def surface_maps(layup: Layup, mesh: Mesh | None = None) -> Data:
     return maps(on, layup, fit_error)
 
 
-def write_files(out: Path, layup: Layup, mesh: Mesh | None = None, units: str = "") -> None:
+def write_files(out: Path, layup: Layup, maps: Data, units: str = "") -> None:
     """Write the fibres, the quad mesh and the surface into an existing folder.
 
-    units: the name of the unit of length, which each file carries.
+    maps: those of surface.vtu; units: the name of the unit of length, which each file carries.
     """
     write_lines(out / schema.PATHS, schema.PATHS, paths_block(layup.paths), units)
     write_lines(out / schema.BRIDGES, schema.BRIDGES, bridges_block(layup.paths), units)
     write_vertices(out / schema.CROSSINGS, schema.CROSSINGS, layup.crossings.block, units)
     write_faces(out / schema.QUADS, schema.QUADS, layup.quads.block, units)
     write_obj(out / schema.QUADS_OBJ, layup.quads, units)
-    write_surface(out / schema.SURFACE, grid(layup.paths.surface), surface_maps(layup, mesh), units)
+    write_surface(out / schema.SURFACE, grid(layup.paths.surface), maps, units)
     write_spline(out / schema.SPLINE, layup.paths.surface, units)
     write_chart_image(out / schema.CHART, layup.paths.surface, units)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, fields, replace
 from os import PathLike
 from pathlib import Path
@@ -13,31 +13,11 @@ from meshwind.core.geometry import Data
 from meshwind.core.version import version
 from meshwind.mesh import Mesh
 from meshwind.path import Paths, Status
-from meshwind.pictures import driver
-from meshwind.pictures.drawings import Drawing
-from meshwind.pictures.fit_scene import fit_scene
-from meshwind.pictures.gallery import names_of, placed, scenes_of, write_sheet
-from meshwind.pictures.page import Page
-from meshwind.pictures.revolutions_picture import draw_revolutions
-from meshwind.pictures.subject import subject_in
 from meshwind.results import folder
 from meshwind.results.config_file import write_config
-from meshwind.results.filament_file import write_filaments
-from meshwind.results.laminate_files import write_laminate, write_stations
-from meshwind.results.laminate_reading import read_laminate
-from meshwind.results.layup_figures import parted
 from meshwind.results.report import RunFacts, report, write_report
 from meshwind.results.report_types import Report
-from meshwind.results.schema import (
-    CONFIG,
-    FILAMENT,
-    FIT_PICTURE,
-    REPORT,
-    REVOLUTIONS_PICTURE,
-    SHEET,
-    WINDING,
-    picture,
-)
+from meshwind.results.schema import CONFIG, FILAMENT, REPORT, REVOLUTIONS_PICTURE
 from meshwind.results.write import surface_maps, write_files
 from meshwind.run.views import Views
 from meshwind.surface import Surface
@@ -235,27 +215,53 @@ class Result(Winding, Views):
 
 def write_result(result: Result, out: Path, render: bool, overwrite: bool, clock: Clock) -> Result:
     """Write all files of a run into a folder; see `Result.write`."""
-    notes = result.notes
     with folder.writing(out, overwrite) as staging:
-        with clock.stage("write"):
-            write_files(staging, result.layup, result.measured, result.mesh.units)
-            if result.filaments:
-                write_filaments(staging / FILAMENT, result.filaments, result.mesh.units)
-            if result.layered is not None:
-                write_laminate(staging, result.layered.laminate, result.mesh.units)
-            elif result.plain.band.width is not None and result.plain.stations is not None:
-                write_stations(staging, [(result.plain.stations, result.plain.thickness)], result.mesh.units)
-            if result.chosen is not None and render:
-                draw_revolutions(staging / REVOLUTIONS_PICTURE, result.chosen, result.mesh.name)
-        if render:
-            with clock.stage("render"):
-                missing = _draw(result, staging)
-            notes = (*notes, Note(missing, warning=True)) if missing else notes
+        missing = _write_all(result, staging, render, clock)
+        notes = (*result.notes, Note(missing, warning=True)) if missing else result.notes
         notes = tuple(note.shown((staging / note.picture).is_file()) for note in notes)
         result = replace(result, seconds=result.seconds | clock.seconds, notes=notes)
         write_config(staging / CONFIG, out, _used(result, out, render), version())
         write_report(staging / REPORT, result.report())
     return result
+
+
+def _write_all(result: Result, out: Path, render: bool, clock: Clock) -> str:
+    """Write all files but those that hold the time that this takes; return "" or what is missing for drawing."""
+    with ExitStack() as stack:
+        pictures = None
+        with clock.stage("write"):
+            maps = result.maps
+            if render:
+                # late: runs without pictures need not wait for what draws
+                from meshwind.pictures.revolutions_picture import draw_revolutions
+                from meshwind.run.drawing import drawing
+
+                pictures = stack.enter_context(drawing(result, maps, out))
+                if result.chosen is not None:
+                    draw_revolutions(out / REVOLUTIONS_PICTURE, result.chosen, result.mesh.name)
+            write_files(out, result.layup, maps, result.mesh.units)
+            _write_layers(result, out)
+        if pictures is None:
+            return ""
+        with clock.stage("render"):
+            return pictures.finish()
+
+
+def _write_layers(result: Result, out: Path) -> None:
+    """Write the files of filaments and of layers."""
+    units, band = result.mesh.units, result.plain.band
+    if result.filaments:
+        from meshwind.results.filament_file import write_filaments
+
+        write_filaments(out / FILAMENT, result.filaments, units)
+    if result.layered is not None:
+        from meshwind.results.laminate_files import write_laminate
+
+        write_laminate(out, result.layered.laminate, units)
+    elif band.width is not None and result.plain.stations is not None:
+        from meshwind.results.laminate_files import write_stations
+
+        write_stations(out, [(result.plain.stations, result.plain.thickness)], units)
 
 
 def _used(result: Result, out: Path, render: bool) -> dict[str, object]:
@@ -265,24 +271,3 @@ def _used(result: Result, out: Path, render: bool) -> dict[str, object]:
         options, layers = result.layered.options, result.layered.file
     files = {"pins": None if options.pins is None else Path(options.pins), "layers": layers}
     return {"mesh": result.source, "out": out} | options.written() | files | {"render": render}
-
-
-def _draw(result: Result, out: Path) -> str:
-    """Draw the winding, the picture of a warning and the contact sheet; return "" or what is missing for drawing."""
-    name, units = result.mesh.name, result.mesh.units
-    of = subject_in(out, result.layup, name, units, result.revolutions)
-    of = replace(of, partings=parted(result.layup, result.spaced))
-    if result.filaments or result.layered is not None:
-        figures = result.report()
-        of = of.layered(read_laminate(out, result.surface), figures.get("laminate", []))
-        of = of.wound(result.filaments, figures.get("pattern", [])) if result.filaments else of
-    asked = (WINDING, SHEET, *names_of(of))
-    with TemporaryDirectory(dir=out) as cells:  # within, so that a killed run leaves nothing elsewhere
-        pictures = placed(scenes_of(of), asked, Page(), out, Path(cells))
-        work = dict(pictures)
-        if any(note.picture == FIT_PICTURE for note in result.notes):
-            work[out / FIT_PICTURE] = Drawing(fit_scene(result.surface, result.chart.annulus, name, units))
-        missing = driver.paint(work)
-        if not missing:
-            write_sheet(out / picture(SHEET), list(pictures))
-    return missing

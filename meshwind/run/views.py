@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from meshwind.core.defaults import MACHINE
 from meshwind.core.errors import BadInputError
 from meshwind.core.geometry import Block, Data
 from meshwind.core.table import as_columns, data_frame
@@ -21,12 +22,7 @@ from meshwind.path.blocks import bridges_block, paths_block, paths_table
 from meshwind.path.paths import Paths, Status
 from meshwind.pictures.page import Page
 from meshwind.pictures.picture import Picture
-from meshwind.pictures.render import render
 from meshwind.pictures.screen import has_screen, show
-from meshwind.program.machine import DEFAULT, read_machine
-from meshwind.program.program import Program
-from meshwind.program.program import program as make_program
-from meshwind.program.work import Work
 from meshwind.results.report_types import Report
 from meshwind.results.schema import picture as picture_file
 from meshwind.run.summary import run_lines
@@ -37,6 +33,8 @@ if TYPE_CHECKING:
     import pandas
     import pyvista
     import trimesh
+
+    from meshwind.program.program import Program
 
 PART, FIBRES, BRIDGES, CROSSINGS, QUADS, FILAMENT = "part", "fibres", "bridges", "crossings", "quads", "filament"
 """Names of what is seen of a wound part."""
@@ -136,6 +134,8 @@ class Views:
         if window:
             show(blocks(self), self.name)
             return None
+        from meshwind.pictures.render import render  # late, as in all below: most runs are for their files
+
         with self.in_folder() as folder, TemporaryDirectory() as drawn:
             render(folder, [what], page, out=drawn)
             seen = Picture((Path(drawn) / picture_file(what)).read_bytes(), f"{what} of {self.name}")
@@ -236,7 +236,7 @@ class Views:
         """
         return data_frame(_table(self, of))
 
-    def program(self: Wound, machine: str = DEFAULT, tension: float = 0.0) -> Program:
+    def program(self: Wound, machine: str = MACHINE, tension: float = 0.0) -> Program:
         """Plan the program of a winding machine for the filament; nothing is written.
 
         Parameters
@@ -263,13 +263,19 @@ class Views:
         >>> result.program("lathe-3").block.points.shape[1]
         3
         """
+        from meshwind.program.machine import read_machine
+        from meshwind.program.program import program
+        from meshwind.program.work import Work
+
         if not self.filaments:
             raise BadInputError(f"{self.name} was not wound as a filament; wind it with continuous=True")
         work = Work(self.filaments, self.layup.paths.surface, self.diagonal, self.units, self.name)
-        return make_program(work, read_machine(machine), tension)
+        return program(work, read_machine(machine), tension)
 
     def _repr_html_(self: Wound) -> str:
         """The picture and the lines that the command prints, for a notebook."""
+        from meshwind.pictures.render import render
+
         with self.in_folder() as folder, TemporaryDirectory() as drawn:
             try:
                 render(folder, ["winding"], _SMALL, out=drawn)

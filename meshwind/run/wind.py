@@ -7,14 +7,13 @@ from os import PathLike, fspath
 from meshwind.core.progress import Progress
 from meshwind.mesh import check_file
 from meshwind.mesh.io.read import MeshLike
-from meshwind.pictures import driver
+from meshwind.pictures.painter import start_probe
 from meshwind.planning.pins import check_pins
 from meshwind.results import folder
 from meshwind.run.result import Result, write_result
 from meshwind.workflow.band_plan import check_band
 from meshwind.workflow.clock import Clock
 from meshwind.workflow.compiling import compile_for
-from meshwind.workflow.layer_plans import read_layers
 from meshwind.workflow.options import Options
 from meshwind.workflow.part import fit_part, read_source
 from meshwind.workflow.winding import wind_part
@@ -169,9 +168,13 @@ def wind(  # noqa: PLR0913
         tolerance, threshold, worst_fit, units, spacing, band_width, band_thickness, tex, tows,
         fibre_density, resin_density, fibre_volume, pinned, angle, angle_at, continuous, turn_start, turn_end,
     )  # fmt: skip
-    plans = None if layers is None else read_layers(layers, options)
-    if plans is None:
+    if layers is None:
+        plans = None
         check_band(options)
+    else:
+        from meshwind.workflow.layer_plans import read_layers  # late: most runs have no laminate
+
+        plans = read_layers(layers, options)
     clock = Clock(progress)
     target = None if out is None else folder.named(out)
     check_file(mesh)
@@ -180,7 +183,7 @@ def wind(  # noqa: PLR0913
     if target is not None:
         folder.prepare(target, overwrite)
         if render:
-            driver.start_probe()
+            start_probe()
     compile_for([options], progress, laminate=plans is not None)
     with clock.stage("read"):
         source = read_source(mesh, options)

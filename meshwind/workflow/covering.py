@@ -1,16 +1,21 @@
 """As many paths as cover the part: counted with a few, and checked with those that are laid."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from meshwind.core.cast import Floats
-from meshwind.filament.closing import ClosedLayer
 from meshwind.filament.levels import levels
 from meshwind.filament.stations import COVERED, circuits_to_cover, covers
 from meshwind.path import Paths, Status
 from meshwind.workflow.notes import Note
+
+if TYPE_CHECKING:
+    from meshwind.filament.closing import ClosedLayer
 
 _ROUNDS = 20
 """Times that paths are added, each as many as would cover at the angle of the last ones: two or three are usual."""

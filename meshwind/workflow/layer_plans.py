@@ -1,20 +1,24 @@
 """The laminate's file: TOML with a table [[layer]] for each layer, in order of winding."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from math import isfinite
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from meshwind.core.defaults import TURNAROUNDS
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import AUTO, nearest, read_toml, shortened, turns
 from meshwind.core.spoken import argument
-from meshwind.filament.laminate import Ply
 from meshwind.filament.thickness import FLAT, HOLLOW, Laying
 from meshwind.workflow.band_plan import band_plan, roving_of
 from meshwind.workflow.options import Options
+
+if TYPE_CHECKING:
+    from meshwind.filament.laminate import Ply
 
 HELICAL, HOOP = KINDS = ("helical", "hoop")
 _ONLY = {
@@ -99,6 +103,8 @@ class LayerPlan:
         friction = self.friction
         if friction is None:
             friction = options.friction if isinstance(options.friction, float) else 0.0
+        from meshwind.filament.laminate import Ply  # late: most runs have no laminate
+
         laying = Laying(band.width, band.thickness, self.section, self.bridges)
         return Ply(laying, friction, band.roving)
 

@@ -1,8 +1,11 @@
 """Notes and warnings for the user beside the figures of a run."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,11 +22,13 @@ from meshwind.path.lengths import lengths, unresolved_share
 from meshwind.path.other_rests import OtherRests
 from meshwind.path.paths import EDGE, Paths, Status, converged_or_all
 from meshwind.planning.alternatives import FRICTION
-from meshwind.planning.revolutions import Revolutions
-from meshwind.planning.spacing import Spaced
 from meshwind.results.schema import FIT_PICTURE, REVOLUTIONS_PICTURE
 from meshwind.surface import FitError, Surface
 from meshwind.surface.fitting.deviation import deviation
+
+if TYPE_CHECKING:
+    from meshwind.planning.revolutions import Revolutions
+    from meshwind.planning.spacing import Spaced
 
 MISSED = 10.0
 """A vertex error of more than this many times the tolerance is worth a warning, ..."""
@@ -70,7 +75,7 @@ class Note:
     def __str__(self) -> str:
         return f"warning: {self.text}" if self.warning else self.text
 
-    def shown(self, there: bool) -> "Note":
+    def shown(self, there: bool) -> Note:
         """The note with a reference to its picture where there is one."""
         reference = f"; see {self.picture}"
         return replace(self, text=self.text.removesuffix(reference) + (reference if there and self.picture else ""))

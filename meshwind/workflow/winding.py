@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,8 +13,6 @@ from meshwind.chart import Chart
 from meshwind.core.defaults import PATHS
 from meshwind.core.parsing import AUTO
 from meshwind.core.progress import Progress
-from meshwind.filament.closing import ClosedLayer, close_layer
-from meshwind.filament.ends import LayerPlan
 from meshwind.filament.filament import Filament, filament_of_layers, filaments_of
 from meshwind.filament.levels import levels
 from meshwind.filament.plain_layer import Band, PlainLayer, plain_layer
@@ -23,16 +22,10 @@ from meshwind.path import Paths, solve
 from meshwind.path.friction import Friction, friction_from
 from meshwind.planning.families import Families, families
 from meshwind.planning.pins import PARAMETRIC, pin_table, read_pins
-from meshwind.planning.revolutions import Revolutions, choose_revolutions
-from meshwind.planning.spacing import Spaced, space_out
 from meshwind.surface import Surface
 from meshwind.workflow.band_plan import about_band, band_plan
 from meshwind.workflow.clock import Clock
 from meshwind.workflow.covering import Laid, lay_until_covered
-from meshwind.workflow.filament_notes import about_filament
-from meshwind.workflow.helices import Helices, Turned
-from meshwind.workflow.layer_plans import LayersFile
-from meshwind.workflow.layers import Layered, about_layers, first_helical, lay_layers
 from meshwind.workflow.notes import (
     Note,
     about_choice,
@@ -47,6 +40,16 @@ from meshwind.workflow.notes import (
 )
 from meshwind.workflow.options import Options
 from meshwind.workflow.part import Part, on_wound_skin
+
+# what only some windings need, a filament, a laminate or a search for revolutions, is imported by those
+if TYPE_CHECKING:
+    from meshwind.filament.closing import ClosedLayer
+    from meshwind.filament.ends import LayerPlan
+    from meshwind.planning.revolutions import Revolutions
+    from meshwind.planning.spacing import Spaced
+    from meshwind.workflow.helices import Turned
+    from meshwind.workflow.layer_plans import LayersFile
+    from meshwind.workflow.layers import Layered
 
 
 @dataclass(frozen=True, repr=False)
@@ -85,6 +88,8 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: 
     surface, units = part.surface, part.source.mesh.units
     layered, about = None, tuple[Note, ...]()
     if layers is not None:
+        from meshwind.workflow.layers import first_helical, lay_layers
+
         with clock.stage("layers"):
             layered, about = lay_layers(surface, layers, options, units, clock.tell)
             options = first_helical(layers.plans, layered, surface, units)
@@ -117,14 +122,10 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: 
         else:
             laid_ = wound(_count(options))
         closed, laid = laid_.closed, laid_.paths
-        spaced = None if options.spacing is None else space_out(laid, revolutions, options.spacing, friction)
+        spaced = _spaced(laid, options, revolutions, friction)
         laid = laid if spaced is None else spaced.paths
         notes = (*notes, *about_paths(laid), *about_choice(chosen), *about_spacing(spaced, units))
-        caps = part.chart.annulus.caps
-        if layered is not None:
-            notes = (*notes, *about_layers(layered, caps, units))
-        elif closed is not None:
-            notes = (*notes, *about_filament(closed, caps, units), *(turned.moved(laid) if turned is not None else ()))
+        notes = (*notes, *_about_turns(part, laid_, layered, turned))
         notes = (*notes, *about_contact(laid, units), *about_other_rests(laid, units))
     with clock.stage("assess"):
         layup = assess(laid, options.band_width)
@@ -151,8 +152,34 @@ def _wound(
     closing, say = close
     if closing is None:
         return Laid(lay(surface, replace(options, paths=paths), revolutions, friction))
+    from meshwind.filament.closing import close_layer
+
     closed = close_layer(surface, replace(closing, paths=paths), say)
     return Laid(closed.paths, closed)
+
+
+def _spaced(laid: Paths, options: Options, revolutions: float, friction: float | Friction) -> Spaced | None:
+    """Paths between those that were laid, where a spacing is to be kept."""
+    if options.spacing is None:
+        return None
+    from meshwind.planning.spacing import space_out
+
+    return space_out(laid, revolutions, options.spacing, friction)
+
+
+def _about_turns(part: Part, laid: Laid, layered: Layered | None, turned: Turned | None) -> tuple[Note, ...]:
+    """Notes on the layers, or on the one layer as a filament."""
+    caps, units = part.chart.annulus.caps, part.source.mesh.units
+    if layered is not None:
+        from meshwind.workflow.layers import about_layers
+
+        return tuple(about_layers(layered, caps, units))
+    if laid.closed is None:
+        return ()
+    from meshwind.workflow.filament_notes import about_filament
+
+    moved = () if turned is None else turned.moved(laid.paths)
+    return (*about_filament(laid.closed, caps, units), *moved)
 
 
 def lay(surface: Surface, options: Options, revolutions: float, friction: float | Friction = 0.0) -> Paths:
@@ -168,6 +195,8 @@ def _planned(
     surface: Surface, options: Options, revolutions: float, friction: float | Friction, say: Progress
 ) -> tuple[Options, Turned | None, tuple[Note, ...]]:
     """The options with the revolutions of their angle, if any, and with as many paths as cover the part."""
+    from meshwind.workflow.helices import Helices
+
     helices = Helices(surface, (0.0, 1.0), friction, levels(surface), say=say)
     turned, notes = None, []
     if options.paths is not None:
@@ -191,6 +220,8 @@ def _closing(
     options: Options, revolutions: float, friction: float | Friction, turned: Turned | None, grows: bool
 ) -> LayerPlan:
     """The plan of the layer as one filament."""
+    from meshwind.filament.ends import LayerPlan
+
     turns = (options.turn_start, options.turn_end)
     clear = 0.0 if options.band_width is None else 0.5 * options.band_width
     return LayerPlan(
@@ -228,6 +259,8 @@ def chosen_revolutions(
     """Choose the revolutions where they are "auto"; further as in `choose_revolutions`."""
     if options.turns != AUTO:
         return None
+    from meshwind.planning.revolutions import choose_revolutions
+
     paths, particles = options.paths or PATHS, options.particles
     with clock.stage("choose"):
         return choose_revolutions(

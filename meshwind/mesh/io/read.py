@@ -21,20 +21,9 @@ from meshwind.core.opencascade import need
 from meshwind.core.units import Unit
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.mesh.io.cad import CAD, read_cad_mesh
-from meshwind.mesh.io.deck.deck import read_deck
 from meshwind.mesh.io.file_mesh import FileMesh
-from meshwind.mesh.io.gltf.gltf import read_gltf
-from meshwind.mesh.io.in_memory import surface_in_memory
 from meshwind.mesh.io.in_subprocess import DAMAGED, Arrays, in_subprocess
-from meshwind.mesh.io.msh.msh import read_msh
-from meshwind.mesh.io.obj import read_obj
-from meshwind.mesh.io.off import read_off
-from meshwind.mesh.io.ply.ply import read_ply
 from meshwind.mesh.io.precision import resolved
-from meshwind.mesh.io.signature import foreign
-from meshwind.mesh.io.stl.stl import read_stl
-from meshwind.mesh.io.threemf.threemf import read_3mf
-from meshwind.mesh.io.vtk.vtk import read_vtk
 from meshwind.mesh.repair.repair import mesh_from
 
 MeshLike: TypeAlias = str | PathLike[str] | Mesh | Any
@@ -51,21 +40,33 @@ def _separate(work: Callable[[Path], Arrays]) -> _Reader:
     return read
 
 
-_READERS: dict[str, _Reader] = {
-    ".stl": read_stl,
-    ".ply": read_ply,
-    ".obj": read_obj,
-    ".off": read_off,
-    ".glb": read_gltf,
-    ".gltf": read_gltf,
-    ".3mf": read_3mf,
-    ".vtk": _separate(read_vtk),
-    ".vtu": _separate(read_vtk),
-    ".vtp": _separate(read_vtk),
-    ".msh": read_msh,
-    ".inp": read_deck,
-    **dict.fromkeys(CAD, _separate(read_cad_mesh)),
-}
+def _reader_of(suffix: str) -> _Reader:
+    """Reader of one of `SUFFIXES`, imported here: a run needs one of many."""
+    if suffix == ".stl":
+        from meshwind.mesh.io.stl.stl import read_stl as reader
+    elif suffix == ".ply":
+        from meshwind.mesh.io.ply.ply import read_ply as reader
+    elif suffix == ".obj":
+        from meshwind.mesh.io.obj import read_obj as reader
+    elif suffix == ".off":
+        from meshwind.mesh.io.off import read_off as reader
+    elif suffix in (".glb", ".gltf"):
+        from meshwind.mesh.io.gltf.gltf import read_gltf as reader
+    elif suffix == ".3mf":
+        from meshwind.mesh.io.threemf.threemf import read_3mf as reader
+    elif suffix == ".msh":
+        from meshwind.mesh.io.msh.msh import read_msh as reader
+    elif suffix == ".inp":
+        from meshwind.mesh.io.deck.deck import read_deck as reader
+    elif suffix in CAD:
+        return _separate(read_cad_mesh)
+    else:
+        from meshwind.mesh.io.vtk.vtk import read_vtk
+
+        return _separate(read_vtk)
+    return reader
+
+
 _FROM_CAD = {
     ".brep", ".sldprt", ".sldasm", ".catpart", ".catproduct", ".cgr", ".ipt", ".iam", ".prt", ".asm", ".par", ".psm",
     ".x_t", ".x_b", ".xmt_txt", ".sat", ".sab", ".jt", ".3dm", ".fcstd", ".f3d", ".skp", ".dwg", ".dxf", ".ifc",
@@ -87,7 +88,9 @@ _WAYS = {
 }
 """Advice on other formats of meshes and results, before the formats that are read."""
 _ADVICE = "give the path of a triangle mesh (STL, OBJ, PLY, ...)"
-SUFFIXES = tuple(_READERS)
+SUFFIXES = (
+    ".stl", ".ply", ".obj", ".off", ".glb", ".gltf", ".3mf", ".vtk", ".vtu", ".vtp", ".msh", ".inp", *CAD,
+)  # fmt: skip
 """File name endings that `read` understands."""
 
 _READER_ERRORS = (
@@ -145,6 +148,8 @@ def read(mesh: str | PathLike[str] | Any, component: int | None = None, units: s
 def load(mesh: str | PathLike[str] | Any) -> FileMesh:
     """The surface in a file or in memory without repair; it has at least a triangle.  Raises BadInputError."""
     if not isinstance(mesh, str | PathLike):
+        from meshwind.mesh.io.in_memory import surface_in_memory  # late, as the readers are
+
         return resolved("mesh", surface_in_memory(mesh))
     file = path_of(mesh)
     reader = _reader(file)
@@ -186,6 +191,8 @@ def path_of(file: str | PathLike[str]) -> Path:
 
 def _refuse_foreign(file: Path) -> None:
     """Say what a file that could not be read is, if its content tells that it is of another kind."""
+    from meshwind.mesh.io.signature import foreign  # late: most files are what they seem
+
     try:
         words = foreign(file)
     except OSError:
@@ -213,19 +220,19 @@ def _reader(file: Path) -> _Reader:
         raise BadInputError(f"{file.name}: is a file of a CAD program, not a mesh; export it there as STEP or STL")
     if file.suffix.lower() in CAD:
         need(f"{file.name}: ")
-    if file.suffix.lower() not in _READERS:
+    if file.suffix.lower() not in SUFFIXES:
         _refuse_foreign(file)
         known = ", ".join(suffix[1:].upper() for suffix in SUFFIXES if suffix not in (".stp", ".igs"))
         way = next((way for endings, way in _WAYS.items() if file.suffix.lower() in endings), "convert the mesh to")
         raise BadInputError(f"{file.name}: unknown format {file.suffix!r}; {way} one of {known}")
-    return _READERS[file.suffix.lower()]
+    return _reader_of(file.suffix.lower())
 
 
 def _near(file: Path) -> str:
     """Advice on a file that is missing: a mesh in the same folder with a similar name, if there is one."""
     if not file.parent.is_dir():
         return f"there is no folder {file.parent}"
-    names = {other.name: other.name for other in file.parent.iterdir() if other.suffix.lower() in _READERS}
+    names = {other.name: other.name for other in file.parent.iterdir() if other.suffix.lower() in SUFFIXES}
     names |= {Path(name).stem: name for name in names}
     near = difflib.get_close_matches(file.name, names, 1, 0.7)
     return f"did you mean {names[near[0]]}?" if near else ""

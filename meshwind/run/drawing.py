@@ -1,0 +1,83 @@
+"""Pictures of a run, drawn in another process while this one writes its files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
+
+from meshwind.core.geometry import Data
+from meshwind.pictures.drawings import Drawing
+from meshwind.pictures.fit_scene import fit_scene
+from meshwind.pictures.gallery import Sheet, makers_of, names_of, placed
+from meshwind.pictures.page import Page
+from meshwind.pictures.painter import Painter, painter
+from meshwind.pictures.subject import Subject, subject
+from meshwind.results.laminate_reading import read_laminate
+from meshwind.results.layup_figures import parted
+from meshwind.results.schema import FIT_PICTURE, SHEET, WINDING, picture
+
+if TYPE_CHECKING:
+    from meshwind.run.result import Result
+
+
+@contextmanager
+def drawing(result: Result, maps: Data, out: Path) -> Iterator[Pictures]:
+    """The pictures of a run: the winding, the picture of a warning and the contact sheet.
+
+    That of the winding is begun at once.  maps: those of surface.vtu.
+    """
+    # the folder is within the other, so that a killed run leaves nothing elsewhere
+    with TemporaryDirectory(dir=out) as cells, painter() as one:
+        made = Pictures(result, maps, (out, Path(cells)), one)
+        made.begin()
+        yield made
+
+
+class Pictures:
+    """The pictures of a run on their way to the renderer; those of the sheet alone are in a folder of their own."""
+
+    def __init__(self, result: Result, maps: Data, folders: tuple[Path, Path], one: Painter) -> None:
+        self._result, self._folders, self._painter = result, folders, one
+        self._sent: list[Path] = []
+        on = subject(result.layup, result.mesh.name, result.mesh.units, result.revolutions, maps=maps)
+        self._subject = replace(on, partings=parted(result.layup, result.spaced))
+
+    def begin(self) -> None:
+        """Send the picture of the winding."""
+        self._send(self._subject, WINDING)
+
+    def finish(self) -> str:
+        """Send the others, when all files are written, and wait for all; return "" or what is missing for drawing."""
+        result, (out, _) = self._result, self._folders
+        of = self._whole(out)
+        for name in makers_of(of):
+            if name != WINDING:
+                self._send(of, name)
+        sheet = Sheet(self._sent)
+        if any(note.picture == FIT_PICTURE for note in result.notes):
+            scene = fit_scene(result.surface, result.chart.annulus, result.mesh.name, result.mesh.units)
+            self._painter.send(out / FIT_PICTURE, Drawing(scene))
+        missing = self._painter.finish(sheet.take)
+        if not missing:
+            sheet.write(out / picture(SHEET))
+        return missing
+
+    def _send(self, of: Subject, name: str) -> None:
+        """Send the picture of a name: to be seen on its own, or on the sheet alone."""
+        scenes, asked = {name: makers_of(of)[name](of)}, (WINDING, SHEET, *names_of(of))
+        for file, one in placed(scenes, asked, Page(), *self._folders).items():
+            self._painter.send(file, one)
+            self._sent.append(file)
+
+    def _whole(self, out: Path) -> Subject:
+        """The subject with its filaments and its laminate, if there are any."""
+        result, of = self._result, self._subject
+        if not result.filaments and result.layered is None:
+            return of
+        figures = result.report()
+        of = of.layered(read_laminate(out, result.surface), figures.get("laminate", []))
+        return of.wound(result.filaments, figures.get("pattern", [])) if result.filaments else of
