@@ -10,7 +10,7 @@ import numpy as np
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.lists import spread
 from meshwind.core.vectors import TINY, unit
-from meshwind.filament.course import Kind
+from meshwind.filament.kinds import Kind
 
 WORDS = {
     Kind.LAID: "on the part",

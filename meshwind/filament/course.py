@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -10,34 +9,11 @@ import numpy as np
 from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.threads import parallel_for
+from meshwind.filament.kinds import Kind as Kind
 from meshwind.filament.runs import Columns, Order, Runs, copy_runs
 
 _BLOCK = 50
 """Stretches at least that a thread copies."""
-
-
-class Kind(IntEnum):
-    """What a point of a fibre does.
-
-    Attributes
-    ----------
-    LAID : int
-        0: it lies on the part.
-    BRIDGE : int
-        1: it is in the air, between two places where the fibre lies on the part.
-    TURN : int
-        2: it is in a turnaround, on its way to the next path or back from it.
-    DWELL : int
-        3: it waits in a turnaround, as a hoop, for the start of the next path.
-    JOIN : int
-        4: it leads from one layer to the next.
-    """
-
-    LAID = 0
-    BRIDGE = 1
-    TURN = 2
-    DWELL = 3
-    JOIN = 4
 
 
 @dataclass(frozen=True)

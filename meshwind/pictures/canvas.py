@@ -23,6 +23,8 @@ _MARGIN = 14
 _BETWEEN, _SMALLER = 40.0, 1.25
 """Distance between two views, and the factor by which the part may be larger in one."""
 _BAR_TOP, _BAR_BOTTOM, _BAR_WIDTH = 470, 930, 34
+_PROBE = [160, 120]
+"""Size of the window while it is tested: a page takes ten times as long."""
 _ANGLE = np.radians(15.0)
 """Half the angle of view in perspective."""
 
@@ -32,7 +34,7 @@ Box = tuple[float, float, float, float]
 
 def plotter() -> Any:
     """An empty off-screen window, after a test that its graphics work."""
-    window = pv.Plotter(off_screen=True, window_size=list(DESIGNED), lighting="none")
+    window = pv.Plotter(off_screen=True, window_size=_PROBE, lighting="none")
     window.add_mesh(pv.Sphere(theta_resolution=4, phi_resolution=4))
     window.enable_anti_aliasing("msaa", multi_samples=4)
     window.show(auto_close=False)
@@ -95,30 +97,48 @@ def portrait(window: Any, page: Page, view: View, points: Floats) -> Any:
     points (k, 3): of the part.
     """
     boxes, scale = rooms(page, view), fitting(page, view)
-    aim(window, page, view, points, view.centre, middle(boxes[0]), scale)
-    image = shot(window, page)
-    if len(boxes) > 1:
+    if len(boxes) == 1:
+        aim(window, page, view, points, view.centre, middle(boxes[0]), scale)
+        image = shot(window, page)
+    else:
         box = boxes[1]
-        aim(window, page, view.other, points, view.centre, middle(box), scale)
         half = round(box[0] - 0.5 * page.unit * _BETWEEN), round(box[1] - 0.5 * page.unit * _BETWEEN)
         corner = (half[0], 0) if view.upright else (0, half[1])
-        image.paste(shot(window, page).crop((*corner, page.width, page.height)), corner)
+        first = (half[0], page.height) if view.upright else (page.width, half[1])
+        last = page.width - corner[0], page.height - corner[1]
+        image = blank(page)
+        # a window for each half: the other half of a page would be drawn in vain
+        for size, seen, (x, y), left in (
+            (first, view, middle(boxes[0]), (0, 0)),
+            (last, view.other, middle(box), corner),
+        ):
+            aim(window, page, seen, points, view.centre, (x - left[0], y - left[1]), scale, size)
+            image.paste(shot(window, page, size), left)
         at = box[0] + 0.5 * box[2], page.height - page.unit * (BOTTOM - 30)
         pen(image).text(at, "from the other side", FAINT, font=face(page, 21), anchor="mm")
     return image
 
 
 def aim(
-    window: Any, page: Page, view: View, points: Floats, target: Floats, at: tuple[float, float], scale: float
+    window: Any,
+    page: Page,
+    view: View,
+    points: Floats,
+    target: Floats,
+    at: tuple[float, float],
+    scale: float,
+    size: tuple[int, int] | None = None,
 ) -> None:
     """Aim the camera so that a target (3,) appears at a position in pixels; scale: mesh units per pixel.
 
-    points (k, 3): of the part, which the eye stays in front of in perspective.
+    points (k, 3): of the part, which the eye stays in front of in perspective; size: of the window, by default the
+    page's.
     """
     right, up, eye = view.right, view.up, view.eye
-    off = 0.5 * page.width - at[0], at[1] - 0.5 * page.height
+    width, height = size or (page.width, page.height)
+    off = 0.5 * width - at[0], at[1] - 0.5 * height
     focus = target + scale * (off[0] * right + off[1] * up)
-    half = 0.5 * page.height * scale
+    half = 0.5 * height * scale
     reach = 4.0 * float(np.linalg.norm([view.width, view.height]))
     if page.perspective:  # the nearest point appears as large as in parallel projection, so that nothing is cut off
         reach = half / np.tan(_ANGLE) + 0.5 * float(np.ptp(points @ eye))
@@ -135,11 +155,11 @@ def aim(
     window.reset_camera_clipping_range()
 
 
-def shot(window: Any, page: Page) -> Any:
-    """Picture of the window."""
-    size = [page.width, page.height]
-    if list(window.window_size) != size:
-        window.window_size = size
+def shot(window: Any, page: Page, size: tuple[int, int] | None = None) -> Any:
+    """Picture of the window in a size, by default the page's."""
+    size = size or (page.width, page.height)
+    if tuple(window.window_size) != size:
+        window.render_window.SetSize(*size)  # the window's own method would render as well
     window.render()
     return Image.fromarray(window.screenshot(return_img=True, transparent_background=page.transparent))
 

@@ -9,7 +9,7 @@ import pyvista as pv
 
 from meshwind.appearance.strips import WORDS, Ribbons
 from meshwind.core.cast import Floats
-from meshwind.filament.course import Kind
+from meshwind.filament.kinds import Kind
 from meshwind.pictures import animation_picture, canvas, filament_picture
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import ReelScene
