@@ -108,10 +108,9 @@ def portrait(window: Any, page: Page, view: View, points: Floats) -> Any:
         last = page.width - corner[0], page.height - corner[1]
         image = blank(page)
         # a window for each half: the other half of a page would be drawn in vain
-        for size, seen, (x, y), left in (
-            (first, view, middle(boxes[0]), (0, 0)),
-            (last, view.other, middle(box), corner),
-        ):
+        sides = (first, view, boxes[0], (0, 0)), (last, view.other, box, corner)
+        for size, seen, within, left in sides:
+            x, y = middle(within)
             aim(window, page, seen, points, view.centre, (x - left[0], y - left[1]), scale, size)
             image.paste(shot(window, page, size), left)
         at = box[0] + 0.5 * box[2], page.height - page.unit * (BOTTOM - 30)
