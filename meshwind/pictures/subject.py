@@ -119,6 +119,11 @@ class Subject:
         """The words and the view."""
         return Frame(title, subtitle, self.units, view or self.view)
 
+    def on(self, maps: Mapping[str, NDArray[Any]]) -> "Subject":
+        """The same with the maps of surface.vtu, seen from the same side."""
+        others = {name: values for name, values in maps.items() if name != NORMAL}
+        return replace(self, normals=maps[NORMAL], maps=others, seen_from=self.view)
+
     def wound(self, filaments: Sequence[Filament], patterns: Sequence[PatternFigures]) -> "Subject":
         """The same as a continuous winding; patterns: the report's figures of it."""
         words = patterns[0]["words"] if len(patterns) == 1 else ""
@@ -135,18 +140,17 @@ def subject(
     units: str = "",
     revolutions: float | None = None,
     seen_from: str | View = "auto",
-    maps: Mapping[str, NDArray[Any]] | None = None,
 ) -> Subject:
-    """A layup to draw; maps: those of surface.vtu, where they are needed."""
-    on, maps = grid(layup.paths.surface), dict(maps or {})
-    normals = maps.pop(NORMAL) if maps else np.cross(on.frames[:, 1], on.frames[:, 2])
-    return Subject(layup, on.points, on.quads, normals, name, units, revolutions, maps, seen_from)
+    """A layup to draw, without maps."""
+    on = grid(layup.paths.surface)
+    normals = np.cross(on.frames[:, 1], on.frames[:, 2])
+    return Subject(layup, on.points, on.quads, normals, name, units, revolutions, seen_from=seen_from)
 
 
 def subject_of(results: Results, seen_from: str = "auto") -> Subject:
     """The winding of a run's folder; raises BadInputError if it has no surface.vtu."""
     maps = read_surface_grid(results.folder, results.surface).point_data
-    of = subject(results.layup, results.name, results.units, results.revolutions, seen_from, maps)
+    of = subject(results.layup, results.name, results.units, results.revolutions, seen_from).on(maps)
     of = replace(of, partings=results.partings)
     of = of.layered(read_laminate(results.folder, results.surface), results.layers)
     return of.wound(results.filaments, results.patterns) if results.filaments else of

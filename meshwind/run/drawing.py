@@ -25,14 +25,11 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def drawing(result: Result, maps: Data, out: Path) -> Iterator[Pictures]:
-    """The pictures of a run: the winding, the picture of a warning and the contact sheet.
-
-    That of the winding is begun at once.  maps: those of surface.vtu.
-    """
+def drawing(result: Result, out: Path) -> Iterator[Pictures]:
+    """The pictures of a run: the winding, which is begun at once, the picture of a warning and the contact sheet."""
     # the folder is within the other, so that a killed run leaves nothing elsewhere
     with TemporaryDirectory(dir=out) as cells, painter() as one:
-        made = Pictures(result, maps, (out, Path(cells)), one)
+        made = Pictures(result, (out, Path(cells)), one)
         made.begin()
         yield made
 
@@ -40,20 +37,23 @@ def drawing(result: Result, maps: Data, out: Path) -> Iterator[Pictures]:
 class Pictures:
     """The pictures of a run on their way to the renderer; those of the sheet alone are in a folder of their own."""
 
-    def __init__(self, result: Result, maps: Data, folders: tuple[Path, Path], one: Painter) -> None:
+    def __init__(self, result: Result, folders: tuple[Path, Path], one: Painter) -> None:
         self._result, self._folders, self._painter = result, folders, one
         self._sent: list[Path] = []
-        on = subject(result.layup, result.mesh.name, result.mesh.units, result.revolutions, maps=maps)
+        on = subject(result.layup, result.mesh.name, result.mesh.units, result.revolutions)
         self._subject = replace(on, partings=parted(result.layup, result.spaced))
 
     def begin(self) -> None:
         """Send the picture of the winding."""
         self._send(self._subject, WINDING)
 
-    def finish(self) -> str:
-        """Send the others, when all files are written, and wait for all; return "" or what is missing for drawing."""
+    def finish(self, maps: Data) -> str:
+        """Send the others, when all files are written, and wait for all; return "" or what is missing for drawing.
+
+        maps: those of surface.vtu.
+        """
         result, (out, _) = self._result, self._folders
-        of = self._whole(out)
+        of = self._whole(maps, out)
         for name in makers_of(of):
             if name != WINDING:
                 self._send(of, name)
@@ -73,9 +73,9 @@ class Pictures:
             self._painter.send(file, one)
             self._sent.append(file)
 
-    def _whole(self, out: Path) -> Subject:
-        """The subject with its filaments and its laminate, if there are any."""
-        result, of = self._result, self._subject
+    def _whole(self, maps: Data, out: Path) -> Subject:
+        """The subject with its maps and, if there are any, its filaments and its laminate."""
+        result, of = self._result, self._subject.on(maps)
         if not result.filaments and result.layered is None:
             return of
         figures = result.report()

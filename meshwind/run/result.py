@@ -230,21 +230,21 @@ def _write_all(result: Result, out: Path, render: bool, clock: Clock) -> str:
     with ExitStack() as stack:
         pictures = None
         with clock.stage("write"):
-            maps = result.maps
             if render:
                 # late: runs without pictures need not wait for what draws
                 from meshwind.pictures.revolutions_picture import draw_revolutions
                 from meshwind.run.drawing import drawing
 
-                pictures = stack.enter_context(drawing(result, maps, out))
+                pictures = stack.enter_context(drawing(result, out))
                 if result.chosen is not None:
                     draw_revolutions(out / REVOLUTIONS_PICTURE, result.chosen, result.mesh.name)
+            maps = result.maps
             write_files(out, result.layup, maps, result.mesh.units)
             _write_layers(result, out)
         if pictures is None:
             return ""
         with clock.stage("render"):
-            return pictures.finish()
+            return pictures.finish(maps)
 
 
 def _write_layers(result: Result, out: Path) -> None:
