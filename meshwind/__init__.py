@@ -131,11 +131,11 @@ if TYPE_CHECKING:
     from meshwind.pictures.picture import Picture as Picture
     from meshwind.pictures.redesign_scene import draw_redesign as draw_redesign
     from meshwind.pictures.render import render as render
-    from meshwind.planning import Families as Families
-    from meshwind.planning import choose_revolutions as choose_revolutions
-    from meshwind.planning import families as families
-    from meshwind.planning import read_pins as read_pins
-    from meshwind.planning import space_out as space_out
+    from meshwind.planning.families import Families as Families
+    from meshwind.planning.families import families as families
+    from meshwind.planning.pins import read_pins as read_pins
+    from meshwind.planning.revolutions import choose_revolutions as choose_revolutions
+    from meshwind.planning.spacing import space_out as space_out
     from meshwind.results.image_files import read_image as read_image
     from meshwind.run.export import export as export
     from meshwind.run.loaded import LoadedResult as LoadedResult
@@ -164,8 +164,8 @@ _HOME = {
     "trace": "march", "traces": "march", "Trace": "march", "Stop": "march",
     "Paths": "path", "Status": "path", "solve": "path", "drag": "path", "OnePath": "path.one_path",
     "Friction": "path.friction", "friction_from": "path.friction",
-    "Families": "planning", "families": "planning", "choose_revolutions": "planning", "read_pins": "planning",
-    "space_out": "planning",
+    "Families": "planning.families", "families": "planning.families", "read_pins": "planning.pins",
+    "choose_revolutions": "planning.revolutions", "space_out": "planning.spacing",
     "Layup": "layup", "assess": "layup", "windability": "layup",
     "read_cad": "exporting.cad_surface",
     "Redesign": "editing.redesign", "redesign": "editing.redesign", "write_redesign": "run.redesign",

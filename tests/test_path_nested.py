@@ -20,7 +20,7 @@ from meshwind.path.friction import friction_of
 from meshwind.path.nested import resolve, solve_with
 from meshwind.path.sliding import slide_at
 from meshwind.path.solver import Solver
-from meshwind.planning import families
+from meshwind.planning.families import families
 from meshwind.surface import Surface, shapes
 
 

@@ -11,7 +11,6 @@ from meshwind.filament.plain_layer import PlainLayer
 from meshwind.layup.crossings import Crossings, counts
 from meshwind.layup.layup import Layup
 from meshwind.layup.windability import CONCAVE, CONVEX, SADDLE, Windability
-from meshwind.planning.alternatives import FRICTION, WIDER
 from meshwind.results.pattern_types import Spread
 from meshwind.results.report_types import (
     CoverageFigures,
@@ -145,6 +144,8 @@ def fibre_figures(layup: Layup, plain: PlainLayer) -> FibreFigures:
 
 def revolution_figures(chosen: Revolutions) -> RevolutionFigures:
     """The choice of revolutions and its reasons; a bound is None if there is none."""
+    from meshwind.planning.alternatives import FRICTION, WIDER  # late: most runs choose no revolutions
+
     found = chosen.feasible
     return {
         "chosen": chosen.choice,

@@ -232,11 +232,12 @@ def _write_all(result: Result, out: Path, render: bool, clock: Clock) -> str:
         with clock.stage("write"):
             if render:
                 # late: runs without pictures need not wait for what draws
-                from meshwind.pictures.revolutions_picture import draw_revolutions
                 from meshwind.run.drawing import drawing
 
                 pictures = stack.enter_context(drawing(result, out))
                 if result.chosen is not None:
+                    from meshwind.pictures.revolutions_picture import draw_revolutions
+
                     draw_revolutions(out / REVOLUTIONS_PICTURE, result.chosen, result.mesh.name)
             maps = result.maps
             write_files(out, result.layup, maps, result.mesh.units)

@@ -21,7 +21,6 @@ from meshwind.mesh.opening.flat_ends import has_flat_ends
 from meshwind.path.lengths import lengths, unresolved_share
 from meshwind.path.other_rests import OtherRests
 from meshwind.path.paths import EDGE, Paths, Status, converged_or_all
-from meshwind.planning.alternatives import FRICTION
 from meshwind.results.schema import FIT_PICTURE, REVOLUTIONS_PICTURE
 from meshwind.surface import FitError, Surface
 from meshwind.surface.fitting.deviation import deviation
@@ -177,6 +176,8 @@ def about_choice(chosen: Revolutions | None) -> tuple[Note, ...]:
     """Note on why the revolutions were chosen, and what would allow more."""
     if chosen is None:
         return ()
+    from meshwind.planning.alternatives import FRICTION  # late: most runs choose no revolutions
+
     more = []
     if chosen.with_friction > 0.0:
         more.append(f"friction {FRICTION:g} would allow {_number(chosen.with_friction)}")

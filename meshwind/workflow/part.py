@@ -1,8 +1,11 @@
 """A mesh made ready for winding: read, opened at its ends, flattened and fitted with a surface."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from meshwind.chart import Chart, flatten
 from meshwind.core.errors import BadInputError
@@ -10,11 +13,13 @@ from meshwind.core.units import ASSUMED, Unit
 from meshwind.mesh import Annulus, Mesh, annulus, read
 from meshwind.mesh.geometry.facet_tree import FacetTree
 from meshwind.mesh.io.read import MeshLike, path_of
-from meshwind.mesh.io.scalars import Scalars, read_scalars
 from meshwind.surface import Surface, fit
 from meshwind.workflow.clock import Clock
 from meshwind.workflow.option_checks import FIELD
 from meshwind.workflow.options import Options
+
+if TYPE_CHECKING:
+    from meshwind.mesh.io.scalars import Scalars
 
 
 @dataclass(frozen=True)
@@ -34,7 +39,7 @@ class Part:
     chart: Chart
     surface: Surface
 
-    def counting(self, threshold: float | None) -> "Part":
+    def counting(self, threshold: float | None) -> Part:
         """The part, on which gaps up to a threshold count as none; None for those up to the surface's uncertainty."""
         return self if threshold is None else replace(self, surface=replace(self.surface, threshold=threshold))
 
@@ -56,6 +61,8 @@ def read_field(mesh: MeshLike, name: str, instead: str) -> Scalars:
     """Read a scalar of the mesh's file; raises BadInputError where there is none, with what to give instead."""
     if not isinstance(mesh, str | PathLike):
         raise BadInputError(f"{FIELD}{name} is a scalar of a mesh file, but the mesh is no file; {instead}")
+    from meshwind.mesh.io.scalars import read_scalars  # late: few runs have a field of friction
+
     return read_scalars(path_of(mesh), name)
 
 
