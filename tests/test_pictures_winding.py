@@ -16,6 +16,9 @@ from meshwind.layup.layup import assess
 from meshwind.mesh.geometry.mesh import Mesh
 from meshwind.path.lengths import bridges
 from meshwind.pictures import driver
+from meshwind.pictures.drawings import Drawing
+from meshwind.pictures.page import Page
+from meshwind.pictures.painter import painter
 from meshwind.pictures.subject import subject
 from meshwind.pictures.winding_scene import lifts, winding_scene
 from meshwind.results.report import RunFacts, report
@@ -68,6 +71,36 @@ def test_a_renderer_that_is_not_needed_ends() -> None:
     driver.start_probe()
     driver.stop()
     driver.stop()
+
+
+@pytest.mark.usefixtures("opengl")
+def test_a_renderer_is_kept_and_one_that_has_ended_is_replaced(tmp_path: Path) -> None:
+    driver.stop()
+    scene = Drawing(winding_scene(subject(assess(helices(4, 0.5, 21, cylinder())), "cylinder")), Page(400, 300))
+    files = [tmp_path / f"{number}.png" for number in range(3)]
+    assert driver.paint({files[0]: scene}) == ""
+    with painter() as first:
+        process = first.process
+        first.send(files[1], scene)
+        assert first.finish() == ""
+    process.kill()
+    process.wait()
+    assert driver.paint({files[2]: scene}) == ""
+    with painter() as last:
+        assert last.process.pid != process.pid
+        assert last.finish() == ""
+    driver.stop()
+    assert files[0].read_bytes() == files[1].read_bytes() == files[2].read_bytes()
+
+
+@pytest.mark.usefixtures("opengl")
+def test_a_renderer_is_not_left_at_work_by_an_error(tmp_path: Path) -> None:
+    scene = Drawing(winding_scene(subject(assess(helices(4, 0.5, 21, cylinder())), "cylinder")))
+    with pytest.raises(KeyboardInterrupt), painter() as one:
+        one.send(tmp_path / "a.png", scene)
+        raise KeyboardInterrupt
+    assert one.process.returncode is not None
+    assert driver.can_draw() == ""
 
 
 def test_writing_alone_does_not_load_vtk() -> None:

@@ -49,7 +49,7 @@ class Painter:
         # a file, not a pipe: error messages of VTK must not fill a pipe that is not read while it draws
         self._complaint = tempfile.TemporaryFile()  # noqa: SIM115
         # -P keeps this folder off the process's import path, where its module names could shadow others.
-        self._process = subprocess.Popen(
+        self.process = subprocess.Popen(
             [sys.executable, "-P", str(script)],
             env=environment,
             stdin=subprocess.PIPE,
@@ -66,17 +66,17 @@ class Painter:
     @property
     def spent(self) -> bool:
         """Whether the process has drawn and ended; of one that has ended before it is to be told why."""
-        return self._ready and self._process.poll() is not None
+        return self._ready and self.process.poll() is not None
 
     def close(self) -> None:
         """End the process if it still runs."""
-        if self._process.returncode is None:
-            self._process.kill()
-            self._process.wait()
+        if self.process.returncode is None:
+            self.process.kill()
+            self.process.wait()
         self._blocks.put(None)
         self._feeder.join()
-        assert self._process.stdout is not None
-        self._process.stdout.close()
+        assert self.process.stdout is not None
+        self.process.stdout.close()
         self._complaint.close()
 
     def send(self, picture: Path, drawing: "Drawing") -> None:
@@ -97,7 +97,7 @@ class Painter:
         if words[-1:] == [DONE]:
             _keep(self)
             return ""
-        self._process.wait()
+        self.process.wait()
         self._complaint.seek(0)
         complaint = self._complaint.read().decode(errors="replace")
         self.close()
@@ -107,7 +107,7 @@ class Painter:
         missing = " and ".join(picture.name for picture in pictures if picture.name not in words)
         if late:
             return f"no {missing}: drawing took more than {_SILENT_SECONDS:.0f} s"
-        if not self._ready and (self._process.returncode < 0 or "OpenGL" in complaint):
+        if not self._ready and (self.process.returncode < 0 or "OpenGL" in complaint):
             return NO_DRIVER
         last = complaint.strip().splitlines()[-1:]
         return f"no {missing or 'picture'}: {''.join(last) or 'the renderer stopped'}"
@@ -118,7 +118,7 @@ class Painter:
 
     def _feed(self) -> None:
         """In a thread: write what is sent to the process."""
-        stdin = self._process.stdin
+        stdin = self.process.stdin
         assert stdin is not None
         while (block := self._blocks.get()) is not None:
             with suppress(OSError):  # it has crashed: its output and return code say why
@@ -129,7 +129,7 @@ class Painter:
 
     def _work(self, drawn: Drawn | None) -> tuple[list[str], bool]:
         """Wait for the end of a batch or of the process: its output, and whether it was too slow and killed."""
-        process, words = self._process, list[str]()
+        process, words = self.process, list[str]()
         stdout = process.stdout
         assert stdout is not None
         watch = Timer(_SILENT_SECONDS, process.kill)
