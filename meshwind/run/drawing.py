@@ -47,23 +47,23 @@ class Pictures:
         """Send the picture of the winding."""
         self._send(self._subject, WINDING)
 
-    def finish(self, maps: Data) -> str:
-        """Send the others, when all files are written, and wait for all; return "" or what is missing for drawing.
-
-        maps: those of surface.vtu.
-        """
+    def go_on(self, maps: Data) -> None:
+        """Send the other pictures, when all files are written; maps: those of surface.vtu."""
         result, (out, _) = self._result, self._folders
         of = self._whole(maps, out)
         for name in makers_of(of):
             if name != WINDING:
                 self._send(of, name)
-        sheet = Sheet(self._sent)
         if any(note.picture == FIT_PICTURE for note in result.notes):
             scene = fit_scene(result.surface, result.chart.annulus, result.mesh.name, result.mesh.units)
             self._painter.send(out / FIT_PICTURE, Drawing(scene))
+
+    def finish(self) -> str:
+        """Wait for all pictures and arrange them on the sheet; return "" or what is missing for drawing."""
+        sheet = Sheet(self._sent)
         missing = self._painter.finish(sheet.take)
         if not missing:
-            sheet.write(out / picture(SHEET))
+            sheet.write(self._folders[0] / picture(SHEET))
         return missing
 
     def _send(self, of: Subject, name: str) -> None:

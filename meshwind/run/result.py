@@ -245,7 +245,9 @@ def _write_all(result: Result, out: Path, render: bool, clock: Clock) -> str:
         if pictures is None:
             return ""
         with clock.stage("render"):
-            return pictures.finish(maps)
+            pictures.go_on(maps)
+            result.report()  # what it works out is kept, and this process would wait
+            return pictures.finish()
 
 
 def _write_layers(result: Result, out: Path) -> None:
