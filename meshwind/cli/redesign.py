@@ -70,6 +70,7 @@ def redesign(
     # the numerical libraries are imported late: --help and usage errors must not wait for them
     from meshwind.editing.redesign import redesign as edit_mesh
     from meshwind.mesh import check_file
+    from meshwind.pictures.painter import start_probe
     from meshwind.results import folder
     from meshwind.run.redesign import write_redesign
     from meshwind.workflow.layer_plans import read_layers
@@ -79,6 +80,8 @@ def redesign(
     if windings.layers is not None:
         read_layers(windings.layers, Options())
     folder.prepare(target, files.overwrite)
+    if files.render:
+        start_probe()  # it loads its libraries while this process computes
     begin = perf_counter()
     wound = {name: getattr(winding, name) for name in WINDING} | asdict(windings)
     with stages(printed) as progress:

@@ -105,6 +105,9 @@ def render(*, folder: ResultsFolder, what: What, look: Look, out: OtherFolder = 
 
     NAME.png for each picture, sheet.png with all of them, winding.gif and winding.mp4 with --animate.
     """
+    from meshwind.pictures.painter import start_probe
+
+    start_probe()  # it loads its libraries while this process loads its own
     from meshwind.pictures.page import Page, parse_size
     from meshwind.pictures.render import render as draw
     from meshwind.pictures.render import usual_page
