@@ -23,10 +23,6 @@ that unit's name."""
 PIXELS, LEAST, MOST = 2, 256, 2048
 """Pixels per span, and bounds: the spline between pixels is then known to more than 16 bits."""
 
-_UP, _RGB, _LEVEL = 2, 2, 5
-"""PNG's numbers for rows that hold the difference from the row above and for pixels of three channels, and how hard
-they are packed."""
-
 
 def write_chart_image(path: Path, surface: Surface, units: str = "") -> None:
     """Write the surface as an image, two pixels per span: PNG to 1/65535 of the part's size, or NPZ in full."""
@@ -126,18 +122,25 @@ def _corner(path: Path, texts: dict[str, str], key: str) -> Floats:
 
 
 def _write_png(path: Path, levels: NDArray[np.uint16], texts: dict[str, str]) -> None:
-    """Write three channels of 16 bits, which Pillow cannot, without VTK, which takes longer to import than this."""
+    from vtkmodules.util import numpy_support
+    from vtkmodules.vtkCommonDataModel import vtkImageData
+    from vtkmodules.vtkIOImage import vtkPNGWriter
+
     height, width = levels.shape[:2]
-    rows = np.frombuffer(levels.astype(">u2").tobytes(), dtype=np.uint8).reshape(height, -1)
-    filtered = np.full((height, rows.shape[1] + 1), _UP, dtype=np.uint8)
-    filtered[:, 1:] = np.diff(rows, axis=0, prepend=np.zeros_like(rows[:1]))  # bytes wrap, as they are to
-    chunks = [(b"IHDR", struct.pack(">IIBBBBB", width, height, 16, _RGB, 0, 0, 0))]
-    chunks += [(b"tEXt", key.encode("latin-1") + bytes(1) + text.encode("latin-1")) for key, text in texts.items()]
-    chunks += [(b"IDAT", zlib.compress(filtered.tobytes(), _LEVEL)), (b"IEND", b"")]
-    with path.open("wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n")
-        for kind, held in chunks:
-            file.write(struct.pack(">I", len(held)) + kind + held + struct.pack(">I", zlib.crc32(kind + held)))
+    convert: Any = numpy_support.numpy_to_vtk
+    picture = vtkImageData()
+    picture.SetDimensions(width, height, 1)
+    picture.GetPointData().SetScalars(convert(_upside_down(levels).reshape(-1, 3), deep=True))
+    writer = vtkPNGWriter()
+    writer.WriteToMemoryOn()  # VTK itself does not report a full disk
+    writer.SetInputData(picture)
+    for key, text in texts.items():
+        writer.AddText(key, text)
+    writer.Write()
+    if writer.GetErrorCode():
+        raise OSError(f"VTK could not write {path.name}")
+    back: Any = numpy_support.vtk_to_numpy
+    path.write_bytes(back(writer.GetResult()).tobytes())
 
 
 def _read_png(path: Path) -> tuple[NDArray[Any], dict[str, str]]:
