@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numba
 import numpy as np
 import pytest
+import scipy.linalg
 from benchmarks.history import GROWTH, grown, kept
 from benchmarks.jobs import JOBS, counts, kernels
 from benchmarks.tally import counted
@@ -12,6 +13,7 @@ from benchmarks.tally import counted
 import meshwind as mw
 from meshwind.core import threads
 from meshwind.path import solver
+from meshwind.surface.fitting import conjugate_gradients
 
 
 @pytest.fixture
@@ -57,11 +59,12 @@ def solved() -> mw.Paths:
 
 
 def test_the_tally_is_what_kernels_report_and_leaves_no_trace() -> None:
-    loop = threads.parallel_for
+    loop, factor = threads.parallel_for, scipy.linalg.cholesky_banded
     with counted() as tally:
         paths = solved()
         assert solver.parallel_for is not loop  # type: ignore[attr-defined]
     assert solver.parallel_for is threads.parallel_for is loop  # type: ignore[attr-defined]
+    assert scipy.linalg.cholesky_banded is conjugate_gradients.cholesky_banded is factor  # type: ignore[attr-defined]
     assert tally["evaluations"] >= paths.counters.evaluations > 0
     assert tally["paths"] >= len(paths)
 

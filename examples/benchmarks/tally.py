@@ -90,17 +90,16 @@ def noted(function: Callable[..., Any], tally: Tally, counts: dict[str, int]) ->
 
 @contextmanager
 def replaced(old: Callable[..., Any], new: Callable[..., Any]) -> Iterator[None]:
-    """Another function in the place of one, wherever it is imported by its name."""
-    _put(old, new)
+    """Another function in the place of one, where it is at home and in all modules that import it by its name."""
+    packages = {"meshwind", old.__module__.partition(".")[0]}
+    _put(old, new, packages)
     try:
         yield
     finally:
-        _put(new, old)
+        _put(new, old, packages)  # also where it was imported meanwhile
 
 
-def _put(old: Callable[..., Any], new: Callable[..., Any]) -> None:
-    home = old.__module__.partition(".")[0] if hasattr(old, "__module__") else ""
-    names = {"meshwind", "igl", home}
-    for module in [each for name, each in sys.modules.items() if name.partition(".")[0] in names]:
+def _put(old: Callable[..., Any], new: Callable[..., Any], packages: set[str]) -> None:
+    for module in [each for name, each in sys.modules.items() if name.partition(".")[0] in packages]:
         for name in [name for name, value in vars(module).items() if value is old]:
             setattr(module, name, new)
