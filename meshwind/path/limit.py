@@ -84,6 +84,8 @@ class Search:
     failed: list[float] = field(default_factory=list)
     lost: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     """Paths that did not hold by the other reading, the last ones first."""
+    known: dict[tuple[bool, float], dict[int, bool]] = field(default_factory=dict)
+    """By the reading and the number: which paths hold."""
 
     def run(self) -> float:
         """The number nearest to the one asked for that holds all paths; 0 where none was found.
@@ -157,7 +159,7 @@ class Search:
         if not len(paths):
             return True
         self.budget -= len(paths)
-        lost = paths[~(attempt or self.attempt)(number, paths)]
+        lost = paths[~self._outcome(number, paths, attempt or self.attempt)]
         if len(lost):
             self.failed.append(number)
             if attempt is not None and attempt is self.also:
@@ -165,3 +167,13 @@ class Search:
             else:
                 self.order = np.concatenate([lost, self.order[~np.isin(self.order, lost)]])
         return not len(lost)
+
+    def _outcome(self, number: float, paths: Ints, attempt: Attempt) -> Bools:
+        """Which of some paths hold; what was tried before is known, as a search comes back to its numbers."""
+        if self.together:
+            return attempt(number, paths)
+        known = self.known.setdefault((attempt is self.also, number), {})
+        new = np.array([path for path in paths.tolist() if path not in known], dtype=np.int64)
+        if len(new):
+            known.update(zip(new.tolist(), attempt(number, new).tolist(), strict=True))
+        return np.array([known[path] for path in paths.tolist()], dtype=np.bool_)

@@ -7,8 +7,7 @@ import numpy as np
 from meshwind.core.cast import Floats
 from meshwind.path.friction import friction_of
 from meshwind.planning.feasible import Feasible, coarse_interval
-from meshwind.planning.trials import trial
-from meshwind.planning.windings import Windings
+from meshwind.planning.windings import Windings, few
 from meshwind.surface.evaluate import SU
 from meshwind.surface.grid import rings
 from meshwind.surface.interpolate import interpolate
@@ -18,6 +17,8 @@ FRICTION, WIDER = 0.2, 1.5
 """The alternatives: this coefficient of friction (a wet fibre's), and openings so many times as wide."""
 _FEW = 3
 """Paths per family in the coarse windings of these."""
+_FIRST = 2
+"""Paths with friction that are tried at each step."""
 _MAX_GAIN = 3.0
 """Times the bound up to which numbers of revolutions are tried with friction."""
 _STEP = 0.1
@@ -29,14 +30,15 @@ _SHORTEST = 0.05
 
 
 def alternatives(windings: Windings, feasible: Feasible, most: float) -> tuple[float, float]:
-    """Feasible revolutions with more friction, and about those with wider openings; 0 where they gain nothing.
+    """About the feasible revolutions with more friction, and with wider openings; 0 where they gain nothing.
 
-    Those with friction are tried as asked; those with wider openings by few, coarse paths on the surface cut back.
+    Both are tried by few, coarse paths, those with wider openings on the surface cut back: to wind all paths as asked
+    with friction would cost many times what the choice does.
     """
     surface = windings.surface
     with_friction = 0.0
     if friction_of(surface, windings.friction).largest < FRICTION:
-        rougher = replace(windings, friction=FRICTION)
+        rougher = few(windings, FRICTION)
         with_friction = _with_friction(rougher, feasible.high, min(most, _MAX_GAIN * feasible.high))
     wider = with_wider_openings(surface, WIDER, feasible.slides or "both")
     high = 0.0 if wider is None else coarse_interval(wider, windings.friction, most, _FEW).high
@@ -45,8 +47,9 @@ def alternatives(windings: Windings, feasible: Feasible, most: float) -> tuple[f
 
 def _with_friction(rougher: Windings, high: float, most: float) -> float:
     """Largest feasible revolutions with friction, as found from the first step that fails; 0 where there are none."""
+    first = rougher.in_order()[:_FIRST]
     for turns in np.arange((1.0 + _STEP) * high, most + _STEP * high, _STEP * high):
-        if not trial(rougher.surface, float(turns), rougher.friction, _FEW).feasible:
+        if not rougher.which(float(turns), first, coarse=True).all():
             break
     best = rougher.limit(float(turns), high, high)
     return best if best > high else 0.0

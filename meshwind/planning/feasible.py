@@ -30,7 +30,7 @@ _NEAR = 0.98
 """Share of a number that does not hold that is tried next."""
 _WITHIN, _MAX_GAPS = 8, 4
 """Numbers within the interval that are tried, and times that it is cut at one that does not hold, or moved inward."""
-_COARSE = 16
+_COARSE = 3
 """Most paths per family in coarse windings."""
 
 
@@ -74,7 +74,8 @@ def feasible_revolutions(
         bound, narrow = shape.bound(), min(shape.rims)
         if shape.presses(narrow) and np.isfinite(bound):
             ends = tuple(rim <= narrow * (1.0 + _SAME_RIM) for rim in shape.rims)
-            held = next((number for step in _STEPS if windings.holds(number := bound * (1.0 - step))), None)
+            back = (bound * (1.0 - step) for step in _STEPS)
+            held = next((number for number in back if windings.holds(number, True) and windings.holds(number)), None)
             if held is not None:
                 return Feasible(0.0, held, "Clairaut", _ends(*ends), ())
     return _verified(windings, coarse_interval(surface, friction, most, min(paths, _COARSE)), most)
@@ -99,7 +100,7 @@ def coarse_interval(surface: Surface, friction: float | Friction, most: float, p
 
 def _verified(windings: Windings, coarse: Feasible, most: float) -> Feasible:
     """The interval with its ends found, and numbers within it tried, as `solve` lays the paths."""
-    if not coarse.any:
+    if not any(each.feasible for each in coarse.trials):
         return coarse
     numbers = [each.revolutions for each in coarse.trials]
     low, high = coarse.low, coarse.high
@@ -107,7 +108,7 @@ def _verified(windings: Windings, coarse: Feasible, most: float) -> Feasible:
         low = windings.limit(max(n for n in numbers if n < low), low, min(high, most)) or np.inf
     if np.isfinite(high):
         high = windings.limit(min(n for n in numbers if n > high), high, min(low, high))
-    elif not windings.holds(most):
+    elif not windings.holds_some(most, _WITHIN):
         high = windings.limit(most, _NEAR * most, min(low, most))
     if not high > low:
         return replace(coarse, low=0.0, high=0.0)
@@ -120,22 +121,28 @@ def _without_gaps(windings: Windings, low: float, high: float, most: float) -> t
     for _ in range(_MAX_GAPS):
         top = min(high, most)
         inside = np.linspace(low, top, _WITHIN + 2)[1:-1]
-        gap = next((float(number) for number in inside[::-1] if not windings.holds(float(number))), None)
-        if gap is not None:
-            upper = top - gap > gap - low
-            low, high = (
-                (windings.limit(gap, gap / _NEAR, top), high) if upper else (low, windings.limit(gap, _NEAR * gap, low))
-            )
-            if not high > low:
-                return 0.0, 0.0
-            continue
-        span = top - low
-        inner_low = low + ALLOWANCE * span if low > 0.0 else 0.0
-        inner_high = top - ALLOWANCE * span if np.isfinite(high) else high
-        if all(windings.holds(end) for end in (inner_low, inner_high) if 0.0 < end < np.inf):
-            return inner_low, inner_high
-        low, high = inner_low, inner_high
+        gaps = (float(number) for k, number in enumerate(inside[::-1]) if not windings.holds_some(float(number), k))
+        gap = next(gaps, None)
+        if gap is None:
+            return _confirmed(windings, low, high, most)
+        upper = top - gap > gap - low
+        low, high = (
+            (windings.limit(gap, gap / _NEAR, top), high) if upper else (low, windings.limit(gap, _NEAR * gap, low))
+        )
+        if not high > low:
+            break
     return 0.0, 0.0
+
+
+def _confirmed(windings: Windings, low: float, high: float, most: float) -> tuple[float, float]:
+    """The interval with its ends moved inward by an allowance, and to where paths hold with all their particles."""
+    top = min(high, most)
+    inward = ALLOWANCE * (top - low)
+    if np.isfinite(high):
+        high = windings.confirmed(top - inward, low, -inward)
+    if low > 0.0 and high > low:
+        low = windings.confirmed(low + inward, min(high, top), inward) or np.inf
+    return (low, high) if high > low else (0.0, 0.0)
 
 
 def _longest_run(flags: list[bool]) -> tuple[int, int]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -164,10 +164,13 @@ def choose_revolutions(
         say(f"{turns:.4g} revolutions")
         return turns
 
-    candidates = [trial(surface, tell(float(turns)), friction, tried) for turns in _candidates(feasible, top, paths)]
-    order = _order(candidates, feasible, common, square)
-    checked = _wind_best(order, lambda turns: full_trial(surface, tell(turns), friction, paths, particles), 0.5 / paths)
-    trials = [*feasible.trials, *candidates, *checked]
+    choice = _Choice(
+        lambda turns: trial(surface, tell(turns), friction, tried),
+        lambda turns: full_trial(surface, tell(turns), friction, paths, particles),
+        _candidates(feasible, top, paths).tolist(), common, square, 0.5 / paths,
+    )  # fmt: skip
+    checked = choice.wind_best()
+    trials = [*feasible.trials, *choice.tried, *checked]
     chosen = _least_bridging(checked or [each for each in trials if each.revolutions > 0.0])
     gains = 0.0, 0.0
     if further and feasible.any and np.isfinite(feasible.high):
@@ -203,53 +206,79 @@ def _meeting(turns: Floats, paths: int) -> Floats:
     return np.asarray(np.round(2.0 * paths * turns) / (2.0 * paths))
 
 
-def _order(trials: list[Trial], feasible: Feasible, common: Intervals, square: float) -> list[Trial]:
-    """The feasible trials, best first: those that bridge no more than the least, then by what they bridge."""
-    limit = _limit(feasible) * (1.0 + 1e-12)  # the last candidate is the limit itself, but for round-off
-    good = [each for each in trials if each.feasible and 0.0 < each.revolutions <= limit]
-    least = min((each.bridged_share for each in good), default=0.0)
+@dataclass
+class _Choice:
+    """The best of some numbers of revolutions, and the windings that were tried for it.
 
-    def merit(each: Trial) -> tuple[float, bool, float]:
-        excess = each.bridged_share - least
-        presses = any(low <= each.revolutions <= high for low, high in common)
-        return (0.0 if excess <= ALIKE else excess), not presses, abs(float(np.log(each.revolutions / square)))
-
-    return sorted(good, key=merit)
-
-
-def _wind_best(order: list[Trial], wind: Wind, grain: float) -> list[Trial]:
-    """Windings at full resolution of the best candidates and, where all bridge, of numbers beside the best.
-
-    Coarse paths miss the bridged share by several percent of the fibre: where all bridge, candidates are compared at
-    full resolution, and the numbers on both sides of the best as well.
+    coarse, full: wind by a number with few, coarse paths and as asked; grain: least step between numbers.
     """
-    checked: list[Trial] = []
-    for best in order:
-        feasible = [each for each in checked if each.feasible]
-        near = [abs(each.revolutions - best.revolutions) < _APART * best.revolutions for each in checked]
-        enough = len(checked) == _MAX_CHECKED or len(feasible) == _MAX_COMPARED
-        if enough or any(each.bridged_share <= ALIKE for each in feasible):
-            break
-        if not any(near):
-            checked.append(wind(best.revolutions))
-    numbers = sorted(each.revolutions for each in order)
-    return checked + _wind_beside(checked, numbers, wind, grain) if checked else []
 
+    coarse: Wind
+    full: Wind
+    numbers: list[float]
+    common: Intervals
+    square: float
+    grain: float
+    tried: list[Trial] = field(default_factory=list)
 
-def _wind_beside(checked: list[Trial], numbers: list[float], wind: Wind, grain: float) -> list[Trial]:
-    """Windings on both sides of the best so far, in steps that are halved down to half a grain, while all bridge."""
-    beside: list[Trial] = []
-    step = 0.5 * float(np.diff(numbers).max(initial=0.0))
-    while True:
-        best = _least_bridging([*checked, *beside])
-        if step <= max(_ACCURACY * best.revolutions, 0.5 * grain) or best.bridged_share <= ALIKE:
-            return beside
-        whole = grain * np.ceil(step / grain - _ROUND_OFF)
-        known = [each.revolutions for each in (*checked, *beside)]
-        either = best.revolutions - whole, best.revolutions + whole
-        new = [n for n in either if 0.0 < n <= numbers[-1] + _ROUND_OFF and not np.isclose(known, n).any()]
-        beside += map(wind, new)
-        step *= 0.5
+    def _rank(self, number: float) -> tuple[bool, float]:
+        """What decides among numbers that bridge alike: whether most of the surface presses, then how square it is."""
+        presses = any(low <= number <= high for low, high in self.common)
+        return not presses, abs(float(np.log(number / self.square)))
+
+    def _best_first(self) -> Iterator[Trial]:
+        """The feasible numbers, best first: those that bridge no more than the least, then by what they bridge.
+
+        One that bridges no more than what is alike is as good as any of a worse rank, which waits to be asked for.
+        """
+        wait: list[Trial] = []
+        for number in sorted(self.numbers, key=self._rank):
+            each = self.coarse(number)
+            self.tried.append(each)
+            if each.feasible and each.bridged_share <= ALIKE:
+                yield each
+            elif each.feasible:
+                wait.append(each)
+        least = min((each.bridged_share for each in self.tried if each.feasible), default=0.0)
+
+        def merit(each: Trial) -> tuple[float, bool, float]:
+            excess = each.bridged_share - least
+            return 0.0 if excess <= ALIKE else excess, *self._rank(each.revolutions)
+
+        yield from sorted(wait, key=merit)
+
+    def wind_best(self) -> list[Trial]:
+        """Windings at full resolution of the best candidates and, where all bridge, of numbers beside the best.
+
+        Coarse paths miss the bridged share by several percent of the fibre: where all bridge, candidates are compared
+        at full resolution, and the numbers on both sides of the best as well.
+        """
+        checked: list[Trial] = []
+        for best in self._best_first():
+            near = [abs(each.revolutions - best.revolutions) < _APART * best.revolutions for each in checked]
+            if not any(near):
+                checked.append(self.full(best.revolutions))
+            feasible = [each for each in checked if each.feasible]
+            enough = len(checked) == _MAX_CHECKED or len(feasible) == _MAX_COMPARED
+            if enough or any(each.bridged_share <= ALIKE for each in feasible):
+                break
+        return checked + self._beside(checked) if checked else []
+
+    def _beside(self, checked: list[Trial]) -> list[Trial]:
+        """Windings on both sides of the best so far, in steps halved down to half a grain, while all bridge."""
+        numbers = sorted(each.revolutions for each in self.tried if each.feasible)
+        beside: list[Trial] = []
+        step = 0.5 * float(np.diff(numbers).max(initial=0.0))
+        while True:
+            best = _least_bridging([*checked, *beside])
+            if step <= max(_ACCURACY * best.revolutions, 0.5 * self.grain) or best.bridged_share <= ALIKE:
+                return beside
+            whole = self.grain * np.ceil(step / self.grain - _ROUND_OFF)
+            known = [each.revolutions for each in (*checked, *beside)]
+            either = best.revolutions - whole, best.revolutions + whole
+            new = [n for n in either if 0.0 < n <= numbers[-1] + _ROUND_OFF and not np.isclose(known, n).any()]
+            beside += map(self.full, new)
+            step *= 0.5
 
 
 def _least_bridging(trials: list[Trial]) -> Trial:

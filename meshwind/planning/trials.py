@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.path import Paths, Status, solve
-from meshwind.path.batch import fresh
+from meshwind.path.batch import Batch, fresh
 from meshwind.path.friction import Friction, friction_of
 from meshwind.path.lengths import bridged_share, lengths
 from meshwind.path.nested import fewest
@@ -25,7 +25,7 @@ _SEGMENTS = 72
 """Least number of segments of a path: on a barrel the bound of revolutions comes out to 1e-3."""
 _REFINEMENTS = (1, 2, 4)
 """Factors of that number, in turn, for paths that do not converge: coarse ones catch on sharp edges."""
-_TOLERANCE, _ITERATIONS = 1e-6, 150
+_TOLERANCE, ITERATIONS = 1e-6, 150
 """A path that is not nearly in equilibrium after so many iterations slides: more of them only cost."""
 _HOPELESS = 0.5
 """Share of the paths that fail at first above which no other way of solving is tried."""
@@ -53,13 +53,13 @@ class Trial:
 def trial(surface: Surface, revolutions: float, friction: float | Friction = 0.0, paths: int = PATHS) -> Trial:
     """Wind both families with `paths` coarse paths each; those that fail are tried again with more particles."""
     rims = families(surface, paths, revolutions)
-    solver = Solver(surface, friction_of(surface, friction), True, _TOLERANCE, _ITERATIONS)
+    solver = Solver(surface, friction_of(surface, friction), True, _TOLERANCE, ITERATIONS)
     curves = straight(rims.start, rims.end, 2)
     least = max(_SEGMENTS, int(fewest(curves).max(initial=0)))
     left, batches = np.arange(len(curves)), []
     for factor in _REFINEMENTS:
         batch = fresh(curves[left], least * factor + 1)
-        solver.relax(batch, resume=False)
+        _relax(solver, batch)
         failed = float((batch.status != Status.CONVERGED).mean())
         if factor > 1 or 0.0 < failed <= _HOPELESS:
             search(solver, batch)
@@ -68,6 +68,19 @@ def trial(surface: Surface, revolutions: float, friction: float | Friction = 0.0
         if not len(left) or (factor == 1 and failed > _HOPELESS):
             break
     return _outcome(batches, revolutions)
+
+
+def _relax(solver: Solver, batch: Batch) -> None:
+    """Bring a fresh batch to equilibrium, the frictionless paths where that is simple by what is cheapest."""
+    rest = np.arange(batch.paths)
+    if solver.friction.none:
+        solver.solve_simple(batch)
+        rest = np.flatnonzero(batch.status != Status.CONVERGED)
+    if len(rest):
+        part = fresh(batch.starts[rest], batch.particles)
+        part.counters[:] = batch.counters[rest]
+        solver.relax(part, resume=False)
+        batch.put(rest, part)
 
 
 def full_trial(
