@@ -17,12 +17,12 @@ FRICTION, WIDER = 0.2, 1.5
 """The alternatives: this coefficient of friction (a wet fibre's), and openings so many times as wide."""
 _FEW = 3
 """Paths per family in the coarse windings of these."""
-_FIRST = 2
-"""Paths with friction that are tried at each step."""
 _MAX_GAIN = 3.0
 """Times the bound up to which numbers of revolutions are tried with friction."""
+_RETREAT = 1.0, 0.5
+"""Shares of the way from the bound to the number found, at which other paths are tried."""
 _STEP = 0.1
-"""Step between these numbers, over the bound."""
+"""Step to the first of these numbers, over the bound."""
 _RINGS, _AROUND = 201, 48
 """Rings by which the place of a wider opening is found, and points on each."""
 _SHORTEST = 0.05
@@ -38,21 +38,19 @@ def alternatives(windings: Windings, feasible: Feasible, most: float) -> tuple[f
     surface = windings.surface
     with_friction = 0.0
     if friction_of(surface, windings.friction).largest < FRICTION:
-        rougher = few(windings, FRICTION)
-        with_friction = _with_friction(rougher, feasible.high, min(most, _MAX_GAIN * feasible.high))
+        with_friction = _with_friction(windings, feasible.high, min(most, _MAX_GAIN * feasible.high))
     wider = with_wider_openings(surface, WIDER, feasible.slides or "both")
     high = 0.0 if wider is None else coarse_interval(wider, windings.friction, most, _FEW).high
     return with_friction, high if high > feasible.high else 0.0
 
 
-def _with_friction(rougher: Windings, high: float, most: float) -> float:
-    """Largest feasible revolutions with friction, as found from the first step that fails; 0 where there are none."""
-    first = rougher.in_order()[:_FIRST]
-    for turns in np.arange((1.0 + _STEP) * high, most + _STEP * high, _STEP * high):
-        if not rougher.which(float(turns), first, coarse=True).all():
-            break
-    best = rougher.limit(float(turns), high, high)
-    return best if best > high else 0.0
+def _with_friction(windings: Windings, high: float, most: float) -> float:
+    """Largest feasible revolutions with friction, 0 where none are known: found by few paths, and tried by others."""
+    first = (1.0 + _STEP) * high
+    best = few(windings, FRICTION).limit(most, first, high) if most > first else 0.0
+    rougher = replace(windings, friction=FRICTION)
+    tries = (high + share * (best - high) for share in _RETREAT if best > high)
+    return next((number for number in tries if rougher.holds_some(number, 1)), 0.0)
 
 
 def with_wider_openings(surface: Surface, wider: float, ends: str = "both") -> Surface | None:

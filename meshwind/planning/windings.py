@@ -6,7 +6,7 @@ Whether a path holds is settled on the fewest particles that `solve` begins with
 only those that are stated are tried with all particles.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from meshwind.core.defaults import PARTICLES
 from meshwind.path import Status, solve
 from meshwind.path.friction import Friction, friction_of
 from meshwind.path.kernels.lay import FEWEST, halvings, turn_of
+from meshwind.path.kernels.state import EVALUATIONS
 from meshwind.path.levels import segments
 from meshwind.path.limit import Search, Way
 from meshwind.path.nested import solve_with
@@ -40,9 +41,12 @@ _LEAST = 0.05
 """Least share of a number that fails that is tried in its stead."""
 _STEP = 0.01
 """First relative step back from a number with which a path beside others failed."""
-_MAX_MOVES = 4
-"""Times that an end of the interval is moved inward."""
-_BUDGET = 10
+_DEAR = 500
+"""Evaluations a particle above which a path without friction counts as failing: one that is looked for so long catches
+on edges, and mostly fails with all particles."""
+_AT_ONCE = 8
+"""Paths that are tried at once, before others are."""
+_BUDGET = 3
 """Solves of each path that an end of the interval may cost."""
 
 
@@ -51,7 +55,8 @@ class Windings:
     """Windings from shares (p,) of the start rim's length, family (p,), as `solve` lays them with so many particles.
 
     starts: number per family that are spread evenly, a multiple of 4; those beside paths that failed come after them.
-    halvings: times that starts are put beside those.
+    halvings: times that starts are put beside those.  held: by the way of a search, up or down, and by path, the number
+    next to the failing one with which it held on few particles; it is not tried with those behind that again.
     """
 
     surface: Surface
@@ -61,17 +66,11 @@ class Windings:
     share: Floats
     family: Ints
     halvings: int = _HALVINGS
+    held: dict[bool, dict[int, float]] = field(default_factory=dict)
 
     def holds(self, revolutions: float, coarse: bool = False) -> bool:
-        """Whether every path converges; a few are tried before the others, as one that does not is enough.
-
-        coarse: with the fewest particles.
-        """
-        order = self.in_order()
-        together = self.particles is None and not coarse  # how a path is solved depends on the others
-        first = len(order) if together else _SPREAD
-        parts = [part for part in (order[:first], order[first:]) if len(part)]
-        return all(bool(self.which(revolutions, part, coarse).all()) for part in parts)
+        """Whether every path converges.  coarse: with the fewest particles."""
+        return not len(self._lost(revolutions, self._in_order(), coarse))
 
     def holds_some(self, revolutions: float, turn: int) -> bool:
         """Whether every third path converges, and all that were put beside others, with the fewest particles.
@@ -102,7 +101,8 @@ class Windings:
             particles = segments(self.particles, halvings(longest, self.particles)) + 1
         friction = friction_of(self.surface, self.friction)
         solver = Solver(self.surface, friction, True, COARSE, ITERATIONS, final=False)
-        return ~failing(solve_with(solver, curves, particles))
+        batch = solve_with(solver, curves, particles)
+        return ~failing(batch) & (np.bool_(not friction.none) | (batch.counters[:, EVALUATIONS] <= _DEAR * particles))
 
     def limit(self, failed: float, first: float, last: float) -> float:
         """The number nearest to one that fails, on the way to the last one, with which all paths hold; 0 for none.
@@ -123,20 +123,32 @@ class Windings:
         return found
 
     def confirmed(self, number: float, last: float, inward: float) -> float:
-        """A number, or one moved inward to where all paths hold with all their particles; 0 for none.
+        """A number, moved inward until all paths hold with all their particles; 0 where that is past the last one.
 
-        inward: by how much more than to the nearest number that was found.
+        inward: the first step, which is doubled each time.
         """
-        for _ in range(_MAX_MOVES):
-            if self.holds(number):
+        order = self._in_order()
+        while inward * (last - number) > 0.0:
+            lost = self._lost(number, order, False)
+            if not len(lost):
                 return number
-            nearest = self._search(Way(number, last, _STEP), False)[0]
-            if nearest == 0.0 or abs(nearest - last) <= abs(inward):
-                break
-            number = nearest + inward
+            order = np.concatenate([lost, order[~np.isin(order, lost)]])
+            number += inward
+            inward *= 2.0
         return 0.0
 
-    def in_order(self) -> Ints:
+    def _lost(self, revolutions: float, order: Ints, coarse: bool) -> Ints:
+        """Some of the paths that do not converge, none where all do: one that does not is enough."""
+        together = self.particles is None and not coarse  # how a path is solved depends on the others
+        many = max(len(order), 1) if together else _AT_ONCE
+        for k in range(0, len(order), many):
+            part = order[k : k + many]
+            lost = part[~self.which(revolutions, part, coarse)]
+            if len(lost):
+                return lost
+        return order[:0]
+
+    def _in_order(self) -> Ints:
         """The paths in the order in which they are tried: those put beside others first, then the spread ones."""
         every = np.arange(len(self.share))
         even, beside = every[: 2 * self.starts], every[: 2 * self.starts - 1 : -1]
@@ -144,11 +156,18 @@ class Windings:
 
     def _search(self, way: Way, coarse: bool) -> tuple[float, Ints]:
         """The number found, and the paths in order: those that failed last first."""
-        order = self.in_order()
+        order = self._in_order()
         together = self.particles is None and not coarse
 
+        best = self.held.setdefault(way.down, {})
+
         def attempt(number: float, paths: Ints) -> Bools:
-            return self.which(number, paths, coarse)
+            if not coarse:
+                return self.which(number, paths)
+            new = paths[[not way.nearer(best.get(path, way.last), number) for path in paths.tolist()]]
+            which = self.which(number, new, True)
+            best.update(dict.fromkeys(new[which].tolist(), number))
+            return ~np.isin(paths, new[~which])
 
         search = Search(attempt, way, order, _BUDGET * len(order), together=together)
         return search.run(), search.order
