@@ -53,7 +53,7 @@ JOBS: dict[str, Callable[[Path], object]] = {
     "rough scan": lambda out: wound(out, rough_scan(), revolutions=0.5),
     "auto": lambda out: wound(out, "bottle.obj", particles=101, revolutions="auto"),
     "auto with friction": lambda out: wound(out, "elbow.obj", particles=101, revolutions="auto", friction=0.2),
-    "advice": lambda out: wound(out, "bottle.obj", revolutions=0.6),
+    "advice": lambda out: wound(out, "tank.ply", paths=2, particles=101, revolutions=0.8),
     "spacing": lambda out: wound(out, "bottle.obj", revolutions=0.45, spacing=25.0),
     "redesign": redesigned,
     "program": programmed,

@@ -74,8 +74,9 @@ def feasible_revolutions(
         bound, narrow = shape.bound(), min(shape.rims)
         if shape.presses(narrow) and np.isfinite(bound):
             ends = tuple(rim <= narrow * (1.0 + _SAME_RIM) for rim in shape.rims)
-            back = (bound * (1.0 - step) for step in _STEPS)
-            held = next((number for number in back if windings.holds(number, True) and windings.holds(number)), None)
+            back = [bound * (1.0 - step) for step in _STEPS]
+            first = next((k for k, number in enumerate(back) if windings.holds(number, coarse=True)), len(back))
+            held = next((number for number in back[first:] if windings.holds(number)), None)
             if held is not None:
                 return Feasible(0.0, held, "Clairaut", _ends(*ends), ())
     return _verified(windings, coarse_interval(surface, friction, most, min(paths, _COARSE)), most)

@@ -182,8 +182,9 @@ class Windings:
 def spread(
     surface: Surface, friction: float | Friction = 0.0, paths: int = PATHS, particles: int | None = PARTICLES
 ) -> Windings:
-    """Windings with at least twice as many starts as are asked for."""
-    starts = 4 * (-(-max(2 * paths, _STARTS) // 4))  # both families are then divided evenly
+    """Windings with at least twice as many starts as are asked for, with friction as many: a slide costs ten paths."""
+    least = max(2 * paths, _STARTS) if friction_of(surface, friction).none else max(paths, _STARTS // 2)
+    starts = 4 * (-(-least // 4))  # both families are then divided evenly
     return _spread(surface, friction, particles, starts, _HALVINGS)
 
 
