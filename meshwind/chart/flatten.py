@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
-
 import igl
 import numpy as np
-from scipy import sparse
 from scipy.sparse.csgraph import dijkstra
 
 from meshwind.chart.chart import Chart, signed_areas
+from meshwind.chart.harmonic import EdgeGraph, harmonic
 from meshwind.chart.reparametrise import canonical_u, even_speed
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.geometry.edge_graph import edge_graph
 from meshwind.mesh.geometry.mesh import Annulus
-from meshwind.mesh.geometry.topology import edges
 
 EVEN = 1.15
 """Mean stretch (1 at best) up to which a chart is accepted at once: parts like a mandrel need no second solve."""
@@ -26,8 +22,6 @@ ROUNDS = 8
 """Maximum number of times that the edges are re-weighted."""
 EXPONENT = 0.5
 """Power of the area stretch by which weights are divided: 0.25 needs twice the rounds, 1 overshoots."""
-LEAST_WEIGHT = 1e-2
-"""Lower bound of positive weights, over the median."""
 
 
 def flatten(annulus: Annulus) -> Chart:
@@ -76,13 +70,13 @@ def flatten(annulus: Annulus) -> Chart:
     if not isinstance(annulus, Annulus):
         raise BadInputError(f"flatten takes an Annulus, not {type(annulus).__name__}; make one with annulus(mesh)")
     jump = _far_side(annulus, _seam(annulus)).astype(np.float64)
-    graph = _EdgeGraph.of(annulus, jump)
+    graph = EdgeGraph.of(annulus, jump)
     weights = graph.cotangents
-    uv = _harmonic(annulus, graph, weights)
+    uv = harmonic(annulus, graph, weights)
     corner = _corners(annulus, uv, jump)
     if (signed_areas(corner) <= 0).any():
         weights = graph.positive
-        uv = _harmonic(annulus, graph, weights)
+        uv = harmonic(annulus, graph, weights, uv)
         corner = _corners(annulus, uv, jump)
         count = int((signed_areas(corner) <= 0).sum())
         if count:
@@ -114,63 +108,8 @@ def _far_side(annulus: Annulus, path: Ints) -> Bools:
     return np.isin(cut_faces, cut_faces[touches])
 
 
-@dataclass(frozen=True)
-class _EdgeGraph:
-    """Undirected edges of the annulus: ends (e, 2), the turns that u gains along each, and cotangent weights."""
-
-    ends: Ints
-    gain: Floats
-    cotangents: Floats
-
-    @staticmethod
-    def of(annulus: Annulus, jump: Floats) -> _EdgeGraph:
-        found = edges(annulus.faces)
-        # both half-edges of an edge have the same gain, but for its sign
-        half = found.halves[:, 0]
-        gain = (np.roll(jump, -1, axis=1) - jump).ravel()[half]
-        upwards = annulus.faces.ravel()[half] == found.ends[:, 0]
-        # libigl's entry k is that of the edge across from corner k
-        cotangent = np.roll(igl.cotmatrix_entries(annulus.vertices, annulus.faces), 1, axis=1)
-        return _EdgeGraph(
-            found.ends,
-            np.where(upwards, gain, -gain),
-            np.asarray(np.bincount(found.of_face.ravel(), cotangent.ravel()), dtype=np.float64),
-        )
-
-    @property
-    def positive(self) -> Floats:
-        """The cotangents, raised to a positive bound where they are below it."""
-        return np.maximum(self.cotangents, LEAST_WEIGHT * np.median(np.abs(self.cotangents)))
-
-
-def _harmonic(annulus: Annulus, graph: _EdgeGraph, weights: Floats) -> Floats:
-    """Solve for u and v with the given edge weights, (n, 2)."""
-    n = len(annulus.vertices)
-    (i, j), turned = graph.ends.T, weights * graph.gain
-    off = sparse.csc_array((np.r_[weights, weights], (np.r_[i, j], np.r_[j, i])), shape=(n, n))
-    laplacian = (sparse.diags_array(np.asarray(off.sum(axis=1))) - off).tocsc()
-    uv = np.zeros((n, 2))
-    pull = np.bincount(i, turned, n) - np.bincount(j, turned, n)
-    uv[:, 0] = _solve_fixed(laplacian, pull, annulus.rims[0][:1], np.zeros(1))
-    ends = [np.full(len(rim), float(v)) for v, rim in enumerate(annulus.rims)]
-    uv[:, 1] = _solve_fixed(laplacian, np.zeros(n), np.concatenate(annulus.rims), np.concatenate(ends))
-    return uv
-
-
-def _solve_fixed(laplacian: sparse.csc_array, right: Any, known: Ints, values: Floats) -> Floats:
-    """Solve laplacian x = right with x given at some vertices, by libigl's sparse Cholesky.
-
-    It takes about half the time of SuperLU's, which matters at a million faces.
-    """
-    none = sparse.csc_matrix((0, len(right)))
-    x = igl.min_quad_with_fixed(
-        sparse.csc_matrix(laplacian), -right[:, None], known, values[:, None], none, np.zeros((0, 1)), True
-    )
-    return np.asarray(x)[:, 0]
-
-
 def _even_out_stretch(
-    annulus: Annulus, graph: _EdgeGraph, weights: Floats, uv: Floats, corner: Floats, jump: Floats
+    annulus: Annulus, graph: EdgeGraph, weights: Floats, uv: Floats, corner: Floats, jump: Floats
 ) -> tuple[Floats, Floats]:
     """Space v evenly, and divide the weights by the stretch at their ends until the mean stretch stops decreasing."""
     space = igl.doublearea(annulus.vertices, annulus.faces) / 2
@@ -185,7 +124,7 @@ def _even_out_stretch(
         at = (np.bincount(faces, np.repeat(stretch * space, 3), n) / around) ** EXPONENT
         weights = np.maximum(weights, graph.positive) if (weights <= 0).any() else weights
         weights = weights / np.sqrt(at[graph.ends[:, 0]] * at[graph.ends[:, 1]])
-        trial = _harmonic(annulus, graph, weights)
+        uv = trial = harmonic(annulus, graph, weights, uv)
         trial_corner = _corners(annulus, trial, jump)
         if (signed_areas(trial_corner) <= 0).any():
             break
