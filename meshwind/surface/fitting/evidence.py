@@ -124,4 +124,5 @@ def rms(values: Floats, weight: Floats) -> float:
 
 def rms_away_from_creases(values: Floats, points: FacetPoints, samples: Samples) -> float:
     """Rms of values (k,) at points on facets none of whose corners lies at a crease; 0 if there are none."""
-    return rms(values, points.area * samples.facets.smooth[points.facet])
+    chosen, of = np.unique(points.facet, return_inverse=True)
+    return rms(values, points.area * samples.facets.smooth_at(chosen)[of])

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshwind.core.cast import Floats, Ints
+from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.kernel import njit
 from meshwind.core.kernel_arrays import copy_table, fill_table
 from meshwind.core.threads import parallel_for
@@ -53,25 +53,32 @@ class FacetPoints:
             return self.between(facets.points)
         return point_normal.curved(self.facet, self.corners, self.share, facets.points, facets.tangent_normals)
 
+    def where(self, chosen: Bools) -> "FacetPoints":
+        """The chosen ones (k,) of the points."""
+        parts = (self.facet, self.corners, self.share, self.turns, self.area)
+        return FacetPoints(*(part[chosen] for part in parts))
+
     def per_facet(self, values: Floats, faces: int) -> Floats:
         """Means (m,) over each of the facets of values (k,) at the points."""
         total = np.bincount(self.facet, self.area * values, faces)
         return np.asarray(total / np.maximum(np.bincount(self.facet, self.area, faces), TINY))
 
 
-def facet_points(samples: Samples, spans: tuple[int, int]) -> FacetPoints:
-    """Points on the facets of a mesh, several for each span of a net that a facet crosses."""
-    faces = samples.facets.faces
+def facet_points(samples: Samples, spans: tuple[int, int], chosen: Ints | None = None) -> FacetPoints:
+    """Points on the facets of a mesh, or on chosen ones, several for each span of a net that a facet crosses."""
+    chosen = np.arange(len(samples.facets.faces)) if chosen is None else chosen
+    faces = samples.facets.faces[chosen]
     count = np.empty(len(faces), dtype=np.int64)
-    corners = samples.corner_uv() * spans
+    corners = samples.corner_uv(chosen) * spans
     parallel_for(_count, len(faces), 10_000, corners, count)
     first = np.zeros(len(faces) + 1, dtype=np.int64)
     np.cumsum(count, out=first[1:])
     share, area = np.empty((first[-1], 3)), np.empty(first[-1])
     parallel_for(_fill, len(faces), 10_000, corners, first, share, area)
-    facet = np.repeat(np.arange(len(faces)), count)
+    facet = np.repeat(chosen, count)
     area *= samples.facets.areas[facet]
-    return FacetPoints(facet, faces[facet], share, samples.turns[facet].astype(np.float64), area)
+    corners = samples.facets.faces[facet]
+    return FacetPoints(facet, corners, share, samples.turns[facet].astype(np.float64), area)
 
 
 def heights(surface: Surface, uv: Floats, above: Floats, below: Floats) -> tuple[Floats, Floats]:

@@ -60,6 +60,13 @@ class Facets:
         """Which triangles (m,) have no corner at a crease."""
         return self._tangent[1]
 
+    def smooth_at(self, chosen: Ints) -> Bools:
+        """Which of the chosen triangles (k,) have no corner at a crease: those of all are kept, those of a few not."""
+        if len(chosen) == len(self.faces) or "_tangent" in self.__dict__:
+            return np.asarray(self.smooth[chosen])
+        corners = self.faces[chosen]
+        return tangent_normals(self.points[corners], self.normals[corners])[1]
+
     @cached_property
     def _tangent(self) -> tuple[Floats, Bools]:
         return tangent_normals(self.points[self.faces], self.normals[self.faces])
@@ -153,12 +160,12 @@ class Samples:
         if not self.near:
             return np.full(len(uv), SPARSE)
         filled = np.zeros(spans, dtype=bool)
-        filled[_span(self.uv, spans)] = True
+        filled[span_of(self.uv, spans)] = True
         cut = np.zeros(spans, dtype=bool)
-        cut[_span(self.uv[~self.trusted], spans)] = True
+        cut[span_of(self.uv[~self.trusted], spans)] = True
         for _ in range(CUT_REACH):
             cut = ~_inner(~cut)
-        span = _span(uv, spans)
+        span = span_of(uv, spans)
         return np.where(_inner(filled)[span], np.where(cut[span], NEAR_CUT, DENSE), SPARSE)
 
     def corrected(self, surface: Surface) -> tuple["Samples", Floats]:
@@ -181,7 +188,7 @@ def _inner(spans: Bools) -> Bools:
     return np.asarray(wide & np.roll(wide, 1, axis=0) & np.roll(wide, -1, axis=0))
 
 
-def _span(uv: Floats, spans: tuple[int, int]) -> tuple[Ints, Ints]:
+def span_of(uv: Floats, spans: tuple[int, int]) -> tuple[Ints, Ints]:
     """Indices of the spans that points (n, 2) lie in."""
     index = np.floor(uv * spans).astype(np.int64)
     return index[:, 0] % spans[0], np.clip(index[:, 1], 0, spans[1] - 1)

@@ -15,6 +15,7 @@ from meshwind.surface.fitting.linear_systems import solve
 from meshwind.surface.fitting.neighbours import ALIKE, Neighbourhoods, alike
 from meshwind.surface.fitting.resample import resampled
 from meshwind.surface.fitting.samples import Samples
+from meshwind.surface.fitting.thinning import thinned
 from meshwind.surface.surface import Surface
 
 ROUNDS, PASSING, MANY = 4, 2, 10_000
@@ -86,30 +87,47 @@ def fit_vertices(
     """
     best, *finer = nets
     rounds = PASSING if len(samples.points) > MANY else ROUNDS
-    fitted = _fit(samples, best, lengths, rounds)
+    fitted = _fit(thinned(samples, best), best, lengths, rounds)
     noise, idle, level, slow, final = fitted.noise, 0, 0, 0, rounds == ROUNDS
     for spans in finer:
         if not final and fitted.largest <= NEARLY * tolerance:
-            fitted, final = _refit(fitted, lengths), True
+            fitted, final = _refit(fitted, samples, lengths), True
         if fitted.largest <= tolerance:
             return fitted
         if normal_equations.control_points(spans) > SUPPORT * len(samples.points) or idle >= IDLE_NETS:
             break
-        trial = _fit(fitted.samples, spans, lengths, rounds, fitted.surface)
+        trial = _fit(_passed(fitted, samples, spans), spans, lengths, rounds, fitted.surface)
         slow = slow + 1 if trial.expected > SLOW * fitted.expected else 0
-        if slow >= SLOW_NETS and alike(trial.samples.heights(trial.surface), trial.samples, near) > ALIKE:
-            return trial
+        if slow >= SLOW_NETS:
+            whole = trial if _is_whole(trial, samples) else _refit(trial, samples, lengths)
+            if alike(whole.samples.heights(whole.surface), whole.samples, near) > ALIKE:
+                return whole
         level = level + 1 if trial.noise > FLAT * noise else 0
         noise = min(noise, trial.noise)
         idle = 0 if trial.expected < GAIN * fitted.expected else idle + 1
         if trial.expected < fitted.expected:
             fitted, final = trial, rounds == ROUNDS
-    fitted = fitted if final else _refit(fitted, lengths)
+    fitted = fitted if final else _refit(fitted, samples, lengths)
     return replace(fitted, settled=level >= SETTLED)
 
 
-def _refit(fitted: VertexFit, lengths: tuple[float, float]) -> VertexFit:
-    return _fit(fitted.samples, fitted.surface.spans, lengths, ROUNDS, fitted.surface)
+def _is_whole(fitted: VertexFit, samples: Samples) -> bool:
+    """Whether all vertices were fitted."""
+    return len(fitted.samples.points) == len(samples.points)
+
+
+def _passed(fitted: VertexFit, samples: Samples, spans: tuple[int, int]) -> Samples:
+    """What a finer net is fitted to: as many of all vertices as it needs, at their feet on the net before."""
+    if _is_whole(fitted, samples):
+        samples = fitted.samples
+    few = thinned(samples, spans)
+    return few if few is fitted.samples else few.corrected(fitted.surface)[0]
+
+
+def _refit(fitted: VertexFit, samples: Samples, lengths: tuple[float, float]) -> VertexFit:
+    """The same net fitted again, to all vertices."""
+    samples = fitted.samples if _is_whole(fitted, samples) else samples.corrected(fitted.surface)[0]
+    return _fit(samples, fitted.surface.spans, lengths, ROUNDS, fitted.surface)
 
 
 def _fit(
@@ -133,7 +151,8 @@ def _fit(
     distance = distance[samples.trusted]
     largest = float(distance.max())
     near = largest <= NEAR * samples.size
-    return VertexFit(surface, replace(samples, near=near), float(np.sqrt(np.mean(distance**2))), largest, kept)
+    rms = float(np.sqrt(np.average(distance**2, weights=samples.weight[samples.trusted])))
+    return VertexFit(surface, replace(samples, near=near), rms, largest, kept)
 
 
 def _equations(
