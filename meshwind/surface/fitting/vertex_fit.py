@@ -21,8 +21,9 @@ from meshwind.surface.surface import Surface
 ROUNDS, PASSING, MANY = 4, 2, 10_000
 """Fits of a net, before each of which every vertex's parameters are moved to its foot: the error settles in 3 or 4.
 Nets of more than so many vertices that are only passed through have fewer."""
-NEARLY = 3.0
-"""A net that misses the tolerance by less than this factor is fitted again to see whether it meets it then."""
+NEARLY, NEARLY_BY_FEW = 3.0, 6.0
+"""A net that misses the tolerance by less than this factor is fitted again to see whether it meets it then.  One that
+was fitted to few of the vertices misses twice as much at a rim."""
 SMOOTHING = 1e-4
 """Bending energy against data at the net's own wave length: small beside the spline's error, of the same order."""
 GAIN = 0.95
@@ -90,7 +91,8 @@ def fit_vertices(
     fitted = _fit(thinned(samples, best), best, lengths, rounds)
     noise, idle, level, slow, final = fitted.noise, 0, 0, 0, rounds == ROUNDS
     for spans in finer:
-        if not final and fitted.largest <= NEARLY * tolerance:
+        nearly = NEARLY if _is_whole(fitted, samples) else NEARLY_BY_FEW
+        if not final and fitted.largest <= nearly * tolerance:
             fitted, final = _refit(fitted, samples, lengths), True
         if fitted.largest <= tolerance:
             return fitted
