@@ -21,6 +21,8 @@ _SPEED_SAMPLES = 16
 """Points each way from which the cells' shape is chosen: it need not be exact."""
 _GAUSS = 4
 """Gauss nodes per span, each way: they integrate polynomials of degree 7 exactly."""
+_AT_ONCE = 200_000
+"""Gauss nodes that are evaluated at a time."""
 _PROGRESS = 1e-12
 """Least share of a cell by which a segment goes on, so that round-off does not stop it at a wall."""
 
@@ -103,9 +105,15 @@ def cell_areas(surface: Surface, nu: int, nv: int) -> Floats:
     """Areas (nu, nv) of the grid's cells by Gauss quadrature of |s_u x s_v|."""
     pieces = [-(-spans // cells) for spans, cells in zip(surface.spans, (nu, nv), strict=True)]
     (u, wu), (v, wv) = (composite_gauss(n * many, _GAUSS) for n, many in zip((nu, nv), pieces, strict=True))
-    element = area_elements(surface.frames(parameter_grid(u, v))).reshape(len(u), len(v))
-    patches = (wu[:, None] * element * wv).reshape(nu, pieces[0] * _GAUSS, nv, pieces[1] * _GAUSS)
-    return np.asarray(patches.sum(axis=(1, 3)))
+    deep, wide = pieces[0] * _GAUSS, pieces[1] * _GAUSS
+    out = np.empty((nu, nv))
+    rows = max(1, _AT_ONCE // (deep * len(v)))
+    for first in range(0, nu, rows):  # a path's pitch is a column of cells: all their frames at once would take GB
+        some = slice(first * deep, min(first + rows, nu) * deep)
+        element = area_elements(surface.frames(parameter_grid(u[some], v))).reshape(-1, len(v))
+        patches = (wu[some, None] * element * wv).reshape(-1, deep, nv, wide)
+        out[first : first + rows] = patches.sum(axis=(1, 3))
+    return out
 
 
 @njit(nogil=True, cache=True)
