@@ -16,6 +16,8 @@ from meshwind.surface.forms import area_elements
 from meshwind.surface.grid import mean_speeds, midpoints, parameter_grid, rim_frames
 from meshwind.surface.surface import Surface
 
+_AT_ONCE = 500_000
+"""Particles whose bands are laid at a time."""
 _ACROSS = 6
 """Samples across a band, where they are not too many."""
 _LEAST, _MOST = 64, 512
@@ -94,17 +96,20 @@ def bands(paths: Paths, width: float, across: int = _ACROSS) -> Bands:
     """
     surface = paths.surface
     p, n = paths.gap.shape
-    frames = surface.frames(paths.uv.reshape(-1, 2)).reshape(p, n, 6, 3)
-    feet = np.ascontiguousarray(frames[:, :, S])
     nu, nv = cells_for(surface, width, across)
     uv = parameter_grid(midpoints(nu), midpoints(nv))
     at = surface.frames(uv)
     area = area_elements(at).reshape(nu, nv) / (nu * nv)
     layers = np.zeros((nu, nv), dtype=np.int64)
     cells = Cells(np.ascontiguousarray(at[:, S]).reshape(nu, nv, 3), surface.periodic)
-    reach = _reach(frames[:, :, SU], frames[:, :, SV], 0.5 * width)
-    _paint(Strips(paths.uv, feet, reach, _past_rims(paths.uv, frames), 0.5 * width), cells, layers)
-    length = float(np.linalg.norm(np.diff(feet, axis=1), axis=2).sum())
+    many, length = max(1, _AT_ONCE // n), 0.0
+    for first in range(0, p, many):  # the frames of all particles at once would take more than the paths themselves
+        some = frozen(paths.uv[first : first + many])
+        frames = surface.frames(some.reshape(-1, 2)).reshape(-1, n, 6, 3)
+        feet = np.ascontiguousarray(frames[:, :, S])
+        reach = _reach(frames[:, :, SU], frames[:, :, SV], 0.5 * width)
+        _paint(Strips(some, feet, reach, _past_rims(some, frames), 0.5 * width), cells, layers)
+        length += float(np.linalg.norm(np.diff(feet, axis=1), axis=2).sum())
     openings = tuple(_opening(surface, end) for end in (0.0, 1.0))
     return Bands(frozen(uv), frozen(area), frozen(layers), width, width * length, (openings[0], openings[1]))
 
