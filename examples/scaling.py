@@ -4,7 +4,9 @@
 
 Each run is the command itself, from the mesh file to all files and pictures, in a process of its own, on an irregular
 mesh of a vase.  With more paths revolutions are fewer, so that each path crosses as many others: at constant
-revolutions the number of crossings grows with the square of the number of paths.  Writes scaling.csv and scaling.png.
+revolutions the number of crossings grows with the square of the number of paths.  Exponents are those of power laws
+through the upper half of the points, where the constant cost matters least, and from reading to the surface through all
+points, each with its standard error.  Writes scaling.csv and scaling.png.
 """
 
 import argparse
@@ -16,20 +18,23 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 import matplotlib.pyplot as plt
 import numpy as np
 from charts.record import Results
-from charts.style import BLUE, GREY, ORANGE, RED, log_axes, save
+from charts.style import BLUE, GREY, ORANGE, PURPLE, RED, log_axes, save
 from comparison.parts import VASE, irregular, write_ply
+from scipy.stats import linregress
 
-FACES = (10_000, 30_000, 100_000, 300_000, 1_000_000)
+FACES = (10_000, 30_000, 100_000, 300_000, 1_000_000, 2_000_000)
 PATHS = (100, 300, 1_000, 3_000, 5_000)
 """Per family: twice as many in all."""
 PARTICLES = (101, 201, 501, 1_001, 2_001, 5_001)
 CROSSED = 50.0
 """Revolutions times paths per family where these grow; half of the number of paths that each crosses."""
+TO_SURFACE = ("read", "ends", "flatten", "fit")
+"""Stages from reading to the surface."""
 SWEPT = {"faces": "faces of the mesh", "paths": "paths in all", "particles": "particles per path"}
 
 
@@ -48,10 +53,11 @@ def run(folder: Path, faces: int, paths: int, particles: int, revolutions: float
     if os.waitstatus_to_exitcode(status) not in (0, 3):
         raise RuntimeError(f"{' '.join(command)} failed")
     report = json.loads((out / "report.json").read_text(encoding="utf-8"))
+    surface = sum(report["seconds"].get(stage, 0.0) for stage in TO_SURFACE)
     return {
         "faces": report["mesh"]["faces"], "paths": 2 * paths, "particles": particles, "seconds": seconds,
         "processor_seconds": used.ru_utime + used.ru_stime, "memory": used.ru_maxrss * 1024,
-        "at_rest": report["paths"]["converged"], "crossings": report["crossings"]["count"],
+        "surface_seconds": surface, "at_rest": report["paths"]["converged"], "crossings": report["crossings"]["count"],
     } | {f"{stage}_seconds": value for stage, value in report["seconds"].items()}  # fmt: skip
 
 
@@ -68,29 +74,46 @@ def sweep(folder: Path, faces: Sequence[int], paths: Sequence[int], particles: S
     return rows
 
 
-def exponent(x: Sequence[float], y: Sequence[float]) -> float:
-    """Exponent of the power law through the upper half of the points, where the constant cost matters least."""
-    upper = slice(len(x) // 2, None)
-    return float(np.polyfit(np.log(x[upper]), np.log(y[upper]), 1)[0])
+class Exponent(NamedTuple):
+    """Exponent of a power law, and its standard error."""
+
+    value: float
+    error: float
+
+    def __str__(self) -> str:
+        return f"{self.value:.2f} +- {self.error:.2f}"
 
 
-def draw(rows: list[dict[str, Any]], folder: Path) -> dict[str, tuple[float, float]]:
+def exponent(x: Sequence[float], y: Sequence[float], upper: bool = True) -> Exponent:
+    """The power law through the points, or through the upper half of them, by least squares of the logarithms."""
+    some = slice(len(x) // 2 if upper and len(x) > 3 else 0, None)
+    found = linregress(np.log(x[some]), np.log(y[some]))
+    return Exponent(float(found.slope), float(found.stderr))
+
+
+def draw(rows: list[dict[str, Any]], folder: Path) -> dict[str, tuple[Exponent, Exponent]]:
     """Time and memory against each of the three; returns both exponents of each."""
     figure, grid = plt.subplots(2, 3, figsize=(13.5, 7.5))
     found = {}
     for (swept, words), (above, below) in zip(SWEPT.items(), grid.T, strict=True):
         some = [row for row in rows if row["swept"] == swept]
         x = [row[swept] for row in some]
-        stages = [key for key in some[0] if key.endswith("_seconds") and key != "processor_seconds"]
+        stages = [
+            key for key in some[0] if key.endswith("_seconds") and key not in ("processor_seconds", "surface_seconds")
+        ]
         largest = sorted(stages, key=lambda key: -some[-1][key])[:3]
         seconds, memory = ([row[key] for row in some] for key in ("seconds", "memory"))
         found[swept] = exponent(x, seconds), exponent(x, memory)
-        above.plot(x, seconds, "o-", color=RED, label=f"whole run: exponent {found[swept][0]:.2f}")
+        above.plot(x, seconds, "o-", color=RED, label=f"whole run: exponent {found[swept][0]}")
+        if swept == "faces":
+            to_surface = [row["surface_seconds"] for row in some]
+            label = f"reading to surface: exponent {exponent(x, to_surface, upper=False)}"
+            above.plot(x, to_surface, "^-", color=PURPLE, label=label)
         for key, colour in zip(largest, (BLUE, ORANGE, GREY), strict=True):
             y = [row[key] for row in some]
-            label = f"{key.removesuffix('_seconds')}: exponent {exponent(x, y):.2f}"
+            label = f"{key.removesuffix('_seconds')}: exponent {exponent(x, y)}"
             above.plot(x, y, "s--", color=colour, ms=4, lw=1, label=label)
-        below.plot(x, np.array(memory) / 1e9, "o-", color=RED, label=f"peak memory: exponent {found[swept][1]:.2f}")
+        below.plot(x, np.array(memory) / 1e9, "o-", color=RED, label=f"peak memory: exponent {found[swept][1]}")
         log_axes(above, words, "time [s]")
         log_axes(below, words, "peak memory [GB]")
         for axes in (above, below):
@@ -119,7 +142,10 @@ def main() -> None:
     results.table("scaling", rows)
     results.write()
     for swept, (time, memory) in draw(rows, given.out).items():
-        print(f"{swept}: time grows with the power {time:.2f}, memory with {memory:.2f}")
+        print(f"{swept}: time grows with the power {time}, memory with {memory}")
+    some = [row for row in rows if row["swept"] == "faces"]
+    faces, seconds = ([row[key] for row in some] for key in ("faces", "surface_seconds"))
+    print(f"faces: time from reading to the surface grows with the power {exponent(faces, seconds, upper=False)}")
 
 
 if __name__ == "__main__":

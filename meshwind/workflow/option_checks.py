@@ -5,12 +5,13 @@ from numbers import Integral, Real
 
 from meshwind.core.defaults import STEPS_PER_TURN
 from meshwind.core.errors import BadInputError
+from meshwind.core.memory import machine_memory
 from meshwind.core.parsing import shortened
 
 FIELD = "field:"
 """Before the name of a scalar field in a mesh file."""
-MEMORY = 4e9
-"""Most bytes that a run may take."""
+SHARE = 0.8
+"""Of the machine's memory that a run may take: the rest is the system's, and the renderer's."""
 _BYTES_PER_PARTICLE, _BYTES_PER_CROSSING = 350, 1500
 """Peak memory of a run, measured from 3e5 to 1.6e6 particles and 2e4 to 5e5 crossings."""
 
@@ -58,13 +59,14 @@ def text(value: object) -> str:
 
 
 def check_memory(paths: int, particles: int, revolutions: float) -> None:
-    """Raise BadInputError for a run that would take too much memory."""
+    """Raise BadInputError for a run that would take more memory than the machine has."""
     crossings = 2.0 * revolutions * float(paths) ** 2
     needed = 2.0 * paths * particles * _BYTES_PER_PARTICLE + crossings * _BYTES_PER_CROSSING
-    if needed > MEMORY:
+    allowed = SHARE * machine_memory()
+    if needed > allowed:
         raise BadInputError(
             f"{paths} paths per family of {particles} particles and {revolutions:g} revolutions would need about "
-            f"{needed / 1e9:,.0f} GB of memory, and {MEMORY / 1e9:.0f} are allowed; give fewer paths"
+            f"{needed / 1e9:,.0f} GB of memory, and this machine has {allowed / 1e9:,.3g} for a run; give fewer paths"
         )
 
 
