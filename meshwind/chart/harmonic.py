@@ -61,14 +61,14 @@ def harmonic(annulus: Annulus, graph: EdgeGraph, weights: Floats, near: Floats |
     off = sparse.csr_array((np.r_[weights, weights], (np.r_[i, j], np.r_[j, i])), shape=(n, n))
     laplacian = (sparse.diags_array(np.asarray(off.sum(axis=1))) - off).tocsr()
     del off
-    pull = np.bincount(i, turned, n) - np.bincount(j, turned, n)
+    pull = np.asarray(np.bincount(i, turned, n) - np.bincount(j, turned, n), dtype=np.float64)
     rims = np.concatenate(annulus.rims)
-    near = np.zeros((n, 2)) if near is None else near - [near[annulus.rims[0][0], 0], 0.0]
+    guess: Floats = np.zeros((n, 2)) if near is None else near - [near[annulus.rims[0][0], 0], 0.0]
     u, v = np.zeros(n), np.zeros(n)
     v[annulus.rims[1]] = 1.0
     side_by_side(
-        lambda: _solve_fixed(laplacian, pull, annulus.rims[0][:1], u, near[:, 0]),
-        lambda: _solve_fixed(laplacian, np.zeros(n), rims, v, near[:, 1]),
+        lambda: _solve_fixed(laplacian, pull, annulus.rims[0][:1], u, guess[:, 0]),
+        lambda: _solve_fixed(laplacian, np.zeros(n), rims, v, guess[:, 1]),
     )
     return np.column_stack([u, v])
 

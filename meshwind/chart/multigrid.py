@@ -1,8 +1,8 @@
 """Solution of sparse Laplace equations in linear time: conjugate gradients that algebraic multigrid preconditions.
 
-A level joins neighbours into aggregates and takes a smoothed step of each as its coarse functions [1]_, so that only the
-matrix is needed, whatever the mesh.  The iteration takes some 20 steps whatever the number of unknowns, where the time
-of a factorisation grows with the power 1.5 and its memory faster than the mesh.
+A level joins neighbours into aggregates and takes a smoothed step of each as its coarse functions [1]_, so that only
+the matrix is needed, whatever the mesh.  The iteration takes some 20 steps whatever the number of unknowns, where the
+time of a factorisation grows with the power 1.5 and its memory faster than the mesh.
 
 References
 ----------
@@ -15,6 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import sparse
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
@@ -35,7 +36,7 @@ _MOST_LEVELS = 20
 def solve_laplace(
     matrix: sparse.csr_array, right: Floats, start: Floats, tolerance: float, steps: int
 ) -> Floats | None:
-    """Solve matrix x = right for x (n,) from a start, where the matrix is symmetric, definite and has rows summing to 0.
+    """Solve matrix x = right for x (n,) from a start; the matrix is symmetric and definite, most rows sum to about 0.
 
     tolerance: reduction of the residual against the right side, in the preconditioner's norm.  None if so many steps do
     not suffice, or if the matrix is not definite.
@@ -134,7 +135,7 @@ class Multigrid:
         return x
 
 
-def _smoothed(matrix: sparse.csr_array, diagonal: Floats, groups: Ints, count: int) -> sparse.csr_array:
+def _smoothed(matrix: sparse.csr_array, diagonal: Floats, groups: NDArray[np.int32], count: int) -> sparse.csr_array:
     """Functions (n, count) that are 1 on an aggregate, after a damped step of Jacobi."""
     n = len(diagonal)
     ones = sparse.csr_array((np.ones(n), groups, np.arange(n + 1, dtype=groups.dtype)), shape=(n, count))
@@ -143,35 +144,24 @@ def _smoothed(matrix: sparse.csr_array, diagonal: Floats, groups: Ints, count: i
     return (ones + image).tocsr()
 
 
+@njit(nogil=True, inline="always", cache=True)
+def _is_strong(i: int, j: int, value: float, diagonal: Floats, strong: float) -> bool:
+    """Whether an entry (i, j) is strong."""
+    return i != j and -value > strong * np.sqrt(diagonal[i] * diagonal[j])
+
+
 @njit(nogil=True, cache=True)
-def _aggregates(starts: Ints, columns: Ints, values: Floats, diagonal: Floats, strong: float) -> tuple[Ints, int]:
+def _aggregates(
+    starts: Ints, columns: Ints, values: Floats, diagonal: Floats, strong: float
+) -> tuple[NDArray[np.int32], int]:
     """Number (n,) of the aggregate of each unknown, and how many there are.
 
     First each unknown whose strong neighbours are all free forms one with them, then those left over join the aggregate
-    of their strongest neighbour, and those without one stay together with what is left around them.
+    of their nearest neighbour, and those without one stay together with what is left around them.
     """
-    n = len(diagonal)
-    groups, count = np.full(n, -1, np.int32), 0
-    for i in range(n):
-        if groups[i] >= 0:
-            continue
-        free, joined = True, False
-        for p in range(starts[i], starts[i + 1]):
-            j = columns[p]
-            if j != i and -values[p] > strong * np.sqrt(diagonal[i] * diagonal[j]):
-                joined = True
-                if groups[j] >= 0:
-                    free = False
-                    break
-        if free and joined:
-            groups[i] = count
-            for p in range(starts[i], starts[i + 1]):
-                j = columns[p]
-                if j != i and -values[p] > strong * np.sqrt(diagonal[i] * diagonal[j]):
-                    groups[j] = count
-            count += 1
+    groups, count = _first_aggregates(starts, columns, values, diagonal, strong)
     first = groups.copy()
-    for i in range(n):
+    for i in range(len(diagonal)):
         if first[i] >= 0:
             continue
         largest = 0.0
@@ -180,7 +170,7 @@ def _aggregates(starts: Ints, columns: Ints, values: Floats, diagonal: Floats, s
             if j != i and first[j] >= 0 and -values[p] > largest:
                 largest = -values[p]
                 groups[i] = first[j]
-    for i in range(n):
+    for i in range(len(diagonal)):
         if groups[i] >= 0:
             continue
         groups[i] = count
@@ -188,6 +178,28 @@ def _aggregates(starts: Ints, columns: Ints, values: Floats, diagonal: Floats, s
             if groups[columns[p]] < 0:
                 groups[columns[p]] = count
         count += 1
+    return groups, count
+
+
+@njit(nogil=True, cache=True)
+def _first_aggregates(
+    starts: Ints, columns: Ints, values: Floats, diagonal: Floats, strong: float
+) -> tuple[NDArray[np.int32], int]:
+    """Number (n,) of the aggregate of each unknown whose strong neighbours are all free, and of these; else -1."""
+    groups, count = np.full(len(diagonal), -1, np.int32), 0
+    for i in range(len(diagonal)):
+        free, joined = groups[i] < 0, False
+        for p in range(starts[i], starts[i + 1]):
+            if not free:
+                break
+            if _is_strong(i, columns[p], values[p], diagonal, strong):
+                free, joined = groups[columns[p]] < 0, True
+        if free and joined:
+            groups[i] = count
+            for p in range(starts[i], starts[i + 1]):
+                if _is_strong(i, columns[p], values[p], diagonal, strong):
+                    groups[columns[p]] = count
+            count += 1
     return groups, count
 
 

@@ -55,8 +55,9 @@ class FacetPoints:
 
     def where(self, chosen: Bools) -> "FacetPoints":
         """The chosen ones (k,) of the points."""
-        parts = (self.facet, self.corners, self.share, self.turns, self.area)
-        return FacetPoints(*(part[chosen] for part in parts))
+        return FacetPoints(
+            self.facet[chosen], self.corners[chosen], self.share[chosen], self.turns[chosen], self.area[chosen]
+        )
 
     def per_facet(self, values: Floats, faces: int) -> Floats:
         """Means (m,) over each of the facets of values (k,) at the points."""
@@ -77,8 +78,7 @@ def facet_points(samples: Samples, spans: tuple[int, int], chosen: Ints | None =
     parallel_for(_fill, len(faces), 10_000, corners, first, share, area)
     facet = np.repeat(chosen, count)
     area *= samples.facets.areas[facet]
-    corners = samples.facets.faces[facet]
-    return FacetPoints(facet, corners, share, samples.turns[facet].astype(np.float64), area)
+    return FacetPoints(facet, samples.facets.faces[facet], share, samples.turns[facet].astype(np.float64), area)
 
 
 def heights(surface: Surface, uv: Floats, above: Floats, below: Floats) -> tuple[Floats, Floats]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from meshwind.core.cast import Bools, Floats, frozen
 from meshwind.core.vectors import TINY
-from meshwind.surface.fitting.evidence import rms_away_from_creases, straddling
+from meshwind.surface.fitting.evidence import FACETS, rms_away_from_creases, straddling
 from meshwind.surface.fitting.facet_fit import FacetFit
 from meshwind.surface.fitting.neighbours import Neighbourhoods
 from meshwind.surface.fitting.quadrature import FacetPoints, facet_points, heights
@@ -27,8 +27,6 @@ COVER = 3.0
 """The stated uncertainty over the rms of what is left: 99 in 100 places of vessels whose curvature jumps lie within."""
 FLOOR = 0.1
 """Least local uncertainty over that of the whole: a few data may lie well by chance."""
-FACETS = 50_000
-"""Facets, about, of which the sagitta is the mean on a larger mesh: it is true to a per cent then."""
 PULL = 1e-3
 """Weight of the whole's mean against a usual span's data."""
 
@@ -56,7 +54,7 @@ def of_vertices(fitted: VertexFit, near: Neighbourhoods, *, noisy: bool) -> Doub
     if noisy:  # a fit keeps a share of it, and next to none of it is left of the mean of many vertices
         square = fitted.kept * square + near.mean(near.mean(off)) ** 2
     table = _table(surface.spans, samples.uv, trusted * square, trusted)
-    own = _sagitta(surface, samples, *_some_facets(samples, surface.spans), near)
+    own = _sagitta(surface, samples, near)
     return Doubt("vertices", table, fitted.noise, own)
 
 
@@ -80,8 +78,7 @@ def of_facets(fitted: FacetFit, near: Neighbourhoods, *, straddle: bool) -> Doub
         aside = stands if fitted.curved else near.mean(near.mean(stands))
         table = frozen(np.hypot(table, _table(surface.spans, samples.uv, trusted * aside**2, trusted, reach)))
     if fitted.curved:
-        every = np.ones(len(points.facet), dtype=bool)
-        return Doubt("curved facets", table, noise, _sagitta(surface, samples, points, every, near))
+        return Doubt("curved facets", table, noise, _sagitta(surface, samples, near))
     return Doubt("facets", table, noise, rms_away_from_creases(own[points.facet], points, samples))
 
 
@@ -96,11 +93,9 @@ def _some_facets(samples: Samples, spans: tuple[int, int]) -> tuple[FacetPoints,
     return points, middle[points.facet]
 
 
-def _sagitta(surface: Surface, samples: Samples, points: FacetPoints, counted: Bools, near: Neighbourhoods) -> float:
-    """How far flat facets lie off the part where they straddle it, were a surface the part: rms away from creases.
-
-    counted (k,): which of the points count; the others are on the facets about theirs.
-    """
+def _sagitta(surface: Surface, samples: Samples, near: Neighbourhoods) -> float:
+    """How far flat facets lie off the part where they straddle it, were a surface the part: rms away from creases."""
+    points, counted = _some_facets(samples, surface.spans)
     uv, chord = points.places(samples.uv), points.between(surface.points(samples.uv))
     _, height = heights(surface, uv, chord, chord)
     off = straddling(height, points, near)
