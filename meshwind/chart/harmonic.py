@@ -18,7 +18,7 @@ LEAST_WEIGHT = 1e-2
 """Lower bound of positive weights, over the median."""
 DIRECT = 20_000
 """Unknowns up to which a factorisation costs no more than the iteration."""
-TOLERANCE = 1e-9
+TOLERANCE = 1e-10
 """Reduction of the residual by the iteration: far below what a fit can resolve."""
 MOST_STEPS = 100
 """Steps of the iteration after which the matrix is factored; sound meshes take 15 to 30."""
