@@ -14,8 +14,7 @@ from meshwind.chart import flatten
 from meshwind.core import memory
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.geometry import Block
-from meshwind.layup import bands as laid
-from meshwind.layup import coverage
+from meshwind.layup import bands, coverage
 from meshwind.mesh.geometry import halfedges
 from meshwind.mesh.geometry.topology import edges
 from meshwind.results import schema
@@ -136,9 +135,9 @@ def test_bands_are_laid_in_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     surface = mw.shapes.cylinder(1.0, 3.0)
     ends = mw.families(surface, 6, 0.3)
     paths = mw.solve(surface, ends.start, ends.end, family=ends.family, particles=51)
-    whole = laid.bands(paths, 0.1)
-    monkeypatch.setattr(laid, "_AT_ONCE", 60)
-    parts = laid.bands(paths, 0.1)
+    whole = bands(paths, 0.1)
+    monkeypatch.setitem(bands.__globals__, "_AT_ONCE", 60)
+    parts = bands(paths, 0.1)
     assert np.array_equal(parts.layers, whole.layers)
     assert parts.footprint == pytest.approx(whole.footprint, rel=1e-12)
 
