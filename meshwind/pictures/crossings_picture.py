@@ -17,8 +17,8 @@ _DOT, _RING = 10.5, 2.0
 """Largest radius of a disc and width of its ring, in pixels."""
 _RINGED = 4.0
 """Least radius of a disc with a ring, in pixels."""
-_SIDES = 20
-"""Sides of a disc."""
+_SIDES, _FEW_SIDES, _SMALL = 20, 6, 2.0
+"""Sides of a disc, and of all where none has a larger radius in pixels: there are hundreds of thousands then."""
 
 
 def draw(window: Any, scene: CrossingsScene, page: Page) -> Any:
@@ -49,9 +49,10 @@ def add_dots(window: Any, scene: CrossingsScene, scale: float, unit: float, thic
     lift = 2.4 * thick * scene.normals
     ringed = size > _RINGED * unit * scale
     inner = np.where(ringed, size - _RING * unit * scale, size)
-    rings = discs(scene.points[ringed] + lift[ringed], scene.normals[ringed], size[ringed])
-    cores = discs(scene.points + lift + 0.3 * thick * scene.normals, scene.normals, inner)
-    cores.cell_data["share"] = np.repeat(scene.shares, _SIDES)
+    sides = _SIDES if size.max() > _SMALL * unit * scale else _FEW_SIDES
+    rings = discs(scene.points[ringed] + lift[ringed], scene.normals[ringed], size[ringed], sides)
+    cores = discs(scene.points + lift + 0.3 * thick * scene.normals, scene.normals, inner, sides)
+    cores.cell_data["share"] = np.repeat(scene.shares, sides)
     window.add_mesh(rings, color=canvas.INK, lighting=False, render=False) if ringed.any() else None
     look = {"cmap": colour_map(scene.scale.colours), "clim": [0.0, 1.0], "show_scalar_bar": False}
     window.add_mesh(cores, scalars="share", lighting=False, render=False, **look)
@@ -62,16 +63,16 @@ def radii(scene: CrossingsScene, scale: float, unit: float) -> Floats:
     return np.minimum(scene.room, _DOT * unit * scale)
 
 
-def discs(centres: Floats, normals: Floats, size: Floats) -> Any:
+def discs(centres: Floats, normals: Floats, size: Floats, sides: int = _SIDES) -> Any:
     """Discs of radius size (c,) round centres (c, 3), square to normals (c, 3); a fan of triangles each."""
     up = unit_of(normals)
     least = np.eye(3)[np.abs(up).argmin(axis=1)] if len(up) else up
     right = unit_of(np.cross(up, least))
-    turn = 2.0 * np.pi * np.arange(_SIDES) / _SIDES
+    turn = 2.0 * np.pi * np.arange(sides) / sides
     arc = np.cos(turn)[:, None] * right[:, None] + np.sin(turn)[:, None] * np.cross(up, right)[:, None]
     rim = centres[:, None] + size[:, None, None] * arc
     points = np.concatenate([centres[:, None], rim], axis=1)
-    k = np.arange(_SIDES)
-    fan = np.stack([0 * k, 1 + k, 1 + (k + 1) % _SIDES], axis=1)
-    faces = (fan[None] + np.arange(len(centres))[:, None, None] * (_SIDES + 1)).reshape(-1, 3)
+    k = np.arange(sides)
+    fan = np.stack([0 * k, 1 + k, 1 + (k + 1) % sides], axis=1)
+    faces = (fan[None] + np.arange(len(centres))[:, None, None] * (sides + 1)).reshape(-1, 3)
     return pv.PolyData.from_regular_faces(points.reshape(-1, 3), faces)
