@@ -1,6 +1,9 @@
 """The picture of the crossings: discs that never merge, however close the crossings are."""
 
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,7 +12,7 @@ from layup_shapes import cylinder, helices
 
 from meshwind.core.cast import Floats
 from meshwind.pictures.canvas import fitting
-from meshwind.pictures.crossings_picture import discs, radii
+from meshwind.pictures.crossings_picture import add_dots, discs, radii
 from meshwind.pictures.layup_scenes import crossings_scene, room
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import CrossingsScene
@@ -45,6 +48,16 @@ def test_discs_lie_on_the_part(scene: CrossingsScene) -> None:
     off = corners - corners[:, :1]
     assert np.abs((off * scene.normals[:, None]).sum(axis=2)).max() < 1e-6
     assert np.linalg.norm(off[:, 1:], axis=2) == pytest.approx(np.repeat(size[:, None], off.shape[1] - 1, axis=1))
+
+
+@pytest.mark.parametrize(("pixels", "sides"), [(1.0, 6), (5.0, 20)])
+def test_small_discs_have_few_sides(scene: CrossingsScene, pixels: float, sides: int) -> None:
+    """There are hundreds of thousands of them: at 20 sides they would take more memory than all else of a run."""
+    near = replace(scene, room=np.full(len(scene.points), pixels))
+    added: list[Any] = []
+    window = SimpleNamespace(add_mesh=lambda mesh, **_: added.append(mesh))
+    add_dots(window, near, 1.0, 1.0, 0.1)
+    assert added[-1].n_cells == sides * len(scene.points)
 
 
 def test_room_of_clusters_and_of_single_crossings() -> None:
