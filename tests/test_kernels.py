@@ -84,7 +84,7 @@ def start(tried: Path, kept: Path | None, code: str = CALL, **options: object) -
 
 def call(tried: Path, kept: Path | None, **options: object) -> tuple[str, str]:
     """What such a process prints: two results and the number of kernels that it compiled, and warnings."""
-    out, err = start(tried, kept, **options).communicate(timeout=300)
+    out, err = start(tried, kept, **options).communicate(timeout=300)  # type: ignore[arg-type]
     return out.strip(), err
 
 

@@ -114,9 +114,9 @@ def _boxes(corners: Floats) -> Floats:
     while leaves * LEAF < len(corners):
         leaves *= 2
     out = np.empty((2 * leaves, 6))
-    for box in out:
-        fill(box[:3], np.inf)
-        fill(box[3:], -np.inf)
+    for empty in out:
+        fill(empty[:3], np.inf)
+        fill(empty[3:], -np.inf)
     for m in range(len(corners)):
         box = leaves + m // LEAF
         for k in range(3):
