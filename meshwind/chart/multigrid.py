@@ -144,7 +144,7 @@ def _smoothed(matrix: sparse.csr_array, diagonal: Floats, groups: NDArray[np.int
     return (ones + image).tocsr()
 
 
-@njit(nogil=True, inline="always", cache=True)
+@njit(forceinline=True, cache=True)
 def _is_strong(i: int, j: int, value: float, diagonal: Floats, strong: float) -> bool:
     """Whether an entry (i, j) is strong."""
     return i != j and -value > strong * np.sqrt(diagonal[i] * diagonal[j])

@@ -57,12 +57,9 @@ class _Types(_FunctionCompiler):  # type: ignore[misc]
 class Kernel(CPUDispatcher):  # type: ignore[misc]
     """A compiled function."""
 
-    def __init__(
-        self, py_func: Callable[..., Any], locals: Any = None, targetoptions: Any = None, pipeline_class: Any = None
-    ) -> None:
-        pipeline_class = pipeline_class or KernelCompiler
-        super().__init__(py_func, locals or {}, targetoptions, pipeline_class)
-        self._compiler = _Types(py_func, self.targetdescr, self.targetoptions, self.locals, pipeline_class)
+    def __init__(self, py_func: Callable[..., Any], locals: Any = None, targetoptions: Any = None) -> None:
+        super().__init__(py_func, locals, targetoptions, KernelCompiler)
+        self._compiler = _Types(py_func, self.targetdescr, self.targetoptions, self.locals, KernelCompiler)
 
     def add_overload(self, result: Any) -> None:
         """Take in what was compiled or loaded."""

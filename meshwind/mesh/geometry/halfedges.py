@@ -53,7 +53,7 @@ def edge_table(faces: Ints, size: int) -> tuple[Ints, Ints, Ints, Ints]:
     return ends[:edge].copy(), of_half, faces_at[:edge].copy(), halves[:edge].copy()
 
 
-@njit(nogil=True, forceinline=True, cache=True)
+@njit(forceinline=True, cache=True)
 def root(parent: Ints, node: int) -> int:
     """Root of the tree that a node is in, by the parents (n,) of nodes; halves the way there."""
     while parent[node] != node:

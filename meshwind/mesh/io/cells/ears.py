@@ -10,7 +10,7 @@ _NEAR = 1e-7
 """Distance from an ear's new side, by its length, at which a corner counts as on it; unless nothing else is left."""
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@njit(forceinline=True, cache=True)
 def _turn(flat, a, b, c):
     """Twice the area of a triangle, negative if it runs clockwise."""
     return (flat[b, 0] - flat[a, 0]) * (flat[c, 1] - flat[a, 1]) - (flat[b, 1] - flat[a, 1]) * (flat[c, 0] - flat[a, 0])
@@ -27,7 +27,7 @@ def _shape(flat, a, b, c):
     return _turn(flat, a, b, c) / sides if sides > 0.0 else 0.0
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@njit(forceinline=True, cache=True)
 def _same(flat, a, b):
     return flat[a, 0] == flat[b, 0] and flat[a, 1] == flat[b, 1]
 
