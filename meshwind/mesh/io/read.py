@@ -11,6 +11,7 @@ import zipfile
 import zlib
 from collections.abc import Callable
 from dataclasses import replace
+from importlib import import_module
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -20,7 +21,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.core.opencascade import need
 from meshwind.core.units import Unit
 from meshwind.mesh.geometry.mesh import Mesh
-from meshwind.mesh.io.cad import CAD, read_cad_mesh
+from meshwind.mesh.io.cad import CAD
 from meshwind.mesh.io.file_mesh import FileMesh
 from meshwind.mesh.io.in_subprocess import DAMAGED, Arrays, in_subprocess
 from meshwind.mesh.io.precision import resolved
@@ -40,30 +41,31 @@ def _separate(work: Callable[[Path], Arrays]) -> _Reader:
     return read
 
 
-def _reader_of(suffix: str) -> _Reader:
-    """Reader of one of `SUFFIXES`, imported here: a run needs one of many."""
-    if suffix == ".stl":
-        from meshwind.mesh.io.stl.stl import read_stl as reader
-    elif suffix == ".ply":
-        from meshwind.mesh.io.ply.ply import read_ply as reader
-    elif suffix == ".obj":
-        from meshwind.mesh.io.obj import read_obj as reader
-    elif suffix == ".off":
-        from meshwind.mesh.io.off import read_off as reader
-    elif suffix in (".glb", ".gltf"):
-        from meshwind.mesh.io.gltf.gltf import read_gltf as reader
-    elif suffix == ".3mf":
-        from meshwind.mesh.io.threemf.threemf import read_3mf as reader
-    elif suffix == ".msh":
-        from meshwind.mesh.io.msh.msh import read_msh as reader
-    elif suffix == ".inp":
-        from meshwind.mesh.io.deck.deck import read_deck as reader
-    elif suffix in CAD:
-        return _separate(read_cad_mesh)
-    else:
-        from meshwind.mesh.io.vtk.vtk import read_vtk
+_READERS = {
+    ".stl": "stl.stl:read_stl",
+    ".ply": "ply.ply:read_ply",
+    ".obj": "obj:read_obj",
+    ".off": "off:read_off",
+    ".glb": "gltf.gltf:read_gltf",
+    ".gltf": "gltf.gltf:read_gltf",
+    ".3mf": "threemf.threemf:read_3mf",
+    ".vtk": "vtk.vtk:read_vtk",
+    ".vtu": "vtk.vtk:read_vtk",
+    ".vtp": "vtk.vtk:read_vtk",
+    ".msh": "msh.msh:read_msh",
+    ".inp": "deck.deck:read_deck",
+    **dict.fromkeys(CAD, "cad:read_cad_mesh"),
+}
+"""Modules beside this one and their functions, imported when a file asks for them: a run needs one of many."""
+_SEPARATE = {".vtk", ".vtu", ".vtp", *CAD}
+"""Those that can end their process."""
 
-        return _separate(read_vtk)
+
+def _reader_of(suffix: str) -> _Reader:
+    """The reader of one of `SUFFIXES`."""
+    module, name = _READERS[suffix].split(":")
+    work = getattr(import_module(f"{__package__}.{module}"), name)
+    reader: _Reader = _separate(work) if suffix in _SEPARATE else work
     return reader
 
 
@@ -88,9 +90,7 @@ _WAYS = {
 }
 """Advice on other formats of meshes and results, before the formats that are read."""
 _ADVICE = "give the path of a triangle mesh (STL, OBJ, PLY, ...)"
-SUFFIXES = (
-    ".stl", ".ply", ".obj", ".off", ".glb", ".gltf", ".3mf", ".vtk", ".vtu", ".vtp", ".msh", ".inp", *CAD,
-)  # fmt: skip
+SUFFIXES = tuple(_READERS)
 """File name endings that `read` understands."""
 
 _READER_ERRORS = (
