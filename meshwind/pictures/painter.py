@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from queue import SimpleQueue
 from threading import Thread, Timer
@@ -181,11 +181,10 @@ def paint(drawings: "Mapping[Path, Drawing]", drawn: Drawn | None = None) -> str
 def painter() -> Iterator[Painter]:
     """A renderer for one batch: the one that waits, or a new one; it is ended where an error leaves it at work."""
     one = _taken()
-    try:
+    with ExitStack() as on_error:
+        on_error.callback(one.close)
         yield one
-    except BaseException:
-        one.close()
-        raise
+        on_error.pop_all()
 
 
 def _taken() -> Painter:
