@@ -39,19 +39,18 @@ def edges(faces: Ints) -> Edges:
     Each step of repair and opening asks for those of the faces that the step before has left, mostly the same ones:
     the last table is kept, as to compare the faces takes a fortieth of the time.
     """
-    last = _LAST.get(_ONE)
-    if last is not None and np.array_equal(last[0], faces):
-        return last[1]
+    for those, found in _last:
+        if np.array_equal(those, faces):
+            return found
     plain = _plain(faces)
     ends, of_half, count, halves = halfedges.edge_table(plain, int(faces.max(initial=-1)) + 1)
     found = Edges(frozen(ends), frozen(of_half.reshape(-1, 3)), frozen(count), frozen(halves))
-    _LAST[_ONE] = plain.copy(), found
+    _last[:] = [(plain.copy(), found)]
     return found
 
 
-_ONE = "edges"
-_LAST: dict[str, tuple[Ints, Edges]] = {}
-"""The faces of which edges were found last, as they were then, and these."""
+_last: list[tuple[Ints, Edges]] = []
+"""The faces of which edges were found last, as they were then, and these; at most one pair."""
 
 
 def _plain(indices: Ints) -> Ints:
