@@ -14,6 +14,7 @@ from functools import cached_property
 from typing import Any
 
 import numba
+from numba.core.compiler import Flags
 from numba.core.dispatcher import _FunctionCompiler  # type: ignore[attr-defined]
 from numba.core.registry import CPUDispatcher
 from numba.core.types import Literal, unliteral  # type: ignore[attr-defined]
@@ -40,6 +41,21 @@ def njit(nogil: bool = False, cache: bool = False, **options: Any) -> Callable[[
     return declare
 
 
+class _Flags(Flags):  # type: ignore[misc]
+    """Flags that are found and compared at once: Numba looks itself up by them at each operator of a kernel.
+
+    Its own hash is that of the names of all flags, which it sorts each time: the same for all.
+    """
+
+    _HASH = hash(Flags())
+
+    def __hash__(self) -> int:
+        return self._HASH
+
+    def __eq__(self, other: object) -> Any:
+        return (isinstance(other, Flags) and self._values == other._values) or super().__eq__(other)
+
+
 class _Types(_FunctionCompiler):  # type: ignore[misc]
     """What a kernel is compiled for."""
 
@@ -49,6 +65,7 @@ class _Types(_FunctionCompiler):  # type: ignore[misc]
         return signature, tuple(unliteral(each) if isinstance(each, Literal) else each for each in folded)
 
     def _customize_flags(self, flags: Any) -> Any:
+        flags = _Flags(flags)
         flags.no_cfunc_wrapper = True
         flags.no_cpython_wrapper = not self.targetoptions["nogil"]
         return flags

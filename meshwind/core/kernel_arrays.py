@@ -1,7 +1,8 @@
-"""Assignments of rows and tables inside kernels.
+"""Assignments of rows and tables, and sums over them, inside kernels.
 
 Numba compiles an assignment to a slice with all that it may be asked for (broadcasting, overlap, the text of an error),
-which takes as long as some fifty lines of arithmetic, at each place where one is made.
+which takes as long as some fifty lines of arithmetic, at each place where one is made; arithmetic with whole arrays
+and NumPy's reductions take as long.
 """
 
 from meshwind.core.kernel import njit
@@ -27,6 +28,15 @@ def copy_table(source, target):
     for i in range(target.shape[0]):
         for k in range(target.shape[1]):
             target[i, k] = source[i, k]
+
+
+@njit(forceinline=True, cache=True)
+def inner(one, other):
+    """Inner product of two rows (n,)."""
+    total = 0.0
+    for k in range(len(one)):
+        total += one[k] * other[k]
+    return total
 
 
 @njit(forceinline=True, cache=True)

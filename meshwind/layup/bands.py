@@ -9,6 +9,7 @@ import numpy as np
 from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import inner
 from meshwind.core.vectors import TINY
 from meshwind.path.paths import Paths
 from meshwind.surface.evaluate import SU, SV, S
@@ -221,9 +222,11 @@ def _segment(strips, i, k):
     """Segment k of path i."""
     feet, n = strips.feet[i], strips.feet.shape[1]
     start, end = feet[k], feet[k + 1]
-    along = end - start
-    square = (along * along).sum()
-    before, after = end - feet[max(k - 1, 0)], feet[min(k + 2, n - 1)] - start
+    along, before, after = np.empty(3), np.empty(3), np.empty(3)
+    for d in range(3):
+        along[d], before[d] = end[d] - start[d], end[d] - feet[max(k - 1, 0), d]
+        after[d] = feet[min(k + 2, n - 1), d] - start[d]
+    square = inner(along, along)
     low, high = _past(strips, i, k)
     length = np.sqrt(square)
     return Segment(start, along, before, after, square, -low * strips.half * length, high * strips.half * length)

@@ -7,6 +7,7 @@ import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import copy_table
 from meshwind.path.paths import Paths
 
 REACH = 1e-9
@@ -139,6 +140,15 @@ def _meet(a: Floats, b: Floats, turn: float) -> tuple[float, float, float]:
     return s, r, cross
 
 
+@njit(cache=True)
+def _with_room(pairs: Ints, where: Floats) -> tuple[Ints, Floats]:
+    """Copies of pairs (n, 3) and where (n, 2) in tables of twice as many rows."""
+    more, further = np.empty((2 * len(pairs), 3), np.int64), np.empty((2 * len(where), 2))
+    copy_table(pairs, more[: len(pairs)])
+    copy_table(where, further[: len(where)])
+    return more, further
+
+
 @njit(nogil=True, cache=True)
 def segment_meetings(a: Floats, b: Floats, grid: Grid) -> Meetings:
     """Every meeting of a segment of a (m, 4) with one of b (k, 4), rows u0, v0, u1, v1, modulo turns.
@@ -166,10 +176,9 @@ def segment_meetings(a: Floats, b: Floats, grid: Grid) -> Meetings:
                         s, r, cross = _meet(a[k], b[m], float(turn))
                         if cross != 0.0:
                             if found == room:
-                                pairs = np.concatenate((pairs, np.empty_like(pairs)))
-                                where = np.concatenate((where, np.empty_like(where)))
+                                pairs, where = _with_room(pairs, where)
                                 room *= 2
-                            pairs[found, 0], pairs[found, 1], pairs[found, 2] = k, m, np.sign(cross)
+                            pairs[found, 0], pairs[found, 1], pairs[found, 2] = k, m, 1 if cross > 0.0 else -1
                             where[found, 0], where[found, 1] = s, r
                             found += 1
                         turn += 1

@@ -9,6 +9,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import inner
 from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.glide import MAX_STEPS, Factors, glide
@@ -182,35 +183,41 @@ def _connect(spline, place, foot, way, room):
     n = len(curve)
     tangents(spline, foot[0], foot[1], here)
     unit_normal(here, normal)
-    along = here[SU] * way[0] + here[SV] * way[1]
-    speed = np.sqrt((along * along).sum())
-    tangent = here[SU] * du + here[SV] * dv
+    along, tangent, end, left = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
+    for d in range(3):
+        along[d] = here[SU, d] * way[0] + here[SV, d] * way[1]
+        tangent[d] = here[SU, d] * du + here[SV, d] * dv
+        end[d] = here[S, d]
     if sharpest > _STRAIGHT:
-        end = here[S].copy()
         for i in range(n):
             curve[i, 0], curve[i, 1] = place[0] + i * du / (n - 1), place[1] + i * dv / (n - 1)
         _, found = glide(spline, Limits(np.inf, _BALANCE, MAX_STEPS), curve, frames, factors, counters)
         if found:
-            tangent = end - frames[n - 2, S]
-            tangent -= (tangent * normal).sum() * normal
+            for d in range(3):
+                tangent[d] = end[d] - frames[n - 2, S, d]
+            off = inner(tangent, normal)
+            for d in range(3):
+                tangent[d] -= off * normal[d]
             length, turn = min(length, _length(spline, curve, here)), 0.0
-    size = np.sqrt((tangent * tangent).sum())
-    left = np.empty(3)
+    size, speed = np.sqrt(inner(tangent, tangent)), np.sqrt(inner(along, along))
     for d in range(3):
         e, f = (d + 1) % 3, (d + 2) % 3
         left[d] = normal[e] * tangent[f] - normal[f] * tangent[e]
     # the line bends away from the geodesic between the same places by half of its turn
-    tangent = np.cos(0.5 * turn) * tangent - np.sin(0.5 * turn) * left
-    return length, (tangent * along).sum() / max(size * speed, TINY), speed
+    lean = np.cos(0.5 * turn) * inner(tangent, along) - np.sin(0.5 * turn) * inner(left, along)
+    return length, lean / max(size * speed, TINY), speed
 
 
 @njit(cache=True)
 def _sideways(here, normal, du, dv):
     """Acceleration of a straight line in (u, v) across itself, times its speed, within the tangent plane."""
-    x, y, z = here[SU] * du + here[SV] * dv
-    bx, by, bz = here[SUU] * (du * du) + here[SUV] * (2.0 * du * dv) + here[SVV] * (dv * dv)
-    a, b, c = normal[1] * z - normal[2] * y, normal[2] * x - normal[0] * z, normal[0] * y - normal[1] * x
-    return a * bx + b * by + c * bz
+    total = 0.0
+    for d in range(3):
+        e, f = (d + 1) % 3, (d + 2) % 3
+        ahead, over = here[SU, e] * du + here[SV, e] * dv, here[SU, f] * du + here[SV, f] * dv
+        bend = here[SUU, d] * (du * du) + here[SUV, d] * (2.0 * du * dv) + here[SVV, d] * (dv * dv)
+        total += (normal[e] * over - normal[f] * ahead) * bend
+    return total
 
 
 @njit(cache=True)

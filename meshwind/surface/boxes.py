@@ -7,6 +7,7 @@ half extents along u, across and along the normal, all 16 at once so that the co
 import numpy as np
 
 from meshwind.core.kernel import njit
+from meshwind.core.kernel_arrays import inner
 
 WIDE = 4
 """Children of a node in either direction."""
@@ -64,23 +65,26 @@ def set_extents(boxes, c, axes, low, high):
 def orthonormalise(boxes, c):
     """Make a child's normal and its direction along u unit vectors at right angles; where one vanishes any will do."""
     n, e = boxes[NORMAL : NORMAL + 3, c], boxes[ALONG : ALONG + 3, c]
-    size = np.sqrt(n[0] ** 2 + n[1] ** 2 + n[2] ** 2)
+    size = np.sqrt(inner(n, n))
     if size > 0.0:
         for k in range(3):
             n[k] /= size
     else:
         n[2] = 1.0
-    out = e[0] * n[0] + e[1] * n[1] + e[2] * n[2]
+    out = inner(e, n)
     for k in range(3):
         e[k] -= out * n[k]
-    size = np.sqrt(e[0] ** 2 + e[1] ** 2 + e[2] ** 2)
+    size = np.sqrt(inner(e, e))
     if size > 0.0:
         for k in range(3):
             e[k] /= size
         return
-    k = np.abs(n).argmin()  # any direction at right angles to the normal
+    k = 0  # any direction at right angles to the normal
+    for d in range(1, 3):
+        if abs(n[d]) < abs(n[k]):
+            k = d
     e[k], e[(k + 1) % 3], e[(k + 2) % 3] = 0.0, n[(k + 2) % 3], -n[(k + 1) % 3]
-    size = np.sqrt((e * e).sum())
+    size = np.sqrt(inner(e, e))
     for k in range(3):
         e[k] /= size
 

@@ -160,3 +160,10 @@ def frames(first, last, spline, uv, out):
     """Write the frames of rows first to last of uv (n, 2) into out (n, 6, 3)."""
     for i in range(first, last):
         frame(spline, uv[i, 0], uv[i, 1], out[i])
+
+
+@njit(nogil=True, cache=True)
+def positions(first, last, spline, uv, out):
+    """Write the positions of rows first to last of uv (n, 2) into out (n, 3)."""
+    for i in range(first, last):
+        position(spline, uv[i, 0], uv[i, 1], out[i])

@@ -306,7 +306,10 @@ class Surface(PicklableRecord, Geometric):
         >>> mw.shapes.cylinder(1.0, 3.0).points([(0.5, 1.0)]).round(6) + 0.0
         array([[-1.,  0.,  3.]])
         """
-        return self.frames(uv)[:, 0]
+        where = floats(uv, "uv", -1, 2)
+        out = np.empty((len(where), 3))
+        parallel_for(evaluate.positions, len(where), 5000, self.spline, where, out)
+        return out
 
     def normals(self, uv: ArrayLike) -> Floats:
         """Evaluate unit normals.

@@ -222,7 +222,7 @@ def another_foot(body, point, u, v, a, b, m, square):
     i, j = DENSITY * a + m // SIDE, DENSITY * b + m % SIDE
     off = i - u * across
     if periodic:
-        off -= across * np.round(off / across)
+        off -= across * np.rint(off / across)
     if abs(off) <= BESIDE and abs(j - v * along) <= BESIDE:
         return False
     for p in range(i - 1, i + 2):
@@ -268,5 +268,5 @@ def nearest_foot(body, point, guess, at):
         if missed == MAX_MISSED:
             break
     if body.spline.periodic:
-        guess[0] += np.round(before - guess[0])
+        guess[0] += np.rint(before - guess[0])
     return count

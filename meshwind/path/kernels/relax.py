@@ -246,14 +246,16 @@ def escape_saddle(body, state, trial, work, count, least, counters):
         if shift > 1.0 / least:
             return False
     for _ in range(INVERSE_ITERATIONS):
-        reach = np.abs(mode).max()
+        reach = _reach(mode)
         for c in range(count):
             x, y = mode[c, 0] / reach, mode[c, 1] / reach
             right[c, 0] = metric[c, 0] * x + metric[c, 1] * y
             right[c, 1] = metric[c, 1] * x + metric[c, 2] * y
         counters[SOLVES] += 1
         solve(modal, shift, count)
-    mode /= np.abs(mode).max()
+    reach = _reach(mode)
+    for c in range(count):
+        mode[c, 0], mode[c, 1] = mode[c, 0] / reach, mode[c, 1] / reach
     best = spring_energy(state)[0]
     chosen = 0.0
     for step in (ESCAPE_STEP, -ESCAPE_STEP):
@@ -266,6 +268,15 @@ def escape_saddle(body, state, trial, work, count, least, counters):
         move_touching(body.spline, chosen, mode, work, count, state, trial, counters)
         carry_lifted(body, 0.0, contacts, count, state, trial, counters)
     return chosen != 0.0
+
+
+@njit(cache=True)
+def _reach(mode):
+    """Largest move of a particle along one of its directions."""
+    reach = 0.0
+    for c in range(len(mode)):
+        reach = max(reach, abs(mode[c, 0]), abs(mode[c, 1]))
+    return reach
 
 
 @njit(cache=True)
