@@ -2,8 +2,6 @@
 
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +10,7 @@ from layup_shapes import cylinder, helices
 
 from meshwind.core.cast import Floats
 from meshwind.pictures.canvas import fitting
-from meshwind.pictures.crossings_picture import add_dots, discs, radii
+from meshwind.pictures.crossings_picture import discs, dots, radii
 from meshwind.pictures.layup_scenes import crossings_scene, room
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import CrossingsScene
@@ -54,10 +52,8 @@ def test_discs_lie_on_the_part(scene: CrossingsScene) -> None:
 def test_small_discs_have_few_sides(scene: CrossingsScene, pixels: float, sides: int) -> None:
     """There are hundreds of thousands of them: at 20 sides they would take more memory than all else of a run."""
     near = replace(scene, room=np.full(len(scene.points), pixels))
-    added: list[Any] = []
-    window = SimpleNamespace(add_mesh=lambda mesh, **_: added.append(mesh))
-    add_dots(window, near, 1.0, 1.0, 0.1)
-    assert added[-1].n_cells == sides * len(scene.points)
+    cores, _ = dots(near, 1.0, 1.0, 0.1)
+    assert cores.n_cells == sides * len(scene.points)
 
 
 def test_room_of_clusters_and_of_single_crossings() -> None:

@@ -34,7 +34,7 @@ def frames(window: Any, scene: AnimationScene, page: Page) -> Iterator[Any]:
     winding = scene.winding
     frame, part = winding.frame, winding.part
     scale = canvas.fitting(page, frame.view)
-    thick = bodies.radius(part, scale, page.unit)
+    thick = bodies.stroke(part, scale, page.unit).radius
     bodies.add_part(window, part)
     grown = [*_fibres(window, scene, thick), *_bridges(window, scene, thick)]
     head = window.add_mesh(pv.Sphere(radius=2.2 * thick), color=canvas.INK, render=False)
@@ -77,8 +77,8 @@ def _bridges(window: Any, scene: AnimationScene, thick: float) -> Iterator[tuple
     lines.point_data["gap"] = bridges.gap
     lines.point_data["laid"] = scene.bridge_laid
     tubes = lines.tube(radius=1.4 * thick, n_sides=10)
-    look = {"scalars": "gap", "cmap": winding_picture.GAPS, "clim": [0.0, scene.winding.max_gap]}
-    yield window.add_mesh(tubes, render=False, show_scalar_bar=False, ambient=0.4, diffuse=0.65, **look), tubes
+    look = bodies.coloured("gap", winding_picture.GAPS, scene.winding.max_gap)
+    yield window.add_mesh(tubes, render=False, ambient=0.4, diffuse=0.65, **look), tubes
 
 
 def _head(scene: AnimationScene, done: float, thick: float) -> Floats:

@@ -1,6 +1,6 @@
 """Meshes in the pictures: the part, fibres as tubes, bridges coloured by their gap."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pyvista as pv
@@ -14,8 +14,26 @@ LOOSE = "#7a7a7a"
 NAMES = {1: "family +1", -1: "family −1"}
 TUBE = 3.0, 0.16
 """Radius of a tube in pixels, and its upper limit over the pitch."""
-_MANY = 60_000
-"""Number of points above which tubes are thin enough to have fewer sides."""
+_SIDES = 8
+"""Sides of a tube."""
+_MANY = 30_000
+"""Points above which fibres are thinner than a pixel or so, and drawn as lines: tubes take 7 kB a point."""
+
+
+class Stroke(NamedTuple):
+    """How thick a fibre is drawn: its radius, and the size of a pixel, in mesh units."""
+
+    radius: float
+    pixel: float
+
+    def times(self, share: float) -> "Stroke":
+        """A stroke whose radius is a multiple of this one's."""
+        return self._replace(radius=share * self.radius)
+
+    @property
+    def width(self) -> float:
+        """Width of a line, in pixels."""
+        return max(2.0 * self.radius / self.pixel, 1.0)
 
 
 def add_part(window: Any, part: Part) -> None:
@@ -43,10 +61,10 @@ def body(part: Part) -> Any:
     return mesh
 
 
-def radius(part: Part, scale: float, unit: float) -> float:
-    """Radius of the fibres' tubes; scale: mesh units per pixel, unit: pixels per pixel of the designed page."""
+def stroke(part: Part, scale: float, unit: float) -> Stroke:
+    """That of the fibres; scale: mesh units per pixel, unit: pixels per pixel of the designed page."""
     pixels, share = TUBE
-    return float(min(pixels * unit * scale, share * part.pitch))
+    return Stroke(float(min(pixels * unit * scale, share * part.pitch)), scale)
 
 
 def lifted(fibres: Fibres, thick: float) -> Floats:
@@ -54,34 +72,34 @@ def lifted(fibres: Fibres, thick: float) -> Floats:
     return np.asarray(fibres.points + thick * fibres.lift)
 
 
-def add_fibres(window: Any, fibres: Fibres, thick: float, colours: dict[int, str] = FAMILY) -> None:
-    """Add both families as tubes."""
-    points = lifted(fibres, thick)
+def add_fibres(window: Any, fibres: Fibres, stroke: Stroke, colours: dict[int, str] = FAMILY) -> None:
+    """Add both families."""
+    points = lifted(fibres, stroke.radius)
     for name, colour in colours.items():
-        add_tubes(window, points[(fibres.family == name) & fibres.converged], thick, colour)
-    add_tubes(window, points[~fibres.converged], 0.6 * thick, LOOSE)
+        add_paths(window, points[(fibres.family == name) & fibres.converged], stroke, colour)
+    add_paths(window, points[~fibres.converged], stroke.times(0.6), LOOSE)
 
 
-def sides(points: int) -> int:
-    """Number of sides of tubes through this many points in all."""
-    return 8 if points <= _MANY else 4
-
-
-def add_tubes(window: Any, points: Floats, thick: float, colour: str) -> None:
-    """Add tubes around paths (p, n, 3)."""
+def add_paths(window: Any, points: Floats, stroke: Stroke, colour: str) -> None:
+    """Add paths (p, n, 3) of one colour."""
     if len(points):
         lines = polylines(points.reshape(-1, 3), np.full(len(points), points.shape[1]))
-        add_smooth(
-            window, lines.tube(radius=thick, n_sides=sides(lines.n_points)), color=colour, ambient=0.4, diffuse=0.7
-        )
+        add_strokes(window, lines, stroke, color=colour)
 
 
-def add_coloured_tubes(window: Any, lines: Any, thick: float, name: str, colours: Any, most: float) -> None:
-    """Add tubes around polylines, coloured by one of their fields from 0 to `most`."""
-    tubes = lines.tube(radius=thick, n_sides=sides(lines.n_points) + 2)
-    add_smooth(
-        window, tubes, scalars=name, cmap=colours, show_scalar_bar=False, clim=[0.0, most], ambient=0.4, diffuse=0.65
-    )
+def add_strokes(window: Any, lines: Any, stroke: Stroke, **look: Any) -> None:
+    """Add polylines as tubes or, where they are many, as lines, which the part does not hide."""
+    if lines.n_points <= _MANY:
+        tubes = lines.tube(radius=stroke.radius, n_sides=_SIDES)
+        add_smooth(window, tubes, ambient=0.4, diffuse=0.7, **look)
+        return
+    actor = window.add_mesh(lines, line_width=stroke.width, lighting=False, render=False, **look)
+    actor.mapper.resolve = "polygon_offset"  # else the facets of the part would cut lines that lie on it
+
+
+def coloured(name: str, colours: Any, most: float) -> dict[str, Any]:
+    """The look of what is coloured by one of its fields from 0 to `most`."""
+    return {"scalars": name, "cmap": colours, "show_scalar_bar": False, "clim": [0.0, most]}
 
 
 def polylines(points: Floats, sizes: Ints) -> Any:

@@ -20,15 +20,18 @@ _RINGED = 4.0
 _SIDES, _FEW_SIDES, _SMALL = 20, 6, 2.0
 """Sides of a disc, and of all where none has a larger radius in pixels: there are hundreds of thousands then."""
 
+_NEARER = -12.0
+"""Offset of the discs in depth, as OpenGL counts it, so that fibres that are drawn as lines do not hide them."""
+
 
 def draw(window: Any, scene: CrossingsScene, page: Page) -> Any:
     """Draw the crossings, with text."""
     view = scene.frame.view
     scale = canvas.fitting(page, view)
-    thick = 0.6 * bodies.radius(scene.part, scale, page.unit)
+    stroke = bodies.stroke(scene.part, scale, page.unit).times(0.6)
     bodies.add_part(window, scene.part)
-    bodies.add_fibres(window, scene.fibres, thick, {1: FIBRE, -1: FIBRE})
-    add_dots(window, scene, scale, page.unit, thick)
+    bodies.add_fibres(window, scene.fibres, stroke, {1: FIBRE, -1: FIBRE})
+    add_dots(window, scene, scale, page.unit, stroke.radius)
     image = canvas.portrait(window, page, view, scene.part.points)
     pen = canvas.titled(image, page, scene.frame)
     canvas.legend(pen, page, [(FIBRE, "fibres")])
@@ -39,12 +42,23 @@ def draw(window: Any, scene: CrossingsScene, page: Page) -> Any:
 
 
 def add_dots(window: Any, scene: CrossingsScene, scale: float, unit: float, thick: float) -> None:
-    """Add a disc per crossing, in a dark ring unless it is small, so that pale ones stand out.
+    """Add the discs and their rings."""
+    if not len(scene.points):
+        return
+    cores, rings = dots(scene, scale, unit, thick)
+    look = bodies.coloured("share", colour_map(scene.scale.colours), 1.0)
+    added = [window.add_mesh(cores, lighting=False, render=False, **look)]
+    added += [window.add_mesh(rings, color=canvas.INK, lighting=False, render=False)] if rings.n_cells else []
+    for actor in added:
+        actor.mapper.resolve = "polygon_offset"
+        actor.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(_NEARER, _NEARER)
+
+
+def dots(scene: CrossingsScene, scale: float, unit: float, thick: float) -> tuple[Any, Any]:
+    """A disc per crossing, and dark rings around those that are not small, so that pale ones stand out.
 
     Discs lie on the part and keep within their room, so that they do not meet in any view.
     """
-    if not len(scene.points):
-        return
     size = radii(scene, scale, unit)
     lift = 2.4 * thick * scene.normals
     ringed = size > _RINGED * unit * scale
@@ -53,9 +67,7 @@ def add_dots(window: Any, scene: CrossingsScene, scale: float, unit: float, thic
     rings = discs(scene.points[ringed] + lift[ringed], scene.normals[ringed], size[ringed], sides)
     cores = discs(scene.points + lift + 0.3 * thick * scene.normals, scene.normals, inner, sides)
     cores.cell_data["share"] = np.repeat(scene.shares, sides)
-    window.add_mesh(rings, color=canvas.INK, lighting=False, render=False) if ringed.any() else None
-    look = {"cmap": colour_map(scene.scale.colours), "clim": [0.0, 1.0], "show_scalar_bar": False}
-    window.add_mesh(cores, scalars="share", lighting=False, render=False, **look)
+    return cores, rings
 
 
 def radii(scene: CrossingsScene, scale: float, unit: float) -> Floats:

@@ -15,7 +15,11 @@ from meshwind.pictures.scenes import FilamentScene, Groups
 
 BASE, HELD = "#bcc5ce", "#3d4852"
 _RIM = "#1c1c1c"
-_RIM_OPACITY, _RIM_WIDTH = 0.45, 1.3
+_RIM_OPACITY, _RIM_WIDTH, _RIM_SHARE = 0.45, 1.3, 0.08
+"""Opacity of the edges of bands, their width in pixels, and their largest share of a band's width.
+
+Thinner than half a pixel they are fainter instead, as a line cannot be.
+"""
 DEPTH, _WITHIN = 0.3, 0.04
 """Depth by which the last band is seen before the first, and distance from turnarounds within which none is.
 
@@ -79,8 +83,11 @@ def add_bands(window: Any, scene: FilamentScene, page: Page) -> list[Any]:
     band, *edges = bands(scene, scene.ribbons, scene.frame.view, page)
     added = window.add_mesh(band, scalars="colour", rgb=True, ambient=0.45, diffuse=0.6, render=False)
     added.prop.interpolation = "Phong"
-    look = {"color": _RIM, "opacity": _RIM_OPACITY, "line_width": max(_RIM_WIDTH * page.unit, 0.5), "lighting": False}
-    return [added, *(window.add_mesh(edge, render=False, **look) for edge in edges)]
+    across = np.linalg.norm(scene.ribbons.points[:, -1] - scene.ribbons.points[:, 0], axis=1)
+    wide = float(np.median(across)) / canvas.fitting(page, scene.frame.view)
+    line = min(_RIM_WIDTH * page.unit, _RIM_SHARE * wide)
+    look = {"color": _RIM, "opacity": _RIM_OPACITY * min(2.0 * line, 1.0), "line_width": max(line, 0.5)}
+    return [added, *(window.add_mesh(edge, render=False, lighting=False, **look) for edge in edges)]
 
 
 def bands(scene: FilamentScene, ribbons: Ribbons, view: View, page: Page) -> list[Any]:

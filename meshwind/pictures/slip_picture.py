@@ -21,11 +21,11 @@ def draw(window: Any, scene: SlipScene, page: Page) -> Any:
     """Draw the slip, with text."""
     view, converged = scene.frame.view, scene.fibres.converged
     scale = canvas.fitting(page, view)
-    thick = bodies.radius(scene.part, scale, page.unit)
-    points = bodies.lifted(scene.fibres, thick)
+    stroke = bodies.stroke(scene.part, scale, page.unit)
+    points = bodies.lifted(scene.fibres, stroke.radius)
     bodies.add_part(window, scene.part)
-    bodies.add_tubes(window, points[~converged], 0.6 * thick, bodies.LOOSE)
-    _add_known(window, scene, points[converged], thick)
+    bodies.add_paths(window, points[~converged], stroke.times(0.6), bodies.LOOSE)
+    _add_known(window, scene, points[converged], stroke)
     image = canvas.portrait(window, page, view, scene.part.points)
     pen = canvas.titled(image, page, scene.frame)
     rows = [(OFF, "off the surface")] if scene.bridges else []
@@ -69,17 +69,16 @@ def bars_box(page: Page) -> canvas.Box:
     return left, top, page.width - page.unit * _RIGHT - left, high
 
 
-def _add_known(window: Any, scene: SlipScene, points: Floats, thick: float) -> None:
+def _add_known(window: Any, scene: SlipScene, points: Floats, stroke: bodies.Stroke) -> None:
     """Add converged fibres: coloured between particles whose slip is known, thin and grey between others."""
     shares = scene.shares[scene.fibres.converged]
     known = np.isfinite(shares[:, 1:]) & np.isfinite(shares[:, :-1])
     grey, lines = runs(points, shares, ~known), runs(points, shares, known)
     if grey is not None:
-        tubes = grey.tube(radius=0.7 * thick, n_sides=bodies.sides(grey.n_points))
-        canvas.add_smooth(window, tubes, color=OFF, ambient=0.4, diffuse=0.7)
+        bodies.add_strokes(window, grey, stroke.times(0.7), color=OFF)
     if lines is not None:
         colours = colour_map(scene.scale.colours)
-        bodies.add_coloured_tubes(window, lines, thick, "share", colours, 1.0)
+        bodies.add_strokes(window, lines, stroke, **bodies.coloured("share", colours, 1.0))
 
 
 def runs(points: Floats, shares: Floats, wanted: Bools) -> Any:

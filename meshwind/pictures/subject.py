@@ -81,15 +81,16 @@ class Subject:
 
         The first hides half of the part, so that it is shown from the other side as well.
         """
-        paths = self.paths
         if isinstance(self.seen_from, View):
             return self.seen_from
+        paths, kept = self.paths, self.kept
+        drawn = paths.points[:, kept]
         if self.seen_from != "auto":
-            return named_view(np.concatenate([self.points, paths.points.reshape(-1, 3)]), self.seen_from)
+            return named_view(np.concatenate([self.points, drawn.reshape(-1, 3)]), self.seen_from)
         v = np.linspace(0.0, 1.0, 65)
         uv = np.stack(np.meshgrid(np.arange(32) / 32, v, indexing="ij"), axis=2).reshape(-1, 2)
         axis = paths.surface.points(uv).reshape(32, 65, 3).mean(axis=0)
-        marks = paths.points.reshape(-1, 3), paths.normal.reshape(-1, 3), paths.gap.ravel()
+        marks = drawn.reshape(-1, 3), paths.normal[:, kept].reshape(-1, 3), paths.gap[:, kept].ravel()
         return replace(best_view(self.points, self.quads, axis, *marks), both=True)
 
     @cached_property

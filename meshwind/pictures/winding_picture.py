@@ -15,10 +15,10 @@ GAPS = colour_map("gap")
 def draw(window: Any, scene: WindingScene, page: Page) -> Any:
     """Draw the part and its fibres, with text."""
     scale = canvas.fitting(page, scene.frame.view)
-    thick = bodies.radius(scene.part, scale, page.unit)
+    stroke = bodies.stroke(scene.part, scale, page.unit)
     bodies.add_part(window, scene.part)
-    bodies.add_fibres(window, scene.fibres, thick)
-    add_bridges(window, scene, thick)
+    bodies.add_fibres(window, scene.fibres, stroke)
+    add_bridges(window, scene, stroke)
     return lettered(canvas.portrait(window, page, scene.frame.view, scene.part.points), scene, page)
 
 
@@ -41,14 +41,14 @@ def families(fibres: Fibres) -> list[tuple[str, str]]:
     return rows if fibres.converged.all() else [*rows, (bodies.LOOSE, "not at rest")]
 
 
-def add_bridges(window: Any, scene: WindingScene, thick: float) -> None:
+def add_bridges(window: Any, scene: WindingScene, stroke: bodies.Stroke) -> None:
     """Add the spans off the surface, thicker and coloured by their gap."""
     bridges = scene.bridges
     if not len(bridges.points):
         return
-    lines = bodies.polylines(bridges.points + thick * bridges.lift, bridges.sizes)
+    lines = bodies.polylines(bridges.points + stroke.radius * bridges.lift, bridges.sizes)
     lines.point_data["gap"] = bridges.gap
-    bodies.add_coloured_tubes(window, lines, 1.4 * thick, "gap", GAPS, scene.max_gap)
+    bodies.add_strokes(window, lines, stroke.times(1.4), **bodies.coloured("gap", GAPS, scene.max_gap))
 
 
 def marks(most: float) -> list[tuple[float, str]]:

@@ -4,6 +4,7 @@ import numpy as np
 
 from meshwind.appearance.words import quantity
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.lists import spread
 from meshwind.path.lengths import Bridges, bridges, lengths
 from meshwind.path.paths import Paths
 from meshwind.pictures.scenes import BridgeLines, Fibres, WindingScene
@@ -21,46 +22,47 @@ def winding_scene(of: Subject) -> WindingScene:
 def fibres(of: Subject) -> Fibres:
     """The fibres, with those of their particles that are drawn."""
     kept = of.kept
-    return Fibres(of.paths.points[:, kept], lifts(of.paths)[:, kept], of.paths.family, of.converged)
+    return Fibres(of.paths.points[:, kept], lifts(of.paths, kept), of.paths.family, of.converged)
 
 
-def lifts(paths: Paths) -> Floats:
-    """Lift (p, n, 3) of the particles so that tubes lie on the part, in radii of the tube.
+def lifts(paths: Paths, kept: Ints) -> Floats:
+    """Lift (p, k, 3) of the particles `kept` (k,) so that tubes lie on the part, in radii of the tube.
 
     It is along the normal on the surface, and interpolated between the normals at both ends along a bridge, which
     stays straight.
     """
     spans = bridges(paths)
-    row, column, share = _inside(paths, spans)
-    size = spans.last - spans.first + 1
-    first, last = (np.repeat(paths.normal[spans.path, end], size, axis=0) for end in (spans.first, spans.last))
-    lift = np.array(paths.normal)
-    lift[row, column] = (1.0 - share)[:, None] * first + share[:, None] * last
+    span, column = _inside(spans)
+    place = np.full(paths.gap.shape[1], -1)
+    place[kept] = np.arange(len(kept))
+    span, column = span[place[column] >= 0], column[place[column] >= 0]
+    lift = paths.normal[:, kept]
+    lift[spans.path[span], place[column]] = _lifted(paths, spans, span, column)
     return lift
 
 
-def _inside(paths: Paths, spans: Bridges) -> tuple[Ints, Ints, Floats]:
-    """Path, number and share of the way along its bridge of every particle of every bridge, ends included."""
+def _inside(spans: Bridges) -> tuple[Ints, Ints]:
+    """Bridge and number on its path of every particle of every bridge, ends included."""
     size = spans.last - spans.first + 1
-    begin = np.cumsum(size) - size
-    row = np.repeat(spans.path, size)
-    column = np.arange(size.sum()) - np.repeat(begin - spans.first, size)
+    return np.repeat(np.arange(len(spans)), size), spread(spans.first, size)
+
+
+def _lifted(paths: Paths, spans: Bridges, span: Ints, column: Ints) -> Floats:
+    """Lift (k, 3) of particles of bridges, given by their bridges and their numbers on the paths (k,)."""
+    row, first, last = spans.path[span], spans.first[span], spans.last[span]
     arc = lengths(paths).arc_length
-    start = np.repeat(arc[spans.path, spans.first], size)
-    return row, column, (arc[row, column] - start) / np.repeat(spans.length, size)
+    share = ((arc[row, column] - arc[row, first]) / spans.length[span])[:, None]
+    return np.asarray((1.0 - share) * paths.normal[row, first] + share * paths.normal[row, last])
 
 
 def _bridge_lines(of: Subject) -> BridgeLines:
     """The bridges as consecutive polylines: every stride-th point and both ends."""
     paths, spans = of.paths, of.figures.spans
-    row, column, _ = _inside(paths, spans)
-    size = spans.last - spans.first + 1
-    begin = np.cumsum(size) - size
-    step = np.arange(len(row)) - np.repeat(begin, size)
-    keep = (step % of.stride == 0) | (step == np.repeat(size - 1, size))
-    sizes = np.add.reduceat(keep.astype(np.int64), begin) if len(begin) else begin
-    row, column = row[keep], column[keep]
-    lift = lifts(paths)[row, column]
+    span, column = _inside(spans)
+    keep = ((column - spans.first[span]) % of.stride == 0) | (column == spans.last[span])
+    span, column = span[keep], column[keep]
+    row, sizes = spans.path[span], np.bincount(span, minlength=len(spans))
+    lift = _lifted(paths, spans, span, column)
     return BridgeLines(paths.points[row, column], lift, paths.gap[row, column], row, column, sizes)
 
 
