@@ -1,21 +1,24 @@
 """Taut paths on a barrel's mesh against FlipOut's polyhedral geodesics: time per path and error.
 
-    python examples/against_flipout.py --vertices 16000
+    python examples/against_flipout.py --out out/against_flipout
 
 Both get the same irregular mesh and the same pairs of vertices on its rims, one thread each, and are timed after a
 warm-up; a time is the median of single calls.  The exact length for each pair is Clairaut's.  FlipOut's length is that
 of its polyline; ours is given twice, for the polyline through the particles and for the fibre (`Paths.length`).
-FlipOut is that of potpourri3d (`pip install 'meshwind[peers]'`).
+FlipOut is that of potpourri3d (`pip install 'meshwind[peers]'`).  Writes against_flipout.csv.
 """
 
 import argparse
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 import numba
 import numpy as np
 import potpourri3d
+from charts.record import Results
 from comparison.attempt import polyline_length
 from comparison.parts import PARTS, irregular
 from comparison.problem import TURN
@@ -68,21 +71,25 @@ def median(calls: list[Callable[[], object]]) -> float:
     return float(np.median(times.min(axis=0))) * 1e3
 
 
-def line(name: str, setup: float, times: tuple[float, float], found: Floats, lengths: Floats) -> str:
-    """A row of the table: times of a path and of FlipOut's, and the median and largest error of the lengths found."""
-    error = np.abs(found / lengths - 1)
-    ratio = times[1] / times[0]
-    return f"{name:34}{setup:8.2f} s{times[0]:10.3f} ms{ratio:8.1f} x{np.median(error):12.1e}{error.max():12.1e}"
+def line(row: dict[str, Any]) -> str:
+    """A row in a line."""
+    name = f"{row['method']}, {row['particles']} particles, {row['length']}" if row["particles"] else row["method"]
+    return (
+        f"{name:34}{row['set-up']:8.2f} s{row['milliseconds']:10.3f} ms{row['quicker']:8.1f} x"
+        f"{row['median error']:12.1e}{row['largest error']:12.1e}"
+    )
 
 
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=Path, default=Path("out/against_flipout"), help="folder for the table")
     parser.add_argument("--vertices", type=int, default=16_000)
     parser.add_argument("--paths", type=int, default=24)
     parser.add_argument("--twist", type=float, default=1.5, help="radians from rim to rim, below pi")
     given = parser.parse_args()
     numba.set_num_threads(1)
+    results = Results(given.out, "against_flipout", given.vertices < 16_000)
     mw.fit(mw.flatten(mw.annulus(mesh_from(*irregular(BARREL, 2000)))))  # compile
 
     mesh = mesh_from(*irregular(BARREL, 2 * given.vertices))
@@ -106,7 +113,18 @@ def main() -> None:
     calls: list[Callable[[], object]] = [partial(solver.find_geodesic_path, int(a), int(b)) for a, b in ends]
     polyhedral = np.array([polyline_length(solver.find_geodesic_path(int(a), int(b))) for a, b in ends])
     flipping = median(calls)
-    print(line("FlipOut", prepared, (flipping, flipping), polyhedral, lengths))
+    rows: list[dict[str, Any]] = []
+
+    def tell(method: str, particles: int, length: str, setup: float, times: float, found: Floats) -> None:
+        error = np.abs(found / lengths - 1)
+        rows.append({
+            "method": method, "particles": particles, "length": length, "vertices": len(annulus.vertices),
+            "set-up": setup, "milliseconds": times, "quicker": flipping / times,
+            "median error": float(np.median(error)), "largest error": float(error.max()),
+        })  # fmt: skip
+        print(line(rows[-1]), flush=True)
+
+    tell("FlipOut", 0, "polyline", prepared, flipping, polyhedral)
     for particles in PARTICLES:
         paths = mw.solve(surface, start, end, particles=particles)
         if (paths.status != mw.Status.CONVERGED).any():
@@ -115,9 +133,11 @@ def main() -> None:
             partial(mw.solve, surface, a[None], b[None], particles=particles) for a, b in zip(start, end, strict=True)
         ]
         found = np.array([polyline_length(path) for path in paths.points])
-        times = median(calls), flipping
-        print(line(f"meshwind, {particles} particles, polyline", fitted, times, found, lengths))
-        print(line(f"meshwind, {particles} particles, fibre", fitted, times, paths.length, lengths))
+        spent = median(calls)
+        tell("meshwind", particles, "polyline", fitted, spent, found)
+        tell("meshwind", particles, "fibre", fitted, spent, np.asarray(paths.length))
+    results.table("against_flipout", rows)
+    results.finish(f"{given.paths} paths")
 
 
 if __name__ == "__main__":

@@ -1,11 +1,11 @@
 """The cost of fitting a surface to a mesh: time in units of one sparse factorisation of the same mesh, and memory.
 
-    python examples/fit_cost.py --largest 1000000
+    python examples/fit_cost.py --out out/fit_cost
 
 For irregular meshes of a vase with 10k, 100k and 1M faces: reading, opening, flattening and fitting, each in units
 of one SuperLU factorisation of the mesh's cotangent Laplacian, the fit's true error, and the peak memory of the
 process.  Small meshes are measured several times, and the shortest time counts.  A second table has the true error
-from 1k to 64k vertices where the tolerance does not limit the fit.
+from 1k to 64k vertices where the tolerance does not limit the fit.  Writes fit_cost.csv and fit_order.csv.
 """
 
 import argparse
@@ -15,9 +15,11 @@ import sys
 import tempfile
 from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 import igl
 import numpy as np
+from charts.record import Results
 from comparison.parts import PARTS, VASE, Revolved, irregular, write_ply
 from scipy import sparse
 from scipy.sparse.linalg import splu
@@ -79,8 +81,8 @@ def child(path: Path, tolerance: float) -> None:
     print(" ".join(f"{key}={value!r}" for key, value in found.items()))
 
 
-def row(folder: Path, faces: int, tolerance: float) -> str:
-    """One line of the table."""
+def cost(folder: Path, faces: int, tolerance: float) -> dict[str, Any]:
+    """The row of a mesh, in a process of its own."""
     vertices, corners = irregular(VASE, faces)
     path = folder / f"vase-{faces}.ply"
     write_ply(path, vertices, corners)
@@ -89,30 +91,37 @@ def row(folder: Path, faces: int, tolerance: float) -> str:
     words = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
     found = {key: float(value) for key, value in (word.split("=") for word in words)}
     total = sum(found[stage] for stage in STAGES)
-    parts = "".join(f"{found[stage] / lu:9.2f}" for stage in STAGES)
-    net = f"{found['nu']:.0f}x{found['nv']:.0f}"
+    return {"asked": faces, "lu": lu, **found, "total": total, "total over lu": total / lu}
+
+
+def told(row: dict[str, Any]) -> str:
+    """A row in a line."""
+    parts = "".join(f"{row[stage] / row['lu']:9.2f}" for stage in STAGES)
+    net = f"{row['nu']:.0f}x{row['nv']:.0f}"
     return (
-        f"{len(corners):9d}{lu:9.3f} s{parts}{total / lu:9.2f}{total:11.2f} s{found['memory'] / 2**30:8.2f} GB"
-        f"{net:>10}{found['error']:10.1e}"
+        f"{row['faces']:9.0f}{row['lu']:9.3f} s{parts}{row['total over lu']:9.2f}{row['total']:11.2f} s"
+        f"{row['memory'] / 2**30:8.2f} GB{net:>10}{row['error']:10.1e}"
     )
 
 
-def order(part: Revolved) -> str:
+def orders(name: str, part: Revolved) -> list[dict[str, Any]]:
     """True errors of fits to ever finer meshes, and the order between neighbours."""
-    errors, sizes = [], []
+    rows: list[dict[str, Any]] = []
     for count in VERTICES:
         vertices, faces = irregular(part, 2 * count)
         surface = mw.fit(mw.flatten(mw.annulus(mesh_from(vertices, faces))), 1e-12)
-        errors.append(part.error(surface))
-        sizes.append(len(vertices))
-    steps = -2 * np.diff(np.log(errors)) / np.diff(np.log(sizes))
-    orders = [f"({step:.1f})" for step in steps]
-    return "".join(f"{error:10.1e} {step:5}" for error, step in zip(errors, [" ", *orders], strict=True))
+        row: dict[str, Any] = {"part": name, "asked": count, "vertices": len(vertices), "error": part.error(surface)}
+        if rows:
+            before = rows[-1]
+            row["order"] = -2 * np.log(row["error"] / before["error"]) / np.log(len(vertices) / before["vertices"])
+        rows.append(row)
+    return rows
 
 
 def main() -> None:
-    """Print the tables."""
+    """Measure, print, write."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=Path, default=Path("out/fit_cost"), help="folder for the tables")
     parser.add_argument("--largest", type=int, default=SIZES[-1], help="most faces of a mesh")
     parser.add_argument("--tolerance", type=float, default=1e-5, help="the fit's, over the diagonal")
     parser.add_argument("--measure", type=Path, help=argparse.SUPPRESS)
@@ -120,15 +129,27 @@ def main() -> None:
     if given.measure is not None:
         child(given.measure, given.tolerance)
         return
+    results = Results(given.out, "fit_cost", given.largest < SIZES[-1])
     heads = "".join(f"{stage:>9}" for stage in (*STAGES, "total"))
     print(f"{'faces':>9}{'one LU':>11}{heads}  (of one LU){'memory':>11}{'net':>10}{'error':>10}")
+    rows: list[dict[str, Any]] = []
     with tempfile.TemporaryDirectory() as folder:
         for faces in (size for size in SIZES if size <= given.largest):
-            print(row(Path(folder), faces, given.tolerance), flush=True)
+            rows.append(cost(Path(folder), faces, given.tolerance))
+            print(told(rows[-1]), flush=True)
+    results.table("fit_cost", rows)
     print("\nrms error over the diagonal, and its order in the vertices' spacing; tolerance 1e-12")
     print(f"{'vertices':12}", "".join(f"{count:10d}      " for count in VERTICES))
+    found: list[dict[str, Any]] = []
     for name, part in PARTS.items():
-        print(f"{name:12}", order(part), flush=True)
+        found += orders(name, part)
+        mine = found[-len(VERTICES) :]
+        words = "".join(
+            f"{row['error']:10.1e} {'({order:.1f})'.format(**row) if 'order' in row else '':5}" for row in mine
+        )
+        print(f"{name:12}", words, flush=True)
+    results.table("fit_order", found)
+    results.finish(f"{len(rows)} meshes")
 
 
 if __name__ == "__main__":

@@ -1,13 +1,19 @@
 """How true a fit is to the part behind a decimated or a noisy mesh, and whether its stated error covers that.
 
-    python examples/fit_truth.py
+    python examples/fit_truth.py --out out/fit_truth
 
 Parts of revolution as fine irregular meshes are decimated by quadric error, and as coarser ones are moved by Gaussian
-noise.  Distances are rms over the part's diagonal, away from the rims; those of noisy meshes over the noise.
+noise.  Distances are rms over the part's diagonal, away from the rims; those of noisy meshes over the noise.  Writes
+fit_truth.csv.
 """
+
+import argparse
+from pathlib import Path
+from typing import Any
 
 import igl
 import numpy as np
+from charts.record import Results
 from comparison.parts import PARTS, Revolved, decimated, irregular
 from scipy.spatial import cKDTree
 
@@ -21,6 +27,8 @@ VERTICES, NOISE = 4000, (0.02, 0.1, 0.3)
 """Vertices of the meshes that are moved, and the standard deviation of their noise in mean edges."""
 PLACES, RIM, PROFILE = 20_000, 0.03, 20_001
 """Places where distances are taken, how far they keep from the rims, and points of a profile."""
+FIGURES = ("facets", "surface", "stated")
+"""Distances of facets and surface from the part, and what the surface states."""
 
 
 def off(part: Revolved, points: Floats) -> Floats:
@@ -57,54 +65,69 @@ def measure(part: Revolved, vertices: Floats, faces: Ints) -> tuple[mw.Surface, 
     return surface, figures | {"within": float((true <= stated).mean())}
 
 
-def print_decimated(name: str, part: Revolved) -> None:
-    """Print a line for each share of the faces that is kept."""
+def measure_decimated(name: str, part: Revolved) -> list[dict[str, Any]]:
+    """A row for each share of the faces that is kept, distances over the diagonal."""
     vertices, faces = irregular(part, FINE)
+    rows = []
     for kept in KEPT:
         points, corners = decimated(vertices, faces, kept)
         surface, each = measure(part, points, corners)
+        rows.append(row("decimated", name, kept, surface, each, surface.size))
         print(
-            f"{name:12}{kept:6.2f}{len(corners):8d}  {_led(surface):14}"
-            + "".join(f"{each[what] / surface.size:10.1e}" for what in ("facets", "surface", "stated"))
+            f"{name:12}{kept:6.2f}{len(corners):8d}  {rows[-1]['led by']:14}"
+            + "".join(f"{rows[-1][what]:10.1e}" for what in FIGURES)
             + f"{100.0 * each['within']:8.1f} %",
             flush=True,
         )
+    return rows
 
 
-def print_noisy(name: str, part: Revolved) -> None:
-    """Print a line for each noise."""
+def measure_noisy(name: str, part: Revolved) -> list[dict[str, Any]]:
+    """A row for each noise, distances over it."""
     vertices, faces = irregular(part, 2 * VERTICES)
     edges = np.linalg.norm(vertices[faces] - np.roll(vertices[faces], 1, axis=1), axis=2)
+    rows = []
     for share in NOISE:
         size = share * float(edges.mean())
         moved = vertices + size * np.random.default_rng(2).normal(size=vertices.shape)
         surface, each = measure(part, moved, faces)
-        assert surface.error is not None
+        rows.append(row("noisy", name, share, surface, each, size))
         print(
-            f"{name:12}{share:6.2f}  {_led(surface):14}{surface.error.noise / size:10.2f}"
-            + "".join(f"{each[what] / size:10.2f}" for what in ("facets", "surface", "stated"))
+            f"{name:12}{share:6.2f}  {rows[-1]['led by']:14}{rows[-1]['noise']:10.2f}"
+            + "".join(f"{rows[-1][what]:10.2f}" for what in FIGURES)
             + f"{100.0 * each['within']:8.1f} %",
             flush=True,
         )
+    return rows
 
 
-def _led(surface: mw.Surface) -> str:
+def row(
+    mesh: str, part: str, much: float, surface: mw.Surface, figures: dict[str, float], unit: float
+) -> dict[str, Any]:
+    """A row of the table, in a unit of length; much: share of the faces kept, or noise in mean edges."""
     assert surface.error is not None
-    return surface.error.data
+    return {
+        "mesh": mesh, "part": part, "much": much, "led by": surface.error.data, "noise": surface.error.noise / unit,
+        **{what: figures[what] / unit for what in FIGURES}, "within": figures["within"],
+    }  # fmt: skip
 
 
 def main() -> None:
-    """Print the tables."""
-    print(
-        f"{'decimated':12}{'kept':>6}{'faces':>8}  {'led by':14}{'facets':>10}{'surface':>10}{'stated':>10}  within it"
-    )
+    """Measure, print, write."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=Path, default=Path("out/fit_truth"), help="folder for the table")
+    given = parser.parse_args()
+    results = Results(given.out, "fit_truth", False)
+    rows: list[dict[str, Any]] = []
+    heads = "".join(f"{what:>10}" for what in FIGURES)
+    print(f"{'decimated':12}{'kept':>6}{'faces':>8}  {'led by':14}{heads}  within it")
     for name, part in PARTS.items():
-        print_decimated(name, part)
-    print(
-        f"\n{'noisy':12}{'noise':>6}  {'led by':14}{'found':>10}{'facets':>10}{'surface':>10}{'stated':>10}  within it"
-    )
+        rows += measure_decimated(name, part)
+    print(f"\n{'noisy':12}{'noise':>6}  {'led by':14}{'found':>10}{heads}  within it")
     for name, part in PARTS.items():
-        print_noisy(name, part)
+        rows += measure_noisy(name, part)
+    results.table("fit_truth", rows)
+    results.finish(f"{len(rows)} meshes")
 
 
 if __name__ == "__main__":

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numba
 from charts import convergence, fitting, source_in_space, source_on_surface, source_timing, summary, work_precision
-from charts.claims import judge
 from charts.record import Results
+from charts.source_claims import judge
 from comparison.golden import rewrite
 
 

@@ -133,7 +133,7 @@ def judge(results: Results, figure_7_6: list[dict[str, Any]], setting: dict[str,
             f" particles, errors {ours['error']:.1e} against {be['error']:.1e}",
         ),
     ]
-    results.table("claims", rows)
+    results.table("source_claims", rows)
     return rows
 
 

@@ -1,0 +1,1 @@
+"""README's tables and figures, made from the results of the scripts that are kept."""
