@@ -6,22 +6,20 @@ Each run is the command itself, from the mesh file to all files and pictures, in
 mesh of a vase.  With more paths revolutions are fewer, so that each path crosses as many others: at constant
 revolutions the number of crossings grows with the square of the number of paths.  Exponents are those of power laws
 through the upper half of the points, where the constant cost matters least, and from reading to the surface through all
-points, each with its standard error.  Writes scaling.csv and scaling.png.
+points, each with its standard error.  Writes scaling.csv, scaling_growth.csv and scaling.png.
 """
 
 import argparse
 import json
-import os
-import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
-from time import perf_counter
 from typing import Any, NamedTuple
 
 import matplotlib.pyplot as plt
 import numpy as np
+from benchmarks import command
 from charts.record import Results
 from charts.style import BLUE, GREY, ORANGE, PURPLE, RED, log_axes, save
 from comparison.parts import VASE, irregular, write_ply
@@ -38,35 +36,30 @@ TO_SURFACE = ("read", "ends", "flatten", "fit")
 SWEPT = {"faces": "faces of the mesh", "paths": "paths in all", "particles": "particles per path"}
 
 
-def run(folder: Path, faces: int, paths: int, particles: int, revolutions: float) -> dict[str, Any]:
+def run(folder: Path, faces: int, paths: int, particles: int, revolutions: float, *options: str) -> dict[str, Any]:
     """Wind once; seconds, peak memory in bytes, and seconds of each stage."""
     mesh = folder / f"vase-{faces}.ply"
     if not mesh.exists():
         write_ply(mesh, *irregular(VASE, faces))
     out = folder / "out"
-    command = [sys.executable, "-m", "meshwind", "wind", str(mesh), "--out", str(out), "--overwrite",
-               "--paths", str(paths), "--particles", str(particles), "--revolutions", repr(revolutions)]  # fmt: skip
-    start = perf_counter()
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    _, status, used = os.wait4(process.pid, 0)
-    seconds = perf_counter() - start
-    if os.waitstatus_to_exitcode(status) not in (0, 3):
-        raise RuntimeError(f"{' '.join(command)} failed")
+    words = [sys.executable, "-m", "meshwind", "wind", str(mesh), "--out", str(out), "--overwrite", *options,
+             "--paths", str(paths), "--particles", str(particles), "--revolutions", repr(revolutions)]  # fmt: skip
+    cost = command.run(words)
     report = json.loads((out / "report.json").read_text(encoding="utf-8"))
     surface = sum(report["seconds"].get(stage, 0.0) for stage in TO_SURFACE)
     return {
-        "faces": report["mesh"]["faces"], "paths": 2 * paths, "particles": particles, "seconds": seconds,
-        "processor_seconds": used.ru_utime + used.ru_stime, "memory": used.ru_maxrss * 1024,
+        "faces": report["mesh"]["faces"], "paths": 2 * paths, "particles": particles, **cost._asdict(),
         "surface_seconds": surface, "at_rest": report["paths"]["converged"], "crossings": report["crossings"]["count"],
     } | {f"{stage}_seconds": value for stage, value in report["seconds"].items()}  # fmt: skip
 
 
 def sweep(folder: Path, faces: Sequence[int], paths: Sequence[int], particles: Sequence[int]) -> list[dict[str, Any]]:
-    """A row per run: each of the three grows while the others stay."""
+    """A row per run: each of the three grows while the others stay; at last the most paths without pictures."""
     run(folder, 10_000, 2, 101, 0.5)  # compile
-    jobs = [("faces", (n, 100, 401, 0.5)) for n in faces]
+    jobs: list[tuple[str, tuple[Any, ...]]] = [("faces", (n, 100, 401, 0.5)) for n in faces]
     jobs += [("paths", (10_000, n, 401, min(CROSSED / n, 0.5))) for n in paths]
     jobs += [("particles", (10_000, 20, n, 0.5)) for n in particles]
+    jobs += [("paths without pictures", (10_000, paths[-1], 401, min(CROSSED / paths[-1], 0.5), "--no-render"))]
     rows = []
     for swept, job in jobs:
         rows.append({"swept": swept, **run(folder, *job)})
@@ -135,17 +128,27 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("out/scaling"), help="folder for the table and the chart")
     parser.add_argument("--quick", action="store_true", help="two small runs of each")
     given = parser.parse_args()
-    results = Results(given.out, "scaling.py", given.quick)
+    results = Results(given.out, "scaling", given.quick)
     few = 2 if given.quick else None
     with tempfile.TemporaryDirectory() as folder:
         rows = sweep(Path(folder), FACES[:few], PATHS[:few], PARTICLES[:few])
     results.table("scaling", rows)
-    results.write()
-    for swept, (time, memory) in draw(rows, given.out).items():
-        print(f"{swept}: time grows with the power {time}, memory with {memory}")
+    grows = [
+        {"over": swept, "of": of, "power": found.value, "error": found.error}
+        for swept, both in draw(rows, given.out).items()
+        for of, found in zip(("time", "memory"), both, strict=True)
+    ]
     some = [row for row in rows if row["swept"] == "faces"]
-    faces, seconds = ([row[key] for row in some] for key in ("faces", "surface_seconds"))
-    print(f"faces: time from reading to the surface grows with the power {exponent(faces, seconds, upper=False)}")
+    for of, least in (("reading to surface", 0), ("reading to surface, from 100k on", 100_000)):
+        chosen = [row for row in some if row["faces"] > 0.9 * least]
+        if len(chosen) > 1:
+            faces, seconds = ([row[key] for row in chosen] for key in ("faces", "surface_seconds"))
+            found = exponent(faces, seconds, upper=False)
+            grows.append({"over": "faces", "of": of, "power": found.value, "error": found.error})
+    results.table("scaling_growth", grows)
+    for row in grows:
+        print(f"{row['over']}: {row['of']} grows with the power {row['power']:.2f} +- {row['error']:.2f}")
+    results.finish(f"{len(rows)} runs")
 
 
 if __name__ == "__main__":

@@ -52,6 +52,7 @@ def main() -> None:
     ratios = summary.ratios(points)
     results.table("ratios", ratios)
     results.table("ratios_at_equal_error", summary.summary(ratios))
+    results.table("velocity_scaling", summary.scaled(points))
     lost = [row for cost in ("seconds", "evaluations") for row in summary.beaten(points, cost)]
     results.table("beaten", lost)
     for row in lost:

@@ -45,6 +45,7 @@ def main() -> None:
     for chart in (limits, implicit_maps, windings, inputs, ribs, rest_states, rough_meshes, folds):
         chart.draw(results, given.quick)
         results.progress(chart.__name__)
+    results.table("outcomes", results.outcomes())
     silent = [row for result in SILENT for row in results.cells(result, OURS_IN, "meshwind")]
     results.table("silent_wrong_answers", silent)
     for row in silent:

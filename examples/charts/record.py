@@ -4,6 +4,7 @@ import csv
 import json
 import os
 import platform
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict, is_dataclass
 from importlib.metadata import version
@@ -40,6 +41,14 @@ class Results:
             for row in self._all.get(name, [])
             if row["result"] == result and row.get("method", method) == method
         ]
+
+    def outcomes(self) -> list[dict[str, Any]]:
+        """How many cells of each table that is a map ended how, by method."""
+        count: Counter[tuple[str, str, str]] = Counter()
+        for name, rows in self._all.items():
+            if isinstance(rows, list) and rows and "result" in rows[0]:
+                count.update((name, row.get("method", ""), row["result"]) for row in rows)
+        return [dict(chart=c, method=m, result=r, cells=cells) for (c, m, r), cells in count.items()]
 
     def finish(self, summary: str) -> None:
         """Write results.json with the seconds of the run, and print a line that begins with a summary."""

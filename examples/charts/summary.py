@@ -98,24 +98,33 @@ def ratios(points: Sequence[Point]) -> list[dict[str, Any]]:
 
 
 def summary(rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Ratios at equal error per method: median over the problems, with the least, the largest and their number.
+    """Ratios at equal error per method and error: median over the problems, the least, the largest and their number.
 
     Problems whose fibre is in the air from end to end are left out.
     """
     table = []
     for method in (name for name in LOOKS if name != OURS):
-        row: dict[str, Any] = dict(method=LOOKS[method].label)
         for error in ERRORS:
+            key = f"at {error:g}"
             found = [
-                r[f"at {error:g}"]
-                for r in rows
-                if r["method"] == method and r[f"at {error:g}"] is not None and not r["problem"].startswith(FLYING)
+                row[key]
+                for row in rows
+                if row["method"] == method and row[key] is not None and not row["problem"].startswith(FLYING)
             ]
-            row[f"at {error:g}"] = (
-                f"{median(found):.2g} ({min(found):.2g} to {max(found):.2g}, {len(found)})" if found else ""
-            )
-        table.append(row)
+            row: dict[str, Any] = dict(method=method, error=error, problems=len(found))
+            table.append(row | dict(middle=median(found), least=min(found), most=max(found)) if found else row)
     return table
+
+
+def scaled(points: Sequence[Point]) -> list[dict[str, Any]]:
+    """Least errors of velocity scaling (4.19) on each problem with friction, by number of particles."""
+    rows = []
+    for problem in dict.fromkeys(p.problem for p in points if TABLE[p.problem].friction):
+        mine = [p for p in points if p.problem == problem and p.method == "backward-euler" and p.result == "ok"]
+        for size in sorted({p.size for p in mine}):
+            best = min((p for p in mine if p.size == size), key=lambda p: p.error)
+            rows.append(dict(problem=problem, particles=size, error=best.error, setting=best.setting))
+    return rows
 
 
 def at_error(points: Sequence[Point], problem: str, method: str, error: float) -> float | None:
