@@ -1,0 +1,250 @@
+"""README's sentences with figures, and the results or the test that each rests on."""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from readme.kept import Kept, Row
+from readme.words import figure, share, span
+
+SMOOTH = ("ours_waist", "ours_conjugate", "ours_friction", "ours_noise", "ours_units", "ours_stretch", "time_step")
+"""Maps of ours on smooth ground."""
+OURS = ("", "meshwind")
+"""What maps with and without a column of methods call ours."""
+SILENT = ("wrong", "understated")
+"""Answers that look right and are not, or not as nearly as they say."""
+AT_REST = ("ok", "vague", "warned", *SILENT)
+"""Answers of paths at rest."""
+
+
+def always(kept: Kept) -> bool:
+    """What rests on its figures alone."""
+    del kept
+    return True
+
+
+class Claim(NamedTuple):
+    """A sentence with {} for its figures; what these are, as they are written; and what must hold besides."""
+
+    text: str
+    figures: Callable[[Kept], Sequence[str]]
+    holds: Callable[[Kept], bool] = always
+
+
+def count(kept: Kept, table: str, **where: object) -> str:
+    """Number of lines."""
+    return str(len(kept.rows(table, **where)))
+
+
+def cells(kept: Kept, **where: object) -> str:
+    """Number of cells of maps."""
+    return str(sum(int(row["cells"]) for row in kept.rows("outcomes", **where)))
+
+
+def excess(rows: Sequence[Row], off: str, stated: str) -> str:
+    """By how much lines are off beyond what they state, at most."""
+    return figure(max((row(off) - row(stated) for row in rows), default=0.0), 1)
+
+
+def order_of_fits(kept: Kept) -> list[str]:
+    """Order of convergence, and the errors of the coarsest and the finest meshes."""
+    rows = kept.rows("fit_order")
+    first, last = (kept.rows("fit_order", asked=each) for each in (1000, 64_000))
+    return [span([row("order") for row in rows if row["order"]]),
+            *(span([row("error") for row in some]) for some in (first, last))]  # fmt: skip
+
+
+def source_setting(kept: Kept) -> list[str]:
+    """A thousand steps against ours."""
+    row = kept.row("source_setting")
+    return [figure(row("their_ms")), row["equal_particles"], figure(row("equal_ratio")), figure(row("ratio"))]
+
+
+def velocity_scaling(kept: Kept) -> list[str]:
+    """Its least error on each problem."""
+    least: dict[str, float] = {}
+    for row in kept.rows("velocity_scaling"):
+        least[row["problem"]] = min(row("error"), least.get(row["problem"], row("error")))
+    return [span(list(least.values()), 1)]
+
+
+def explicit_limits(kept: Kept) -> list[str]:
+    """Largest difference of a measured limit from theory."""
+    return [share(max(abs(row("ratio") - 1.0) for row in kept.rows("explicit_limits")))]
+
+
+def ribs(kept: Kept) -> list[str]:
+    """Cells of ours that are right, all, the vague ones, the excess of the others, and backward Euler's."""
+    ours, theirs = (dict(method=name) for name in ("meshwind", "backward-euler"))
+    return [
+        count(kept, "rough_ribs", **ours, result=("ok", "vague")), count(kept, "rough_ribs", **ours),
+        count(kept, "rough_ribs", **ours, result="vague"),
+        excess(kept.rows("rough_ribs", **ours, result=SILENT), "error", "stated_error"),
+        count(kept, "rough_ribs", **theirs, result="ok"), count(kept, "rough_ribs", **theirs),
+    ]  # fmt: skip
+
+
+def rough_meshes(kept: Kept) -> list[str]:
+    """Noise, share of faces, cells that are right, all, and the largest error over what is stated."""
+    rows = kept.rows("rough_meshes")
+    return [share(max(row("noise") for row in rows)), share(min(row("kept") for row in rows)),
+            count(kept, "rough_meshes", result="ok"), str(len(rows)),
+            share(max(row("share") for row in rows if row["share"]))]  # fmt: skip
+
+
+def folds(kept: Kept) -> list[str]:
+    """All cells, those that lie deeper than they state, and by how much at most."""
+    wrong = kept.rows("rough_folds", result="wrong")
+    return [count(kept, "rough_folds"), str(len(wrong)), excess(wrong, "deep", "stated_position_error")]
+
+
+def rests(kept: Kept) -> list[str]:
+    """Cells with friction that are right, all at rest, those that were warned of, and those that were not."""
+    both = ("rough_rest_states", "rough_bumps")
+
+    def of(*results: str) -> str:
+        return str(sum(len(kept.rows(name, method="meshwind", result=results)) for name in both))
+
+    return [of("ok"), of(*AT_REST), of("warned"), of(*SILENT)]
+
+
+def facets(kept: Kept) -> list[str]:
+    """Seconds of fits that the facets lead."""
+    return [figure(kept.row("fit_facets", asked=asked)("fit")) for asked in (1000, 8000, 60_000)]
+
+
+def flipout(kept: Kept) -> list[str]:
+    """Ours with many and with few particles, and FlipOut."""
+    many, few = (
+        kept.row("against_flipout", particles=401, length="polyline"),
+        kept.row("against_flipout", particles=51, length="fibre"),
+    )
+    theirs = kept.row("against_flipout", method="FlipOut")
+    return [
+        figure(many("milliseconds")), figure(many("quicker")), figure(many("largest error"), 1),
+        figure(few("milliseconds")), figure(few("quicker")), figure(few("largest error"), 1),
+        figure(theirs("median error"), 1), figure(theirs("set-up"), 1), figure(few("set-up"), 1),
+    ]  # fmt: skip
+
+
+def against_before(kept: Kept) -> list[str]:
+    """Ours over the release before: time of runs, and memory of many paths."""
+
+    def ratio(job: str, of: str) -> str:
+        return figure(kept.row("first_run_medians", job=job, who="meshwind")(f"{of} ratio"))
+
+    return [
+        *(ratio(job, "seconds") for job in ("first run", "second run", "without pictures", "many faces")),
+        *(ratio(job, "memory") for job in ("many paths", "many paths without pictures")),
+    ]
+
+
+def growth(kept: Kept, *what: tuple[str, str]) -> list[str]:
+    """Powers with which a cost grows."""
+    return [figure(kept.row("scaling_growth", over=over, of=of)("power")) for over, of in what]
+
+
+def to_surface(kept: Kept) -> list[str]:
+    """Growth from reading to the surface, memory of a face, and memory of many paths without pictures."""
+    last = max(kept.rows("scaling", swept="faces"), key=lambda row: row("faces"))
+    stages = ("reading to surface", "reading to surface, from 100k on")
+    return [
+        *growth(kept, *(("faces", stage) for stage in stages)), figure(last("memory") / last("faces") / 1e3),
+        figure(kept.row("scaling", swept="paths without pictures")("memory") / 1e9),
+    ]  # fmt: skip
+
+
+CLAIMS = (
+    Claim(
+        "its error falls with order {} of the spacing, from {} at 1,000 vertices to {} at 64,000",
+        order_of_fits,
+    ),
+    Claim(
+        "public libraries on {} problems with known answers",
+        lambda kept: [str(len({row["problem"] for row in kept.rows("ratios")}))],
+    ),
+    Claim(
+        "take {} ms for 401 particles over the neck of a bottle; meshwind is as accurate with {} particles, {} times "
+        "quicker, and {} times with as many.",
+        source_setting,
+    ),
+    Claim("velocity scaling (4.19) is off by {} with the best number of particles.", velocity_scaling),
+    Claim(
+        "meshwind gave no wrong answer that looked like a right one, in {} cells:",
+        lambda kept: [cells(kept, chart=SMOOTH, method=OURS)],
+        lambda kept: cells(kept, chart=SMOOTH, method=OURS, result=SILENT) == "0",
+    ),
+    Claim(
+        "The measured limits of the explicit schemes agree with theory, 2 / omega for symplectic Euler, to {} %;",
+        explicit_limits,
+    ),
+    Claim(
+        "the penalty force is right in {} of {} cells, an island of its two parameters;",
+        lambda kept: [cells(kept, chart="penalty", result="ok"), cells(kept, chart="penalty")],
+    ),
+    Claim(
+        "with friction (4.19) is wrong without notice in {} of {} cells, where anything slides.",
+        lambda kept: [
+            str(
+                sum(
+                    int(row["cells"])
+                    for row in kept.rows("outcomes", chart="ours_friction", result=result)
+                    if row["method"] not in OURS
+                )
+            )
+            for result in ("wrong", AT_REST)
+        ],
+    ),
+    Claim(
+        "meshwind is right within what it states in {} of {} cells, from 26 particles on; in {} of them it states an "
+        "error as large as the rib, and the lengths that are off by more than stated are so by at most {} mm. Backward "
+        "Euler is right in {} of {}.",
+        ribs,
+    ),
+    Claim(
+        "Lengths from meshes with up to {} % noise of which down to {} % of the faces are kept are right in {} of {} "
+        "cells, off by at most {} % of what surface and solver state.",
+        rough_meshes,
+    ),
+    Claim(
+        "Of {} cells with collars that lean over, {} has a path that lies deeper inside than it states, by at most {} "
+        "of the tube's radius.",
+        folds,
+    ),
+    Claim(
+        "{} of {} cells at rest have the place and the length of a path with very many particles within what is "
+        "stated, {} lie elsewhere, by no more than `paths.other_rests` states, and {} is wrong without a warning.",
+        rests,
+    ),
+    Claim(
+        "the fit takes more: {} s for a mesh of 1,000 faces, {} s for 8,000, {} s for 60,000.",
+        facets,
+    ),
+    Claim(
+        "a path of 401 particles takes {} ms on one thread, {} times less than FlipOut on the same mesh, and its "
+        "polyline is off by {} in length; one of 51 takes {} ms, {} times less, and the length of its fibre is off by "
+        "{}. FlipOut's is off by {}, after a set-up of {} s against {} s here",
+        flipout,
+    ),
+    Claim(
+        "medians of {} runs, by turns",
+        lambda kept: [kept.row("first_run_medians", job="first run", who="meshwind")["runs"]],
+    ),
+    Claim(
+        "a first run takes {} of the time, a second one {}, one without pictures {}; a mesh of 1M faces, without "
+        "pictures, takes {} of the time, and 10,000 paths take {} of the memory, without pictures {}.",
+        against_before,
+    ),
+    Claim(
+        "Time grows with the power {} of the faces, {} of the paths and {} of the particles,",
+        lambda kept: growth(kept, *((over, "time") for over in ("faces", "paths", "particles"))),
+    ),
+    Claim(
+        "time grows with the power {} from 10k to 2M faces and with {} from 100k on, and 2M faces take {} KB of memory "
+        "each. Without pictures 10,000 paths take {} GB.",
+        to_surface,
+    ),
+)
+"""In the order of the page."""
+
+TESTED: dict[str, str] = {}
+"""Sentences and cells of tables that a test holds, by their words."""

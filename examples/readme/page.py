@@ -1,0 +1,70 @@
+"""README with its tables and figures put in from the results that are kept, and a table of what each rests on."""
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from readme.claims import CLAIMS, TESTED
+from readme.kept import Kept, spans
+from readme.tables import TABLES
+
+FIGURE = r"([\d.,e+-]*\d(?: to [\d.,e+-]*\d)?)"
+"""A figure as it stands in a sentence, or the least and the largest of some."""
+TABLE = r"(<!-- table {} -->\n).*?(\n\n<!-- end of table -->)"
+"""A table between its marks, which do not show."""
+
+
+def pattern(text: str) -> re.Pattern[str]:
+    """What finds a sentence, broken anywhere into lines, with its figures as groups."""
+    parts = (r"\s+".join(map(re.escape, part.split(" "))) for part in text.split("{}"))
+    return re.compile(FIGURE.join(parts))
+
+
+def filled(page: str, kept: Kept) -> str:
+    """The page with all tables and all figures of its sentences made anew."""
+    for name, table in TABLES.items():
+        page = put(page, re.compile(TABLE.format(name), re.DOTALL), name, table(kept))
+    for claim in CLAIMS:
+        found = list(pattern(claim.text).finditer(page))
+        if len(found) != 1:
+            raise LookupError(f"found {len(found)} times: {claim.text}")
+        figures = claim.figures(kept)
+        if len(figures) != claim.text.count("{}"):
+            raise LookupError(f"{len(figures)} figures for: {claim.text}")
+        for group, figure in reversed(list(enumerate(figures, 1))):
+            begin, end = found[0].span(group)
+            page = page[:begin] + figure + page[end:]
+    return page
+
+
+def put(page: str, mark: re.Pattern[str], name: str, table: str) -> str:
+    """The page with a table between its marks."""
+    new, many = mark.subn(lambda found: found[1] + table + found[2], page)
+    if many != 1:
+        raise LookupError(f"the table {name} is marked {many} times")
+    return new
+
+
+def untrue(kept: Kept) -> list[str]:
+    """Sentences that the results do not bear out, whatever figures they have."""
+    return [claim.text for claim in CLAIMS if not claim.holds(kept)]
+
+
+def traced() -> Iterator[dict[str, Any]]:
+    """A row for each table and sentence: the files and lines of results, or the test, that it rests on."""
+    for name, table in TABLES.items():
+        kept = Kept()
+        table(kept)
+        yield {"claim": f"table {name}", "rests on": where(kept)}
+    for claim in CLAIMS:
+        kept = Kept()
+        text = claim.text.format(*claim.figures(kept))
+        claim.holds(kept)
+        yield {"claim": text, "rests on": where(kept)}
+    for text, test in TESTED.items():
+        yield {"claim": text, "rests on": f"tests/{test}"}
+
+
+def where(kept: Kept) -> str:
+    """The lines that were read."""
+    return ", ".join(f"{table}.csv: {spans(sorted(lines))}" for table, lines in kept.lines.items() if lines)

@@ -1,0 +1,57 @@
+"""Put the results of the scripts into README: its tables, and the figures in its sentences.
+
+    python examples/readme_tables.py --keep out/*
+
+--keep takes the tables that README needs from folders of results and keeps them in `benchmarks/results`; without it
+README is made from what is kept.  `benchmarks/claims.csv` then says which lines of which table, or which test, each
+table and sentence rests on.  `tests/test_readme_figures.py` fails where README is another than this makes it.
+"""
+
+import argparse
+import csv
+import json
+import shutil
+from pathlib import Path
+
+from readme.kept import RESULTS, Kept
+from readme.page import filled, traced, untrue
+from readme.tables import NEEDED
+
+README = Path(__file__).parents[1] / "README.md"
+CLAIMS = RESULTS.with_name("claims.csv")
+
+
+def keep(folder: Path) -> list[str]:
+    """Copy the tables that README needs from a folder of results, whose run must have been a whole one."""
+    report = folder / "results.json"
+    if not report.is_file():
+        return []
+    if json.loads(report.read_text(encoding="utf-8"))["quick"]:
+        raise SystemExit(f"{folder} is of a quick run; README shows whole ones")
+    names = [name for name in NEEDED if (folder / f"{name}.csv").is_file()]
+    for name in names:
+        shutil.copyfile(folder / f"{name}.csv", RESULTS / f"{name}.csv")
+    return names
+
+
+def main() -> None:
+    """Keep results, write README and the table of claims."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--keep", type=Path, nargs="+", default=[], help="folders of results to take tables from")
+    given = parser.parse_args()
+    for folder in given.keep:
+        print(f"{folder}: {', '.join(keep(folder)) or 'nothing that README needs'}")
+    page = filled(README.read_text(encoding="utf-8"), Kept())
+    README.write_text(page, encoding="utf-8")
+    rows = list(traced())
+    with CLAIMS.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, ["claim", "rests on"], lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    for text in untrue(Kept()):
+        print("no longer so:", text)
+    print(f"{len(rows)} tables and sentences")
+
+
+if __name__ == "__main__":
+    main()
