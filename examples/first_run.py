@@ -154,8 +154,9 @@ def main() -> None:
     results.table("first_run", rows)
     results.table("first_run_medians", medians(rows))
     for row in medians(rows):
-        ratio = f", {row['seconds ratio']:.2f} of the time, {row['memory ratio']:.2f} of the memory of before"
-        print(f"{row['job']}, {row['who']}: {row['seconds']:.2f} s{ratio if row['seconds ratio'] else ''}")
+        of = ("seconds", "processor_seconds", "memory")
+        ratios = ", ".join(f"{key} {row[f'{key} ratio']:.2f}" for key in of if row[f"{key} ratio"] != "")
+        print(f"{row['job']}, {row['who']}: {row['seconds']:.2f} s{', over before: ' + ratios if ratios else ''}")
     results.finish(f"{len(rows)} runs")
 
 

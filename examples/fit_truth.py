@@ -11,58 +11,17 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-import igl
 import numpy as np
 from charts.record import Results
 from comparison.parts import PARTS, Revolved, decimated, irregular
-from scipy.spatial import cKDTree
-
-import meshwind as mw
-from meshwind.core.cast import Floats, Ints
-from meshwind.mesh import mesh_from
+from comparison.truth import Truth, measure
 
 FINE, KEPT = 32_000, (0.25, 0.1, 0.03)
 """Faces of the meshes that are decimated, and the shares of them that are kept."""
 VERTICES, NOISE = 4000, (0.02, 0.1, 0.3)
 """Vertices of the meshes that are moved, and the standard deviation of their noise in mean edges."""
-PLACES, RIM, PROFILE = 20_000, 0.03, 20_001
-"""Places where distances are taken, how far they keep from the rims, and points of a profile."""
 FIGURES = ("facets", "surface", "stated")
 """Distances of facets and surface from the part, and what the surface states."""
-
-
-def off(part: Revolved, points: Floats) -> Floats:
-    """Distances (n,) of points from the part's profile, a fine polyline."""
-    z = np.linspace(0.0, part.height, PROFILE)
-    profile = np.stack([part.radius(z), z], axis=1)
-    here = np.stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]], axis=1)
-    near = np.clip(cKDTree(profile).query(here)[1], 1, PROFILE - 2)
-    distance = np.full(len(here), np.inf)
-    for first in (near - 1, near):
-        a, b = profile[first], profile[first + 1]
-        share = np.clip(((here - a) * (b - a)).sum(1) / ((b - a) ** 2).sum(1), 0.0, 1.0)
-        distance = np.minimum(distance, np.linalg.norm(here - a - share[:, None] * (b - a), axis=1))
-    return distance
-
-
-def rms(values: Floats) -> float:
-    """Root mean square."""
-    return float(np.sqrt(np.mean(values**2)))
-
-
-def measure(part: Revolved, vertices: Floats, faces: Ints) -> tuple[mw.Surface, dict[str, float]]:
-    """The surface, and rms distances of facets and surface from the part, with those that the surface states."""
-    chart = mw.flatten(mw.annulus(mesh_from(vertices, faces)))
-    surface, rng = mw.fit(chart), np.random.default_rng(1)
-    corners = chart.annulus.faces
-    area = igl.doublearea(np.array(chart.annulus.vertices), np.array(corners))
-    face, share = rng.choice(len(area), PLACES, p=area / area.sum()), rng.dirichlet([1.0, 1.0, 1.0], PLACES)
-    uv = (chart.corner_uv[face] * share[:, :, None]).sum(axis=1)
-    inner = (uv[:, 1] > RIM) & (uv[:, 1] < 1.0 - RIM)
-    flat = (chart.annulus.vertices[corners[face]] * share[:, :, None]).sum(axis=1)[inner]
-    true, stated = off(part, surface.points(uv[inner])), surface.uncertainty_at(uv[inner])
-    figures = {"facets": rms(off(part, flat)), "surface": rms(true), "stated": rms(stated)}
-    return surface, figures | {"within": float((true <= stated).mean())}
 
 
 def measure_decimated(name: str, part: Revolved) -> list[dict[str, Any]]:
@@ -71,12 +30,12 @@ def measure_decimated(name: str, part: Revolved) -> list[dict[str, Any]]:
     rows = []
     for kept in KEPT:
         points, corners = decimated(vertices, faces, kept)
-        surface, each = measure(part, points, corners)
-        rows.append(row("decimated", name, kept, surface, each, surface.size))
+        found = measure(part, points, corners)
+        rows.append(row("decimated", name, kept, found, found.surface.size))
         print(
             f"{name:12}{kept:6.2f}{len(corners):8d}  {rows[-1]['led by']:14}"
             + "".join(f"{rows[-1][what]:10.1e}" for what in FIGURES)
-            + f"{100.0 * each['within']:8.1f} %",
+            + f"{100.0 * rows[-1]['within']:8.1f} %",
             flush=True,
         )
     return rows
@@ -90,26 +49,20 @@ def measure_noisy(name: str, part: Revolved) -> list[dict[str, Any]]:
     for share in NOISE:
         size = share * float(edges.mean())
         moved = vertices + size * np.random.default_rng(2).normal(size=vertices.shape)
-        surface, each = measure(part, moved, faces)
-        rows.append(row("noisy", name, share, surface, each, size))
+        rows.append(row("noisy", name, share, measure(part, moved, faces), size))
         print(
             f"{name:12}{share:6.2f}  {rows[-1]['led by']:14}{rows[-1]['noise']:10.2f}"
             + "".join(f"{rows[-1][what]:10.2f}" for what in FIGURES)
-            + f"{100.0 * each['within']:8.1f} %",
+            + f"{100.0 * rows[-1]['within']:8.1f} %",
             flush=True,
         )
     return rows
 
 
-def row(
-    mesh: str, part: str, much: float, surface: mw.Surface, figures: dict[str, float], unit: float
-) -> dict[str, Any]:
+def row(mesh: str, part: str, much: float, found: Truth, unit: float) -> dict[str, Any]:
     """A row of the table, in a unit of length; much: share of the faces kept, or noise in mean edges."""
-    assert surface.error is not None
-    return {
-        "mesh": mesh, "part": part, "much": much, "led by": surface.error.data, "noise": surface.error.noise / unit,
-        **{what: figures[what] / unit for what in FIGURES}, "within": figures["within"],
-    }  # fmt: skip
+    noise = {"led by": found.led_by, "noise": found.noise / unit}
+    return {"mesh": mesh, "part": part, "much": much, **noise, **found.over(unit), "within": found.within}
 
 
 def main() -> None:

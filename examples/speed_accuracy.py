@@ -11,7 +11,16 @@ import argparse
 from pathlib import Path
 
 import numba
-from charts import convergence, fitting, source_in_space, source_on_surface, source_timing, summary, work_precision
+from charts import (
+    convergence,
+    fitting,
+    fitting_rough,
+    source_in_space,
+    source_on_surface,
+    source_timing,
+    summary,
+    work_precision,
+)
 from charts.record import Results
 from charts.source_claims import judge
 from comparison.golden import rewrite
@@ -40,6 +49,9 @@ def main() -> None:
     rows = fitting.measure(given.quick)
     results.table("mesh_to_surface", rows)
     fitting.draw(results, rows)
+    rows = fitting_rough.measure(given.quick)
+    results.table("rough_mesh_to_surface", rows)
+    fitting_rough.draw(results, rows)
     results.progress("work and precision")
     points = work_precision.survey(given.quick)
     results.table("work_precision", points)
