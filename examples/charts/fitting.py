@@ -5,6 +5,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 from comparison.parts import PARTS, irregular
+from matplotlib.lines import Line2D
 
 import meshwind as mw
 from charts.record import Results
@@ -76,15 +77,19 @@ def draw(results: Results, rows: list[dict[str, Any]]) -> None:
                     "o-",
                     color=colour,
                     ms=5,
-                    label=f"{vertices} vertices",
                 )
                 axes.axhline(some[0]["facets_error"], color=colour, ls=":", lw=1)
             log_axes(axes, word, "rms distance to the true part / diagonal")
             axes.set_title(f"{part}, irregular mesh; dotted: the mesh's own facets")
-            axes.legend()
     figure.suptitle(
         f"Mesh to surface: each dot a tolerance of {', '.join(f'{t:g}' for t in TOLERANCES)}; the error is measured"
         " against the exact part"
     )
-    figure.tight_layout()
+    words = [f"mesh of about {count:,} vertices" for count in VERTICES]
+    handles = [
+        Line2D([], [], color=colour, marker="o", label=word)
+        for word, colour in zip(words, colours.values(), strict=False)
+    ]
+    figure.tight_layout(rect=(0, 0.05, 1, 1))
+    figure.legend(handles=handles, loc="lower center", ncol=len(handles))
     save(figure, results.folder, "mesh_to_surface")

@@ -88,6 +88,8 @@ KINDS = {
         PARTS,
     ),
 }
+PLAIN = ("decimated", "creased")
+"""Kinds whose axis has the numbers themselves."""
 COLOURS = (BLUE, GREEN, RED)
 """Of the parts of a kind."""
 LINES = {
@@ -121,6 +123,9 @@ def draw(results: Results, rows: list[dict[str, Any]]) -> None:
                 much, error = ([row[of] for row in some] for of in ("much", key))
                 axes.plot(much, error, marker=marker, ls=line, color=colour, lw=width, ms=5)
         log_axes(axes, kind.axis, "rms distance to the true part / diagonal")
+        if name in PLAIN:
+            axes.set_xticks(kind.much, [f"{much:,g}" for much in kind.much])
+            axes.minorticks_off()
         least = min(row["within"] for row in mine)
         axes.set_title(f"{name}: at least {100 * least:.0f} % of the places within what is stated")
         if list(kind.parts) != list(PARTS):

@@ -111,12 +111,12 @@ def measure(results: Results) -> list[dict[str, Any]]:
         title="as the source's 7.6 (a)",
     )
     simulated.set(xscale="log", xlabel="simulated time [sqrt(m/K)]", title="as the source's 7.6 (b)")
-    wall.legend()
     figure.suptitle(
         f"{PROBLEM.name}, {PROBLEM.difficulty}: {PARTICLES} particles, length {PROBLEM.length:.9g}; every scheme with"
         f" h = {STEP:g} sqrt(m/K), damping {DAMPING:g} sqrt(K m), {STEPS} steps"
     )
-    figure.tight_layout()
+    figure.tight_layout(rect=(0, 0.1, 1, 1))
+    figure.legend(*wall.get_legend_handles_labels(), loc="lower center", ncol=4)
     save(figure, results.folder, "source_7_6")
     results.table("source_7_6", rows)
     return rows

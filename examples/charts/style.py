@@ -8,6 +8,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -25,6 +26,10 @@ plt.rcParams.update(
         "axes.spines.right": False,
     }
 )
+
+
+BETWEEN = 12
+"""Points of each piece of a line at which it must not lie below a legend."""
 
 
 @dataclass(frozen=True)
@@ -83,8 +88,28 @@ SIGNS = {
 """What maps draw beside the colour."""
 
 
+def covered(axes: Axes) -> bool:
+    """Whether the legend of axes lies over what they show."""
+    legend = axes.get_legend()
+    if legend is None:
+        return False
+    box = legend.get_window_extent()
+    shown = [
+        axes.transData.transform(scatter.get_offsets()) for scatter in axes.collections if len(scatter.get_offsets())
+    ]
+    for line in axes.lines:
+        points = line.get_transform().transform(np.column_stack([line.get_xdata(), line.get_ydata()]).astype(float))
+        share = np.linspace(0.0, 1.0, BETWEEN)[:, None, None]
+        shown += [points, *(points[:-1] + share * np.diff(points, axis=0))]
+    return any(box.contains(x, y) for points in shown for x, y in points)
+
+
 def save(figure: Figure, folder: Path, name: str) -> None:
-    """Write a chart as PNG and close it."""
+    """Write a chart as PNG and close it; says so where a legend lies over what is shown."""
+    figure.canvas.draw()
+    for axes in figure.axes:
+        if covered(axes):
+            print(f"  {name}.png: a legend lies over what is shown in {axes.get_title()!r}", flush=True)
     figure.savefig(folder / f"{name}.png", bbox_inches="tight")
     plt.close(figure)
 
