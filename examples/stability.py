@@ -10,10 +10,35 @@ import argparse
 from pathlib import Path
 
 import numba
-from charts import folds, implicit_maps, inputs, limits, rest_states, ribs, rough_meshes, windings
+from charts import (
+    folds,
+    implicit_maps,
+    inputs,
+    laminates,
+    limits,
+    rest_states,
+    rewound,
+    ribs,
+    rough_meshes,
+    turnarounds,
+    windings,
+)
 from charts.record import Results
 from threadpoolctl import threadpool_limits
 
+CHARTS = (
+    limits,
+    implicit_maps,
+    windings,
+    inputs,
+    ribs,
+    rest_states,
+    rough_meshes,
+    folds,
+    laminates,
+    turnarounds,
+    rewound,
+)
 OURS_IN = (
     "ours_waist",
     "ours_conjugate",
@@ -27,6 +52,9 @@ OURS_IN = (
     "rough_bumps",
     "rough_meshes",
     "rough_folds",
+    "rough_layers",
+    "turnarounds",
+    "rewound_tube",
 )
 """Tables with answers of ours."""
 SILENT = ("wrong", "understated")
@@ -42,7 +70,7 @@ def main() -> None:
     numba.set_num_threads(1)
     threadpool_limits(1)  # SciPy solves thousands of small systems for each shape
     results = Results(given.out, "stability", given.quick)
-    for chart in (limits, implicit_maps, windings, inputs, ribs, rest_states, rough_meshes, folds):
+    for chart in CHARTS:
         chart.draw(results, given.quick)
         results.progress(chart.__name__)
     results.table("outcomes", results.outcomes())

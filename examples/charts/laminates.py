@@ -31,7 +31,7 @@ LAYERS = (1, 2, 4)
 """Layers below the paths that are measured."""
 THICKNESS = (0.1, 0.25, 0.5, 1.0)
 """Of the band, in mm."""
-SHARE = 0.05
+SHARE = 0.1
 """Of what the layers below add to the length: what a path on them may be off, as a layer states no error."""
 DEGREE, POINTS, STEPS = 16, 200, 8
 """Of a profile's polynomials, points of its integrals, and Newton's steps to a height."""
