@@ -105,8 +105,8 @@ def draw(results: Results, quick: bool) -> None:
     left.set(
         xlabel="revolutions of a pass",
         ylabel="degrees that the mandrel is off",
-        title=f"a tube of radius {RADIUS:g}, length {LENGTH:g}; right: the shift in mm that is found\nis the exact one to"
-        f" {SHARE:.0%}, and passes lie well only where it is below {BAND / 2:g} mm",
+        title=f"a tube of radius {RADIUS:g}, length {LENGTH:g}; right: the shift in mm that is found is the"
+        f"\nexact one to {SHARE:.0%}, and passes lie well only where it is below {BAND / 2:g} mm",
     )
     results.table("rewound_tube", rows)
     parts = list(PARTS)[:2] if quick else list(PARTS)
