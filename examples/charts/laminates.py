@@ -147,7 +147,7 @@ def draw(results: Results, quick: bool) -> None:
                 if "error" not in row:
                     continue
                 words = f"{100.0 * row['error'] / abs(row['added']):.2g} %\n{row['added']:.2g} mm"
-                axes.text(i, j - 0.05, words, ha="center", va="center", fontsize=7)
+                axes.text(i, j - 0.25, words, ha="center", va="center", fontsize=7)
         classes = [[row["result"] for row in line] for line in found]
         places = [float(k) for k in range(len(layers))]
         paint(axes, places, [float(k) for k in range(len(thickness))], classes)

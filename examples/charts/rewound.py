@@ -128,7 +128,7 @@ def _map(axes: Axes, classes: list[list[str]], words: list[str], ticks: tuple[li
     x, y = ([float(k) for k in range(len(each))] for each in ticks)
     paint(axes, x, y, classes)
     for k, text in enumerate(words):
-        axes.text(x[k % len(x)], y[k // len(x)] - 0.05, text, ha="center", va="center", fontsize=7)
+        axes.text(x[k % len(x)], y[k // len(x)] - 0.25, text, ha="center", va="center", fontsize=7)
     axes.set_xticks(x, ticks[0])
     axes.set_yticks(y, ticks[1])
     key(axes, classes)

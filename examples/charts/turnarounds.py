@@ -85,7 +85,7 @@ def draw(results: Results, quick: bool) -> None:
         if "slip" in row:
             worst = max(row[of] for of in ("legs", "turns", "overrun"))
             words = f"{worst:.0e}\n{row['slip']:.3g} of {row['stated_slip']:.3g}"
-            axes.text(k % len(angles), k // len(angles) - 0.05, words, ha="center", va="center", fontsize=7)
+            axes.text(k % len(angles), k // len(angles) - 0.25, words, ha="center", va="center", fontsize=7)
     paint(axes, places, [float(k) for k in range(len(friction))], classes)
     axes.set_xticks(places, [f"{each:g}" for each in angles])
     axes.set_yticks(range(len(friction)), [f"{each:g}" for each in friction])
