@@ -278,5 +278,43 @@ CLAIMS = (
 )
 """In the order of the page."""
 
-TESTED: dict[str, str] = {}
-"""Sentences and cells of tables that a test holds, by their words."""
+TESTED = {
+    "below 1e-5 with 401 particles up to about one turn, and 1.5e-4 at four": (
+        "test_readme.py::test_lengths_are_those_of_chords"
+    ),
+    "51 particles per path give what 1,601 chords do": "test_length.py::test_fourth_order",
+    "polylines on analytic cones, barrels, ellipsoid": "test_path.py::test_length_is_exact",
+    "second order in the particles": "test_path.py::test_length_converges_with_second_order",
+    "fibre lengths there, and on a freeform bottle": "test_length.py::test_fourth_order",
+    "Clairaut's constant along a barrel's path, 1601 particles | below 1e-6": (
+        "test_path.py::test_clairaut_constant_holds_along_the_path"
+    ),
+    "ends of the vase's bridges, between particles": "test_path.py::test_bridge_ends_converge_with_second_order",
+    "fibres that slide to catenaries on a cylinder": "test_friction.py::test_a_sliding_fibre_becomes_a_catenary",
+    "fibre that sticks in part": "test_friction.py::test_stick_and_slip_meet_where_they_should",
+    "required friction where a fibre slips, over the coefficient": (
+        "test_friction.py::test_the_slip_of_the_certificate_keeps_the_law"
+    ),
+    "surface fitted to 4,000 irregular vertices of a vase": (
+        "test_surface_fit.py::test_vertices_carry_the_surface_far_below_the_facets"
+    ),
+    "lengths on a barrel and a cone from a mesh file of 4,000 irregular vertices": (
+        "test_surface_fit.py::test_lengths_from_a_mesh_are_exact"
+    ),
+    "at least ten times closer to the true ones than exact polyhedral geodesics": (
+        "test_accuracy_from_meshes.py::test_ten_times_closer_than_the_facets_geodesics"
+    ),
+    "none counts as bridged, and the whole surface as convex": (
+        "test_resolved_bridges.py::test_nothing_bridges_on_a_convex_vessel"
+    ),
+    "which leaves the convex share within 2.5 %": "test_resolved_bridges.py::test_hollows_are_those_of_the_part",
+    "every bridge of the part with a gap of six times": "test_resolved_bridges.py::test_bridges_are_those_of_the_part",
+    "a part that presses everywhere never pays for lifting": (
+        "test_path.py::test_convex_parts_pay_nothing_for_lifting"
+    ),
+    "fibres on the parts of `data/` then rest within 1e-3": "test_friction_slide.py::test_parts_have_one_answer",
+    "Each file is read back from its text by an interpreter of its own": (
+        "test_program_posts.py::test_every_program_is_read_back_as_it_was_meant"
+    ),
+}
+"""Sentences and cells of tables, by some of their words, and the test that holds their bounds."""

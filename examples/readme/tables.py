@@ -136,7 +136,20 @@ def first_run(kept: Kept) -> str:
     return markdown(rows)
 
 
+def redesigns(kept: Kept) -> str:
+    """Redesigns of the parts of data/."""
+    rows = [["part", "revolutions", "rounds", "bridged before", "largest gap before", "after", "largest displacement",
+             "volume"]]  # fmt: skip
+    for row in kept.rows("redesigns"):
+        gaps = [", ".join(figure(float(gap), 3) for gap in row[f"gaps {when}"].split()) for when in ("before", "after")]
+        bridged, volume = f"{figure(100.0 * row('bridged before'))} %", f"{100.0 * row('volume'):+.2g} %"
+        turns = row["revolutions"].replace(" ", ",")
+        rows.append([f"`{row['part']}`", turns, row["rounds"], bridged, *gaps, figure(row("displacement"), 3), volume])
+    return markdown(rows)
+
+
 TABLES: dict[str, Callable[[Kept], str]] = {
+    "redesigns": redesigns,
     "decimated": decimated,
     "noisy": noisy,
     "other_methods": other_methods,
@@ -147,6 +160,7 @@ TABLES: dict[str, Callable[[Kept], str]] = {
 }
 """All tables by the name in their mark."""
 NEEDED = (
+    "redesigns",
     "ratios_at_equal_error", "ratios", "beaten", "source_setting", "velocity_scaling", "outcomes", "explicit_limits",
     "rough_ribs", "rough_meshes", "rough_folds", "rough_rest_states", "rough_bumps", "rough_layers",
     "turnarounds", "rewound_tube", "rewound_parts", "fit_truth", "fit_cost",
