@@ -13,18 +13,22 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from gallery import PAGE, small
 from numpy.typing import NDArray
+from readme.page import put
+from readme.words import markdown
 
 import meshwind as mw
 
 ROOT = Path(__file__).parents[1]
 PLANS = Path(__file__).parent / "filament"
 PICTURES = ("filament", "laminate")
+PAGE_FILE = "README.md"
+"""Page in the folder, into whose marks the tables go where it is there."""
 STATIONS = (0.1, 0.3, 0.5, 0.7, 0.9)
 """Where the tables say what the laminate is."""
 
 
 def main() -> None:
-    """Wind, print the tables and draw."""
+    """Wind, print the tables, put them into the page, and draw."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, default=Path("out/filament"), help="folder for the pictures")
     parser.add_argument("--only", default="tank,spar,bottle", help="names by commas")
@@ -40,7 +44,13 @@ def wound(name: str, work: Path, out: Path) -> None:
     mesh = {"tank": ROOT / "data" / "tank.ply", "bottle": ROOT / "data" / "bottle.obj"}.get(name) or spar(work)
     run = work / name
     result = mw.wind(mesh, layers=PLANS / f"{name}.toml", continuous=True, units="mm", out=run, render=False)
-    print(f"\n{name}\n\n{layers(result)}\n\n{stations(run / 'laminate.csv')}")
+    tables = {f"{name} layers": layers(result), f"{name} stations": stations(run / "laminate.csv")}
+    print(f"\n{name}", *tables.values(), sep="\n\n")
+    if (out / PAGE_FILE).is_file():
+        page = (out / PAGE_FILE).read_text(encoding="utf-8")
+        for mark, made in tables.items():
+            page = put(page, mark, made)
+        (out / PAGE_FILE).write_text(page, encoding="utf-8")
     mw.render(run, only=list(PICTURES), page=PAGE)
     for picture in PICTURES:
         small(run / f"{picture}.png", out / f"{name}_{picture}.png")
@@ -67,7 +77,7 @@ def layers(result: mw.Result) -> str:
             for number, (layer, pattern) in enumerate(zip(report["laminate"], report["pattern"], strict=True), 1)
         ),
     ]
-    return table(rows)
+    return markdown(rows)
 
 
 def stations(file: Path) -> str:
@@ -87,13 +97,7 @@ def stations(file: Path) -> str:
             z, total = f"{float(near['z']):.0f} mm", total + float(near["thickness"])
             cells.append(f"{float(near['angle']):.1f}°, {float(near['thickness']):.2f} mm")
         rows.append([f"{v:g}", z, *cells, f"{total:.2f} mm"])
-    return table(rows)
-
-
-def table(rows: list[list[str]]) -> str:
-    """Rows in Markdown, the first one as their head."""
-    head, *others = (f"| {' | '.join(row)} |" for row in rows)
-    return "\n".join([head, f"|{' --- |' * len(rows[0])}", *others])
+    return markdown(rows)
 
 
 def spar(work: Path) -> Path:

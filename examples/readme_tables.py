@@ -2,9 +2,10 @@
 
     python examples/readme_tables.py --keep out/*
 
---keep takes the tables that README needs from folders of results and keeps them in `benchmarks/results`; without it
-README is made from what is kept.  `benchmarks/claims.csv` then says which lines of which table, or which test, each
-table and sentence rests on.  `tests/test_readme_figures.py` fails where README is another than this makes it.
+--keep takes the tables that README needs from folders of results and keeps them in `benchmarks/results`, and its charts
+in `gallery`; without it README is made from what is kept.  `benchmarks/claims.csv` then says which lines of which
+table, or which test, each table and sentence rests on.  `tests/test_readme_figures.py` fails where README is another
+than this makes it.
 """
 
 import argparse
@@ -13,16 +14,24 @@ import json
 import shutil
 from pathlib import Path
 
+from gallery import small
 from readme.kept import RESULTS, Kept
 from readme.page import filled, traced, untrue
 from readme.tables import NEEDED
 
 README = Path(__file__).parents[1] / "README.md"
+GALLERY = Path(__file__).parent / "gallery"
+PICTURES = {
+    "speed_and_accuracy": "speed_and_accuracy",
+    "time_step": "stability",
+    "rough_mesh_to_surface": "rough_meshes",
+}
+"""Charts that README shows, by the names of their files, and what they are called there."""
 CLAIMS = RESULTS.with_name("claims.csv")
 
 
 def keep(folder: Path) -> list[str]:
-    """Copy the tables that README needs from a folder of results, whose run must have been a whole one."""
+    """Copy the tables and charts that README needs from a folder of results, whose run must have been a whole one."""
     report = folder / "results.json"
     if not report.is_file():
         return []
@@ -31,7 +40,10 @@ def keep(folder: Path) -> list[str]:
     names = [name for name in NEEDED if (folder / f"{name}.csv").is_file()]
     for name in names:
         shutil.copyfile(folder / f"{name}.csv", RESULTS / f"{name}.csv")
-    return names
+    charts = [name for name in PICTURES if (folder / f"{name}.png").is_file()]
+    for name in charts:
+        small(folder / f"{name}.png", GALLERY / f"{PICTURES[name]}.png")
+    return names + charts
 
 
 def main() -> None:

@@ -172,10 +172,20 @@ def to_surface(kept: Kept) -> list[str]:
     ]  # fmt: skip
 
 
+def rough_surfaces(kept: Kept) -> list[str]:
+    """Least share of the places within what is stated, on all surfaces but the worst; their number; on the worst."""
+    within = sorted(row("within") for row in kept.rows("rough_mesh_to_surface"))
+    return [share(within[1]), str(len(within)), share(within[0])]
+
+
 CLAIMS = (
     Claim(
         "its error falls with order {} of the spacing, from {} at 1,000 vertices to {} at 64,000",
         order_of_fits,
+    ),
+    Claim(
+        "{} % or more of the places are within what the surface states, but on one in {}, where {} % are.",
+        rough_surfaces,
     ),
     Claim(
         "public libraries on {} problems with known answers",

@@ -23,7 +23,7 @@ def pattern(text: str) -> re.Pattern[str]:
 def filled(page: str, kept: Kept) -> str:
     """The page with all tables and all figures of its sentences made anew."""
     for name, table in TABLES.items():
-        page = put(page, re.compile(TABLE.format(name), re.DOTALL), name, table(kept))
+        page = put(page, name, table(kept))
     for claim in CLAIMS:
         found = list(pattern(claim.text).finditer(page))
         if len(found) != 1:
@@ -37,9 +37,9 @@ def filled(page: str, kept: Kept) -> str:
     return page
 
 
-def put(page: str, mark: re.Pattern[str], name: str, table: str) -> str:
+def put(page: str, name: str, table: str) -> str:
     """The page with a table between its marks."""
-    new, many = mark.subn(lambda found: found[1] + table + found[2], page)
+    new, many = re.subn(TABLE.format(name), lambda found: found[1] + table + found[2], page, flags=re.DOTALL)
     if many != 1:
         raise LookupError(f"the table {name} is marked {many} times")
     return new

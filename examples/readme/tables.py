@@ -160,10 +160,9 @@ TABLES: dict[str, Callable[[Kept], str]] = {
 }
 """All tables by the name in their mark."""
 NEEDED = (
-    "redesigns",
-    "ratios_at_equal_error", "ratios", "beaten", "source_setting", "velocity_scaling", "outcomes", "explicit_limits",
-    "rough_ribs", "rough_meshes", "rough_folds", "rough_rest_states", "rough_bumps", "rough_layers",
-    "turnarounds", "rewound_tube", "rewound_parts", "fit_truth", "fit_cost",
+    "redesigns", "ratios_at_equal_error", "ratios", "beaten", "source_setting", "velocity_scaling", "outcomes",
+    "explicit_limits", "rough_ribs", "rough_mesh_to_surface", "rough_meshes", "rough_folds", "rough_rest_states",
+    "rough_bumps", "rough_layers", "turnarounds", "rewound_tube", "rewound_parts", "fit_truth", "fit_cost",
     "fit_order", "fit_facets", "against_flipout", "first_run_medians", "first_run_versions", "scaling",
     "scaling_growth",
 )  # fmt: skip
