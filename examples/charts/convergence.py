@@ -13,14 +13,19 @@ from charts.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, log
 from charts.work_precision import Point
 
 CYCLE = (RED, BLUE, GREEN, ORANGE, PURPLE, SKY, BLACK, GREY)
-LEAST = 26
+LEAST, ACROSS = 26, 3
+"""Particles at which the slopes begin, and panels side by side."""
 
 
 def draw(results: Results, points: Sequence[Point]) -> None:
     """A panel per kind and a line per problem, with slopes 2 and 4 beside."""
     kinds = [kind for kind in Kind if any(p.kind == kind for p in points)]
-    figure, grid = plt.subplots(1, len(kinds), figsize=(4.2 * len(kinds), 4.4), sharey=True, squeeze=False)
-    for axes, kind in zip(grid[0], kinds, strict=True):
+    figure, grid = plt.subplots(
+        -(-len(kinds) // ACROSS), ACROSS, figsize=(15, 5.6 * -(-len(kinds) // ACROSS)), squeeze=False
+    )
+    for axes in grid.flat[len(kinds) :]:
+        axes.set_visible(False)
+    for axes, kind in zip(grid.flat, kinds, strict=False):
         names = [name for name, problem in TABLE.items() if problem.kind == kind]
         for colour, marker, name in zip(CYCLE, "osD^vP*X", names, strict=False):
             mine = sorted(
@@ -41,7 +46,7 @@ def draw(results: Results, points: Sequence[Point]) -> None:
         axes.set_ylim(1e-13, 1e-1)
         log_axes(axes, "particles", "relative error of the length")
         axes.set_title(str(kind))
-        axes.legend()
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncol=3)
     figure.suptitle(
         "meshwind, default settings: error against particles. Flat at the bottom: the spline's own distance from "
         "the exact shape, or exact chords."

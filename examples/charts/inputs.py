@@ -162,7 +162,7 @@ def stretch(results: Results, quick: bool) -> None:
     key(left, classes)
     log_axes(right, "stretch: longest over shortest s_v", "surface evaluations per particle")
     right.set_title("cost")
-    right.legend()
+    right.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncol=3)
     figure.suptitle(
         f"meshwind on the barrel through stretched and sheared charts, twist {twist:g} rad, {N} particles, length "
         f"{length:.9g}"

@@ -89,14 +89,14 @@ def convergence(results: Results) -> dict[str, float]:
     rows.append(Line(surface, ours.uv[0], ours.points[0], label, ours.counters.evaluations).draw(left, right, RED))
     left.set(yscale="log", xlabel="particle", ylabel="distance to the great circle [ends 2 apart]", ylim=(ZERO, 1))
     right.set(yscale="log", xlabel="particle", ylabel="angle between the normals [rad]", ylim=(ZERO, 3))
-    left.legend()
     left.set_title("as the source's 4.2 (c): distance errors")
     right.set_title("as the source's 4.2 (d): angle differences")
     figure.suptitle(
         f"Half sphere of radius {RADIUS:g}, {PARTICLES} particles, from a bent start; backward Euler with"
         f" h = {STEP:g} sqrt(m/K), damping {DAMPING:g} sqrt(K m)"
     )
-    figure.tight_layout()
+    figure.tight_layout(rect=(0, 0.14, 1, 1))
+    figure.legend(*left.get_legend_handles_labels(), loc="lower center", ncol=3)
     save(figure, results.folder, "source_4_2")
     results.table("source_4_2", rows)
     return {row["state"]: row["largest_distance"] for row in rows}
@@ -178,12 +178,12 @@ def friction(results: Results) -> list[dict[str, Any]]:
         xlim=(1, None),
         title="as 4.3 (g): mean angle; dotted: arctan(mu); dots: meshwind",
     )
-    far.legend(ncol=2, fontsize=7)
     figure.suptitle(
         f"Half sphere of radius {RADIUS:g}, {PARTICLES} particles; velocity scaling (4.19, dashed) with"
         f" h = {RUB_STEP:g} sqrt(m/K), damping {RUB_DAMPING:g} sqrt(K m), against Coulomb's law exactly (full lines)"
     )
-    figure.tight_layout()
+    figure.tight_layout(rect=(0, 0.13, 1, 1))
+    figure.legend(*far.get_legend_handles_labels(), loc="lower center", ncol=4)
     save(figure, results.folder, "source_4_3")
     results.table("source_4_3", rows)
     return rows
