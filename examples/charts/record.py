@@ -1,4 +1,4 @@
-"""Tables of figures as CSV, and everything together as results.json."""
+"""Tables of figures as CSV, everything together as results.json, and tables of the README as Markdown."""
 
 import csv
 import json
@@ -6,11 +6,15 @@ import os
 import platform
 from collections import Counter
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import asdict, is_dataclass
 from importlib.metadata import version
 from pathlib import Path
 from time import perf_counter, process_time
 from typing import Any
+
+from readme.kept import Kept
+from readme.tables import TABLES
 
 
 class Results:
@@ -55,7 +59,15 @@ class Results:
         wall, processor = perf_counter() - self._begin, process_time()
         self.table("run", [dict(seconds=wall, processor_seconds=processor)])
         self.write()
+        if not self._all["quick"]:
+            self._markdown()
         print(f"{summary}, {wall:.0f} s ({processor:.0f} s of a core); charts in {self.folder}")
+
+    def _markdown(self) -> None:
+        """Write the tables of the README that the folder has all results for, as they stand there."""
+        for name, table in TABLES.items():
+            with suppress(FileNotFoundError):
+                (self.folder / f"{name}.md").write_text(table(Kept(self.folder)) + "\n", encoding="utf-8")
 
     def progress(self, what: str) -> None:
         """Print what is done or begun, and the seconds since the script's start."""
