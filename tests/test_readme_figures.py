@@ -77,7 +77,7 @@ def test_another_figure_or_table_is_seen_and_put_right() -> None:
 @pytest.mark.parametrize(
     ("value", "digits", "text"),
     [(0.7466, 2, "0.75"), (47.2, 2, "47"), (1283.0, 2, "1,300"), (1.54e-5, 2, "1.5e-5"), (2e-5, 2, "2e-5"),
-     (0.0, 2, "0"), (9.96, 2, "10"), (99.6, 2, "100"), (0.0996, 2, "0.10"), (8.64, 1, "9"), (0.00099, 1, "0.001")],
+     (0.0, 2, "0"), (9.96, 2, "10"), (99.6, 2, "100"), (0.0996, 2, "0.10"), (8.64, 1, "9"), (0.00144, 2, "1.4e-3")],
 )  # fmt: skip
 def test_figures_are_written_with_few_digits(value: float, digits: int, text: str) -> None:
     assert figure(value, digits) == text

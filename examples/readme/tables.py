@@ -23,8 +23,12 @@ METHODS = {
     "shooting-trace": "shooting with `mw.trace`",
     "collocation": "collocation, SciPy's `solve_bvp`",
 }
-SOLVES = {row: METHODS[row].split(",")[0].split(" (")[0] for row in METHODS}
-"""Their names in short."""
+SHORT = METHODS | {
+    "backward-euler": "backward Euler",
+    "backward-euler-reuse": "backward Euler, matrix reused",
+    "backward-euler-ruled": "backward Euler with our rule for lengths",
+}
+"""Their names where they stand alone."""
 FLYING = ("hyperboloid", "elbow")
 """Problems whose fibre is in the air from end to end, on which any three particles are exact."""
 PARTS = ("barrel", "vase", "hyperboloid")
@@ -74,7 +78,7 @@ def beaten(kept: Kept) -> str:
     rows = [["problem", "method", "quicker by up to", "evaluations fewer by up to"]]
     for problem, by in dict.fromkeys(key[:2] for key in best):
         both = [best.get((problem, by, cost)) for cost in ("seconds", "evaluations")]
-        rows.append([problem, SOLVES[by], *("-" if each is None else f"{figure(each)} times" for each in both)])
+        rows.append([problem, SHORT[by], *("-" if each is None else f"{figure(each)} times" for each in both)])
     return markdown(rows)
 
 

@@ -9,7 +9,7 @@ def figure(value: float, digits: int = 2) -> str:
     if value == 0.0:
         return "0"
     size = floor(log10(abs(float(f"{value:.{digits - 1}e}"))))
-    if size < -3:
+    if size < -2:
         mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
         return f"{mantissa.rstrip('0').rstrip('.') if '.' in mantissa else mantissa}e{int(exponent)}"
     return f"{round(value, digits - 1 - size):,.{max(digits - 1 - size, 0)}f}"
