@@ -94,9 +94,8 @@ def covered(axes: Axes) -> bool:
     if legend is None:
         return False
     box = legend.get_window_extent()
-    shown = [
-        axes.transData.transform(scatter.get_offsets()) for scatter in axes.collections if len(scatter.get_offsets())
-    ]
+    dots = (np.asarray(scatter.get_offsets(), float) for scatter in axes.collections)
+    shown = [axes.transData.transform(each) for each in dots if len(each)]
     for line in axes.lines:
         points = line.get_transform().transform(np.column_stack([line.get_xdata(), line.get_ydata()]).astype(float))
         share = np.linspace(0.0, 1.0, BETWEEN)[:, None, None]
