@@ -86,7 +86,7 @@ def exponent(x: Sequence[float], y: Sequence[float], upper: bool = True) -> Expo
 
 def draw(rows: list[dict[str, Any]], folder: Path) -> dict[str, tuple[Exponent, Exponent]]:
     """Time and memory against each of the three; returns both exponents of each."""
-    figure, grid = plt.subplots(2, 3, figsize=(13.5, 7.5))
+    figure, grid = plt.subplots(2, 3, figsize=(13.5, 10))
     found = {}
     for (swept, words), (above, below) in zip(SWEPT.items(), grid.T, strict=True):
         some = [row for row in rows if row["swept"] == swept]
@@ -110,8 +110,7 @@ def draw(rows: list[dict[str, Any]], folder: Path) -> dict[str, tuple[Exponent, 
         log_axes(above, words, "time [s]")
         log_axes(below, words, "peak memory [GB]")
         for axes in (above, below):
-            axes.set_ylim(top=4.0 * axes.get_ylim()[1])  # room for the legend
-            axes.legend()
+            axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16))
     figure.suptitle(
         "meshwind wind, from the file to all files and pictures; exponents of the upper half of the points\n"
         f"faces: 200 paths of 401 particles; paths: 10,000 faces, {CROSSED:g} revolutions over the paths of a family; "
