@@ -43,7 +43,7 @@ RUNS = (
 NEAR = 0.1
 """Relative difference of the faces of a mesh from those that it was to have."""
 WAITS = {
-    "meshwind": "meshwind {}: mesh to files and pictures",
+    "meshwind": "meshwind: from the mesh to files and pictures",
     "before": "meshwind {}, the release before",
     "flipout": "FlipOut (potpourri3d): as many geodesics, no files",
     "pygeodesic": "exact polyhedral geodesics (pygeodesic), no files",
