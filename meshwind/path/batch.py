@@ -9,6 +9,7 @@ from meshwind.core.threads import parallel_for
 from meshwind.core.vectors import TINY
 from meshwind.path.kernels.refine import refine_all
 from meshwind.path.kernels.starting_curve import sample_all
+from meshwind.path.kernels.state import EVALUATIONS
 
 
 class Batch(NamedTuple):
@@ -48,6 +49,10 @@ class Batch(NamedTuple):
     def particles(self) -> int:
         """Number of particles of each path."""
         return self.X.shape[1]
+
+    def costlier(self, evaluations: float) -> Bools:
+        """Which paths (p,) have cost more than so many evaluations a particle."""
+        return np.asarray(self.counters[:, EVALUATIONS] > evaluations * self.particles)
 
     def rows(self, index: Ints) -> "Batch":
         """A copy of some of the paths."""

@@ -23,7 +23,7 @@ _LEAST = 0.05
 _CAUTION = 0.05, 0.15, 0.3
 """Relative steps back from the last number, that are tried with all paths where the budget is used up."""
 _STEP = 0.01
-"""Relative step back from a number that holds the paths looked at, and not another one; it is doubled each time."""
+"""First relative step back from a number that holds the paths looked at, and not another one."""
 
 Attempt = Callable[[float, Ints], Bools]
 """Which of the paths of the given numbers hold, with a number changed."""
@@ -72,7 +72,9 @@ class Search:
 
     order: numbers of the paths, in the order in which they are tried.  also: another reading of a number, in which all
     paths have to hold as well.  together: whether how a path is solved depends on the others, so that all have to be
-    tried at once in the end.
+    tried at once in the end.  through: whether the number may lie beyond one that fails.  step: first relative step
+    back from a number that holds the paths looked at, and not another one; it is doubled each time.  close: relative
+    distance of numbers that hold and that do not, at which it ends.
     """
 
     attempt: Attempt
@@ -81,6 +83,9 @@ class Search:
     budget: int
     also: Attempt | None = None
     together: bool = False
+    through: bool = True
+    step: float = _STEP
+    close: float = CLOSE
     failed: list[float] = field(default_factory=list)
     lost: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     """Paths that did not hold by the other reading, the last ones first."""
@@ -102,12 +107,12 @@ class Search:
                     return 0.0
             else:
                 number = way.rounded(0.5 * (good + bad))
-                if good <= way.least or abs(bad - good) <= CLOSE * good or number in (good, bad):
+                if good <= way.least or abs(bad - good) <= self.close * good or number in (good, bad):
                     number = self._beyond(good)
                     if number == 0.0:
                         if self._all_hold(good, self.order if self.together else self.order[_LOOKED_AT:]):
                             return good
-                        good, bad, step = 0.0, good, _STEP
+                        good, bad, step = 0.0, good, self.step
                         continue
                     good, bad = number, self._next_failed(number)
                     continue
@@ -126,7 +131,9 @@ class Search:
         """
         way = self.way
         tried = way.beyond(good)
-        if good <= way.least or not way.nearer(way.asked, tried) or not self._hold(tried, self.order[:_LOOKED_AT]):
+        if not self.through or good <= way.least or not way.nearer(way.asked, tried):
+            return 0.0
+        if not self._hold(tried, self.order[:_LOOKED_AT]):
             return 0.0
         for number in (way.rounded(tried), way.rounded(tried, outward=True)):
             further = way.nearer(number, good) and way.nearer(way.asked, number)

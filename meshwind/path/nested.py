@@ -42,7 +42,7 @@ def solve_with(solver: Solver, curves: Floats, particles: int) -> Batch:
         solver.solve_simple(batch)
         if not np.count_nonzero(batch.status):
             return batch
-        rest = np.flatnonzero(failing(batch))
+        rest = np.flatnonzero(failing(batch) & ~solver.dear(batch))
     solve = solve_from_level if solver.friction.none else slide_from_level
     levels = np.array([halvings(curve, particles) for curve in curves[rest]], np.int64)
     for level in np.unique(levels):

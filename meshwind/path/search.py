@@ -20,7 +20,7 @@ def failing(batch: Batch) -> Bools:
 def search(solver: Solver, batch: Batch) -> None:
     """Look for equilibria that a direct start missed: try frictionless paths not at rest in other ways, in place."""
     for start in (from_few, from_back, wind_up, wind_back):
-        index = np.flatnonzero(failing(batch))
+        index = np.flatnonzero(failing(batch) & ~solver.dear(batch))
         if len(index):
             work = start(solver, batch.rows(index))
             batch.counters[index] = work.counters
@@ -70,7 +70,7 @@ def wind_up(solver: Solver, part: Batch) -> Batch:
     step = np.full(count, 1.0 / SHARES)
     first = np.ones(count, np.bool_)
     for _ in range(3 * SHARES):
-        open_ = np.flatnonzero((share < 1.0) & (step >= 1.0 / (8 * SHARES)))
+        open_ = np.flatnonzero((share < 1.0) & (step >= 1.0 / (8 * SHARES)) & ~solver.dear(work))
         if not len(open_):
             break
         trial = best.rows(open_)

@@ -22,10 +22,13 @@ fibres rested 2.7e-3 of their length away with 96 to 192 segments, and 1.3e-3 wi
 def slide_from_level(solver: Solver, batch: Batch, level: int) -> Batch:
     """Slide a batch to rest from its starting curves, with its particles halved `level` times, or more if it bridges.
 
-    Each path slides as it would alone: what becomes of it does not depend on how far the others turn.
+    Each path slides as it would alone: what becomes of it does not depend on how far the others turn.  Whether it holds
+    is settled by few particles, and only where its answer is final is one that bridges slid with more.
     """
     done = batch.curves_sampled().copied()
-    levels = np.array([min(fine_level(curve, batch.particles), level) for curve in batch.starts], np.int64)
+    levels = np.full(batch.paths, level)
+    if solver.final:
+        levels = np.array([min(fine_level(curve, batch.particles), level) for curve in batch.starts], np.int64)
     for fine in np.unique(levels):
         index = np.flatnonzero(levels == fine)
         done.put(index, _slide(solver, batch.rows(index), level, int(fine)))

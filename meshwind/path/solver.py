@@ -27,8 +27,9 @@ COARSE = 1e-6
 class Solver:
     """What all paths of a solve have in common, and the solvers that it selects.
 
-    final: whether answers need their certificate.  Solved in coordinates about the surface's middle, so that a part far
-    from the origin loses no digits.
+    final: whether answers need their certificate.  dearest: evaluations a particle above which no other way is tried
+    for a path that fails.  Solved in coordinates about the surface's middle, so that a part far from the origin loses
+    no digits.
     """
 
     surface: Surface
@@ -37,6 +38,7 @@ class Solver:
     tolerance: float
     iterations: int
     final: bool = True
+    dearest: float = np.inf
 
     @property
     def _limits(self) -> Limits:
@@ -46,6 +48,10 @@ class Solver:
     def coarse(self) -> "Solver":
         """The solver for a level below the finest: a looser balance, no certificate."""
         return replace(self, tolerance=max(self.tolerance, COARSE), final=False)
+
+    def dear(self, batch: Batch) -> Bools:
+        """Which paths (p,) have cost so much that no other way is tried for them."""
+        return batch.costlier(self.dearest)
 
     def solve_simple(self, batch: Batch) -> None:
         """Bring the frictionless paths of a fresh batch to equilibrium, where that is simple.
