@@ -7,7 +7,7 @@ import numpy as np
 from meshwind.core.cast import Floats
 from meshwind.path.friction import friction_of
 from meshwind.planning.feasible import Feasible, coarse_interval
-from meshwind.planning.windings import Windings, few
+from meshwind.planning.windings import Windings, few, rougher
 from meshwind.surface.evaluate import SU
 from meshwind.surface.grid import rings
 from meshwind.surface.interpolate import interpolate
@@ -21,6 +21,8 @@ _MAX_GAIN = 3.0
 """Times the bound up to which numbers of revolutions are tried with friction."""
 _RETREAT = 1.0, 0.5
 """Shares of the way from the bound to the number found, at which other paths are tried."""
+_EVERY = 2
+"""Every so many of those other paths are tried: those between the few that the number was found by."""
 _STEP = 0.1
 """Step to the first of these numbers, over the bound."""
 _RINGS, _AROUND = 201, 48
@@ -40,7 +42,7 @@ def alternatives(windings: Windings, feasible: Feasible, most: float) -> tuple[f
     if friction_of(surface, windings.friction).largest < FRICTION:
         with_friction = _with_friction(windings, feasible.high, min(most, _MAX_GAIN * feasible.high))
     wider = with_wider_openings(surface, WIDER, feasible.slides or "both")
-    high = 0.0 if wider is None else coarse_interval(wider, windings.friction, most, _FEW).high
+    high = 0.0 if wider is None else coarse_interval(wider, windings.friction, most, _FEW, slides=False).high
     return with_friction, high if high > feasible.high else 0.0
 
 
@@ -48,9 +50,9 @@ def _with_friction(windings: Windings, high: float, most: float) -> float:
     """Largest feasible revolutions with friction, 0 where none are known: found by few paths, and tried by others."""
     first = (1.0 + _STEP) * high
     best = few(windings, FRICTION).limit(most, first, high) if most > first else 0.0
-    rougher = replace(windings, friction=FRICTION)
+    others = rougher(windings, FRICTION)
     tries = (high + share * (best - high) for share in _RETREAT if best > high)
-    return next((number for number in tries if rougher.holds_some(number, 1)), 0.0)
+    return next((number for number in tries if others.holds_some(number, 1, _EVERY)), 0.0)
 
 
 def with_wider_openings(surface: Surface, wider: float, ends: str = "both") -> Surface | None:

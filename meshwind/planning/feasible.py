@@ -82,21 +82,25 @@ def feasible_revolutions(
     return _verified(windings, coarse_interval(surface, friction, most, min(paths, _COARSE)), most)
 
 
-def coarse_interval(surface: Surface, friction: float | Friction, most: float, paths: int) -> Feasible:
-    """The interval as few coarse paths have it, its ends to a step of the numbers that are tried."""
+def coarse_interval(
+    surface: Surface, friction: float | Friction, most: float, paths: int, slides: bool = True
+) -> Feasible:
+    """The interval as few coarse paths have it, its ends to a step of the numbers that are tried.
+
+    slides: whether the end is wanted where fibres slide off all the same where no number holds.
+    """
     tried: list[Trial] = [trial(surface, 0.0, friction, paths)]
     failures = 0
     for turns in np.linspace(most / NUMBERS, most, NUMBERS):
-        tried.append(trial(surface, float(turns), friction, paths))
+        tried.append(trial(surface, float(turns), friction, paths, slides and not any(each.feasible for each in tried)))
         failures = 0 if tried[-1].feasible else failures + 1
         if failures == _MAX_FAILURES:
             break
     first, last = _longest_run([each.feasible for each in tried])
     if last < first:
         return Feasible(0.0, 0.0, "trials", _slid_off(tried), tuple(tried))
-    slides = _slid_off(tried[last + 1 :])
     high = float("inf") if last + 1 == len(tried) else tried[last].revolutions
-    return Feasible(tried[first].revolutions, high, "trials", slides, tuple(tried))
+    return Feasible(tried[first].revolutions, high, "trials", _slid_off(tried[last + 1 :]), tuple(tried))
 
 
 def _verified(windings: Windings, coarse: Feasible, most: float) -> Feasible:
@@ -114,7 +118,8 @@ def _verified(windings: Windings, coarse: Feasible, most: float) -> Feasible:
     if not high > low:
         return replace(coarse, low=0.0, high=0.0)
     low, high = _without_gaps(windings, low, high, most)
-    return replace(coarse, low=low, high=high)
+    slides = coarse.slides or (_ends(*windings.settling.slid) if np.isfinite(high) else "")
+    return replace(coarse, low=low, high=high, slides=slides)
 
 
 def _without_gaps(windings: Windings, low: float, high: float, most: float) -> tuple[float, float]:

@@ -29,13 +29,17 @@ MARGIN = 0.97
 """Share of the feasible interval within which candidates lie: at its very end the fibre is about to slide."""
 ALIKE = 0.005
 """Difference of bridged shares up to which windings are alike; among those the crossing angle decides."""
-_MAX_CHECKED, _MAX_COMPARED = 10, 4
+_MAX_CHECKED, _MAX_COMPARED = 10, 3
 """Candidates that are wound at full resolution at most, and feasible ones among them that are compared."""
+_LEAST_COMPARED, _FAR = 2, 1.5
+"""Candidates that are so at least, and how many times what their coarse windings missed another is to lie behind."""
+_KNOWN = 3
+"""Windings that are tried before others are passed over by how the share changes from one to the next."""
 _APART = 0.04
 """Candidates this close, relative, to one that was wound at full resolution are passed over."""
 _ACCURACY = 0.02
 """Relative accuracy of the best number, where all bridge."""
-_TRIED = 16
+_TRIED = 8
 """Most paths per family in coarse windings."""
 _UP, _DOWN = Way(0.0, np.inf, 1.0), Way(np.inf, 0.0, 1.0)
 """Ways in which bounds are rounded for print: into the interval."""
@@ -233,6 +237,8 @@ class _Choice:
         """
         wait: list[Trial] = []
         for number in sorted(self.numbers, key=self._rank):
+            if self._hopeless(number):
+                continue
             each = self.coarse(number)
             self.tried.append(each)
             if each.feasible and each.bridged_share <= ALIKE:
@@ -247,6 +253,15 @@ class _Choice:
 
         yield from sorted(wait, key=merit)
 
+    def _hopeless(self, number: float) -> bool:
+        """Whether a number bridges more than the least, judged by those that were tried: by how far and how steeply."""
+        known = sorted((each.revolutions, each.bridged_share) for each in self.tried if each.feasible)
+        if len(known) < _KNOWN:
+            return False
+        turns, shares = np.transpose(known)
+        steepest = float(np.abs(np.diff(shares) / np.diff(turns)).max())
+        return bool((shares - steepest * np.abs(turns - number)).max() > shares.min() + ALIKE)
+
     def wind_best(self) -> list[Trial]:
         """Windings at full resolution of the best candidates and, where all bridge, of numbers beside the best.
 
@@ -255,6 +270,8 @@ class _Choice:
         """
         checked: list[Trial] = []
         for best in self._best_first():
+            if self._far_behind(best, checked):
+                break
             near = [abs(each.revolutions - best.revolutions) < _APART * best.revolutions for each in checked]
             if not any(near):
                 checked.append(self.full(best.revolutions))
@@ -264,9 +281,23 @@ class _Choice:
                 break
         return checked + self._beside(checked) if checked else []
 
+    def _far_behind(self, one: Trial, checked: list[Trial]) -> bool:
+        """Whether a coarse winding bridges so much more than the best at full resolution that it is no rival.
+
+        That is far more than the coarse windings of those have missed, of which at least some are compared.
+        """
+        feasible = [each for each in checked if each.feasible]
+        coarse = {each.revolutions: each.bridged_share for each in self.tried}
+        missed = [abs(each.bridged_share - coarse[each.revolutions]) for each in feasible]
+        if len(missed) < _LEAST_COMPARED:
+            return False
+        behind = one.bridged_share - min(each.bridged_share for each in feasible)
+        return behind > ALIKE + _FAR * max(missed)
+
     def _beside(self, checked: list[Trial]) -> list[Trial]:
         """Windings on both sides of the best so far, in steps halved down to half a grain, while all bridge."""
-        numbers = sorted(each.revolutions for each in self.tried if each.feasible)
+        lost = {each.revolutions for each in self.tried if not each.feasible}
+        numbers = sorted(number for number in self.numbers if number not in lost)
         beside: list[Trial] = []
         step = 0.5 * float(np.diff(numbers).max(initial=0.0))
         while True:
