@@ -29,7 +29,8 @@ class Crossings(Geometric):
     path_a, path_b (k,) indices of paths; t_a, t_b (k,) where their chords cross, as fractional particle indices;
     sense (k,) +1 where b passes a to its left in (u, v), else -1; uv (k, 2) with u in [0, 1); angle (k,) in
     radians, 0 to pi/2; points (k, 3) on the surface, or midway between the two fibres where either bridges;
-    on_surface (k,) where neither bridges; compared (p,) the paths that took part.
+    on_surface (k,) where neither bridges; compared (p,) the paths that took part; own (j, 2) pairs of these of one
+    family that cross, see `own_crossings`.
     """
 
     path_a: Ints
@@ -42,6 +43,7 @@ class Crossings(Geometric):
     points: Floats
     on_surface: Bools
     compared: Bools
+    own: Ints
 
     __repr__ = brief
 
@@ -81,7 +83,7 @@ def crossings(paths: Paths, among: Bools | None = None) -> Crossings:
     angle = _angle(*(strand.tangent(frames) for strand in strands))
     uv = strands[0].uv - np.floor(strands[0].uv) * [1.0, 0.0]
     points = np.where(on_surface[:, None], frames[:, S], midway)
-    return Crossings(*map(frozen, (*met, uv, angle, points, on_surface, compared)))
+    return Crossings(*map(frozen, (*met, uv, angle, points, on_surface, compared, own_crossings(paths, compared))))
 
 
 def own_crossings(paths: Paths, among: Bools | None = None) -> Ints:

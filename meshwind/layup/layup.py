@@ -13,7 +13,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import unit
 from meshwind.layup.bands import Bands, bands
 from meshwind.layup.coverage import Coverage, coverage
-from meshwind.layup.crossings import CellSides, Crossings, cell_sides, crossings, own_crossings
+from meshwind.layup.crossings import CellSides, Crossings, cell_sides, crossings
 from meshwind.layup.neighbours import Neighbours, neighbours
 from meshwind.layup.partings import partings
 from meshwind.layup.quads import QuadMesh, QuadQuality, quad_quality, quads
@@ -89,10 +89,10 @@ class Layup:
         """Lengths of fibre between neighbouring crossings, in the mesh's units."""
         return cell_sides(self.crossed, self.crossings)
 
-    @cached_property
+    @property
     def own_crossings(self) -> Ints:
         """Pairs (k, 2) of paths of one family that cross."""
-        return own_crossings(self.crossed, self.crossings.compared)
+        return self.crossings.own
 
     @cached_property
     def quality(self) -> QuadQuality:

@@ -8,7 +8,7 @@ from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
 from meshwind.core.geometry import Block, Geometric
 from meshwind.core.vectors import TINY, unit
-from meshwind.layup.crossings import Crossings, own_crossings
+from meshwind.layup.crossings import Crossings
 from meshwind.layup.faces import split, trace
 from meshwind.layup.graph import Graph
 from meshwind.path.paths import Paths
@@ -66,7 +66,7 @@ def quads(paths: Paths, crossings: Crossings) -> QuadMesh:
     The result is a manifold annulus, or has no face and a `note` that says why.
     """
     kept = crossings.compared & _spans_the_part(paths)
-    kept &= ~_cross_their_own(paths, kept)
+    kept &= ~_cross_their_own(crossings.own, kept)
     left_out = tuple(np.flatnonzero(crossings.compared & ~kept).tolist())
     if not all((kept & (paths.family == family)).any() for family in (1, -1)):
         return _empty(paths, left_out, "no path of one family runs clear from rim to rim: use fewer revolutions")
@@ -101,11 +101,10 @@ def _spans_the_part(paths: Paths) -> Bools:
     return np.asarray(clear & (v[:, 0] < _ON_RIM) & (v[:, -1] > 1.0 - _ON_RIM))
 
 
-def _cross_their_own(paths: Paths, kept: Bools) -> Bools:
-    """The fewest paths, picked greedily, without which no path crosses itself or its own family."""
-    pairs = own_crossings(paths, kept)
-    pairs = np.unique(pairs, axis=0)
-    out = np.zeros(len(paths), dtype=bool)
+def _cross_their_own(pairs: Ints, kept: Bools) -> Bools:
+    """The fewest of the kept paths, picked greedily, without which none crosses itself or its own family."""
+    pairs = np.unique(pairs[kept[pairs].all(axis=1)], axis=0)
+    out = np.zeros(len(kept), dtype=bool)
     while len(pairs):
         worst = np.bincount(pairs.ravel()).argmax()
         out[worst] = True
