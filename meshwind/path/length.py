@@ -136,7 +136,7 @@ def measure_all(first, last, body, laid, length, error, off):
         for i in range(n):
             frame(body.spline, uv[i, 0], uv[i, 1], frames[i])
         state = State(laid.points[p], uv, frames, laid.normal[p], touching, gap, station, touching)
-        survey(body, state, found, counters)
+        survey(body, state, 0.0, found, counters)
         for i in range(n - 1):
             if touching[i] and touching[i + 1]:
                 high, low = seen(body.spline, state, i, point, counters)

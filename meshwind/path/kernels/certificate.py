@@ -59,7 +59,7 @@ def unresolved(body, state, counters):
     if leaps(state, body.spline.periodic):
         return True
     _, length = energy(state.X)
-    return survey(body, state, blank_survey(n), counters) > DEEPEST * length / (n - 1)
+    return survey(body, state, 0.0, blank_survey(n), counters) > DEEPEST * length / (n - 1)
 
 
 @njit(cache=True)

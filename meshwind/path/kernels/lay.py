@@ -9,7 +9,7 @@ import numpy as np
 from meshwind.core.kernel import njit
 from meshwind.path.kernels.certificate import DEEPEST, leaps, required_friction
 from meshwind.path.kernels.glide import FEW, MAX_LAST_STEPS, MAX_STEPS, Factors, glide, resample, spread_along
-from meshwind.path.kernels.mend import NOTICED, any_wanting
+from meshwind.path.kernels.mend import NOTICED, UNSEEN, any_wanting
 from meshwind.path.kernels.refine import refine
 from meshwind.path.kernels.rest import relax_and_certify, restore_contact, start_on_curve
 from meshwind.path.kernels.state import CONVERGED, Limits, blank, energy, state_of
@@ -71,7 +71,9 @@ def solve_on_surface(body, limits, rough, curve, state, factors, required, count
         return residual, False
     if rises(body, state, NOTICED * spacing, counters):
         heights = blank_survey(n)
-        if survey(body, state, heights, counters) > DEEPEST * spacing or any_wanting(heights, spacing):
+        if survey(body, state, UNSEEN * spacing, heights, counters) > DEEPEST * spacing or any_wanting(
+            heights, spacing
+        ):
             return residual, False
     for i in range(1, n - 1):
         required[i] = required_friction(X, normal, i)

@@ -17,6 +17,8 @@ from meshwind.surface.evaluate import SU, SUU, SUV, SV, SVV, spans_of
 NOTICED, ALONE = 0.02, 1.5
 """A segment is mended that the surface stands out of by more than this share of the particles' mean distance, and than
 so many times the sum of what it stands out of the two segments next to it: an even turn needs no mending."""
+UNSEEN = NOTICED / (2.0 * ALONE)
+"""What the surface stands out by, over the same, that changes nothing in which segments are mended."""
 SHORTEST = 1e-3
 """Least distance of neighbours, over their mean, that counts for the springs."""
 STIFF = 0.5

@@ -7,7 +7,7 @@ from meshwind.path.kernels.certificate import DEEPEST, certify, leaps, turned
 from meshwind.path.kernels.coulomb import RoughBody, coefficient
 from meshwind.path.kernels.glide import spread_along
 from meshwind.path.kernels.landing import land
-from meshwind.path.kernels.mend import ROUNDS, any_wanting, centre, mend, pin_beads, spread_stations
+from meshwind.path.kernels.mend import ROUNDS, UNSEEN, any_wanting, centre, mend, pin_beads, spread_stations
 from meshwind.path.kernels.relax import relax
 from meshwind.path.kernels.resist import farthest_slip, lay_down, press_anew, resistance
 from meshwind.path.kernels.state import (
@@ -101,8 +101,8 @@ def resolve(rough, resist, limits, state, required, residual, counters):
     """Give a path at rest particles where the body needs them, and say whether they resolve it; as `relax` returns."""
     body, n, status = rough.body, len(state.X), CONVERGED
     found = blank_survey(n)
-    deep = survey(body, state, found, counters)
     spacing = spring_energy(state)[1] / (n - 1)
+    deep = survey(body, state, UNSEEN * spacing, found, counters)
     if any_wanting(found, spacing):
         best, least, left = blank(n), deep, residual
         copy(state, best)
@@ -112,8 +112,8 @@ def resolve(rough, resist, limits, state, required, residual, counters):
             residual, status = settle_evenly(rough, resist, limits, True, True, state, required, counters)
             if status != CONVERGED:
                 break
-            deep = survey(body, state, found, counters)
             spacing = spring_energy(state)[1] / (n - 1)
+            deep = survey(body, state, UNSEEN * spacing, found, counters)
             if deep <= least:
                 copy(state, best)
                 least, left = deep, residual
@@ -137,8 +137,9 @@ def pin_where_needed(body, state, required, counters):
     n = len(state.X)
     certify(body, state, required, counters)
     count, found = pin_beads(state, no_contacts(n)), blank_survey(n)
-    survey(body, state, found, counters)
-    return count + mend(body, state, found, spring_energy(state)[1] / (n - 1), counters)
+    spacing = spring_energy(state)[1] / (n - 1)
+    survey(body, state, UNSEEN * spacing, found, counters)
+    return count + mend(body, state, found, spacing, counters)
 
 
 @njit(cache=True)

@@ -50,8 +50,11 @@ def blank_survey(n):
 
 
 @njit(cache=True)
-def survey(body, state, found, counters):
-    """Survey a path whose lifted particles have true gaps and frames; returns its largest rise."""
+def survey(body, state, least, found, counters):
+    """Survey a path whose lifted particles have true gaps and frames; returns its largest rise.
+
+    Where the frames at the ends of a segment say that it is less than `least`, it is taken as none.
+    """
     touching, clear = state.touching, state.clear
     rise, dip, at = found.rise, found.dip, found.at
     work = np.empty((6, 3))
@@ -59,7 +62,7 @@ def survey(body, state, found, counters):
     for i in range(len(touching) - 1):
         rise[i] = dip[i] = at[i] = 0.0
         air = not (touching[i] and touching[i + 1])
-        if air and clear[i] + clear[i + 1] >= distance(state.X, i, i + 1):
+        if clear[i] + clear[i + 1] >= distance(state.X, i, i + 1) if air else even(body.spline, state, i, least):
             continue
         high, low, where = over_segment(body, state, i, air, work, counters)
         rise[i], at[i] = high, where
@@ -72,18 +75,26 @@ def survey(body, state, found, counters):
 def rises(body, state, least, counters):
     """Whether the surface stands out by more than `least` of any segment of a path that touches all along.
 
-    Most segments need no survey: where one passes a knot at most, the slopes at its ends bound what stands out of it.
+    Most segments need no survey.
     """
-    X, normal = state.X, state.normal
     work = np.empty((6, 3))
-    for i in range(len(X) - 1):
-        if knots_passed(body.spline, state.uv, i) <= 1.0:
-            way = minus(row(X, i + 1), row(X, i))
-            if EVEN_ARC * (abs(dot(way, row(normal, i))) + abs(dot(way, row(normal, i + 1)))) < least:
-                continue
-        if over_segment(body, state, i, False, work, counters)[0] > least:
+    for i in range(len(state.X) - 1):
+        if not even(body.spline, state, i, least) and over_segment(body, state, i, False, work, counters)[0] > least:
             return True
     return False
+
+
+@njit(cache=True)
+def even(spline, state, i, least):
+    """Whether nothing stands out of segment i, or below it, by `least`, as the frames at its ends say at once.
+
+    Where it passes a knot at most, the slopes there bound what does.
+    """
+    if knots_passed(spline, state.uv, i) > 1.0:
+        return False
+    way = minus(row(state.X, i + 1), row(state.X, i))
+    slopes = abs(dot(way, row(state.normal, i))) + abs(dot(way, row(state.normal, i + 1)))
+    return EVEN_ARC * slopes < least
 
 
 @njit(cache=True)
