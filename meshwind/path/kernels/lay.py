@@ -71,9 +71,8 @@ def solve_on_surface(body, limits, rough, curve, state, factors, required, count
         return residual, False
     if rises(body, state, NOTICED * spacing, counters):
         heights = blank_survey(n)
-        if survey(body, state, UNSEEN * spacing, heights, counters) > DEEPEST * spacing or any_wanting(
-            heights, spacing
-        ):
+        deep = survey(body, state, UNSEEN * spacing, heights, counters)
+        if deep > DEEPEST * spacing or any_wanting(heights, spacing):
             return residual, False
     for i in range(1, n - 1):
         required[i] = required_friction(X, normal, i)
