@@ -48,8 +48,7 @@ def add_map(window: Any, part: Part, shares: Floats, colours: Any) -> None:
     add_smooth(window, inside, color=INSIDE, ambient=0.25, culling="front")
     outside = inside.copy()
     outside.point_data["shares"] = shares
-    look = {"scalars": "shares", "cmap": colours, "clim": [0.0, 1.0], "show_scalar_bar": False}
-    add_smooth(window, outside, ambient=0.55, diffuse=0.5, culling="back", **look)
+    add_smooth(window, outside, ambient=0.55, diffuse=0.5, culling="back", **coloured("shares", colours, 1.0))
 
 
 def body(part: Part) -> Any:

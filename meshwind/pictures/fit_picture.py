@@ -8,6 +8,7 @@ import pyvista as pv
 from meshwind.appearance.looks import colour_map
 from meshwind.core.cast import Floats, Ints
 from meshwind.pictures import canvas
+from meshwind.pictures.bodies import coloured
 from meshwind.pictures.canvas import FAINT, INK, PAPER, Box, face
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import FitScene
@@ -95,7 +96,7 @@ def add(window: Any, scene: FitScene, name: str, scale: float) -> None:
         legible = scene.edge > LEGIBLE * scale
         look = {"color": GLASS, "opacity": 0.3, "show_edges": legible, "edge_color": GLASS}
     else:
-        look = {"scalars": "away", "cmap": DISTANCES, "clim": [0.0, 1.0], "show_scalar_bar": False}
+        look = coloured("away", DISTANCES, 1.0)
     if len(faces):
         part = pv.PolyData.from_regular_faces(body.points, faces)
         part.point_data["away"] = 1.0 - np.log(np.maximum(share, FAINTEST)) / np.log(FAINTEST)

@@ -13,7 +13,7 @@ from meshwind.path.levels import segments
 from meshwind.path.nested import solve_with
 from meshwind.path.search import failing
 from meshwind.path.solver import COARSE, Solver
-from meshwind.planning.trials import DEAREST, ITERATIONS, slid_off
+from meshwind.planning.trials import ITERATIONS, dearest, slid_off
 from meshwind.surface.surface import Surface
 
 _SOUGHT = 30
@@ -67,8 +67,8 @@ class Settling:
         if self.particles is not None:
             level = segments(self.particles, halvings(longest, self.particles)) + 1
             particles = level if friction.none else min(particles, level)
-        dearest = DEAREST if friction.none else np.inf
-        return Solver(self.surface, friction, True, COARSE, ITERATIONS, final=False, dearest=dearest), particles
+        rough = Solver(self.surface, friction, True, COARSE, ITERATIONS, final=False, dearest=dearest(friction))
+        return rough, particles
 
     def _wound_on(
         self, solver: Solver, paths: Ints, curves: Floats, particles: int

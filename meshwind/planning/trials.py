@@ -29,7 +29,7 @@ _REFINEMENTS = (2, 4)
 """Factors of that number, in turn, for paths that do not converge: coarse ones catch on sharp edges."""
 _TOLERANCE, ITERATIONS = 1e-6, 150
 """A path that is not nearly in equilibrium after so many iterations slides: more of them only cost."""
-DEAREST = 500
+_DEAREST = 500
 """Evaluations a particle above which a path without friction counts as failing: one that is looked for so long catches
 on edges, and mostly fails with all particles."""
 _SLID = Status.SLID_OFF_START, Status.SLID_OFF_END
@@ -66,7 +66,7 @@ def trial(
     """
     rims = families(surface, paths, revolutions)
     law = friction_of(surface, friction)
-    solver = Solver(surface, law, True, _TOLERANCE, ITERATIONS, dearest=DEAREST if law.none else np.inf)
+    solver = Solver(surface, law, True, _TOLERANCE, ITERATIONS, dearest=dearest(law))
     curves = straight(rims.start, rims.end, 2)
     least = max(_SEGMENTS, int(fewest(curves).max(initial=0)))
     batch = _direct(solver, curves, least + 1, slides)
@@ -80,6 +80,11 @@ def trial(
     laid = [_at_rest(solver, each) for each in (batch, *(each for _, each in finer))]
     bridged = bridged_share(*((lengths(each), np.ones(len(each), np.bool_)) for each in laid))
     return Trial(float(revolutions), float((status == Status.CONVERGED).mean()), bridged, slid_off(status))
+
+
+def dearest(friction: Friction) -> float:
+    """Evaluations a particle above which a path counts as failing: under friction none does by what it costs."""
+    return _DEAREST if friction.none else np.inf
 
 
 def _direct(solver: Solver, curves: Floats, particles: int, slides: bool) -> Batch:
