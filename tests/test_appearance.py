@@ -8,7 +8,7 @@ from matplotlib.colors import to_rgb
 
 from meshwind.appearance.looks import DIVERGING, MAPS, SEQUENTIAL, Scale, colour_map, round_below
 from meshwind.core.cast import Floats
-from meshwind.pictures.bodies import FAMILY
+from meshwind.pictures.canvas import FAMILY
 from meshwind.pictures.layup_scenes import ANGLE
 from meshwind.results.schema import SURFACE
 

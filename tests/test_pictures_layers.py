@@ -30,20 +30,21 @@ def test_what_an_average_hides_is_bare(of: Subject) -> None:
     layup = replace(of.layup, coverage=replace(of.layup.coverage, width=HALF))
     scene = layers_scene(replace(of, layup=layup))
     # on average there is one layer, but a quarter of the part has none
-    shares = np.bincount(scene.steps, minlength=3) / len(scene.steps)
+    shares = np.bincount(scene.steps.ravel(), minlength=3) / scene.steps.size
     assert shares == pytest.approx([0.25, 0.5, 0.25], abs=0.01)
     assert scene.colours[0] == SIGNAL and len(set(scene.colours)) == len(scene.colours) == len(scene.words) == 3
     assert scene.words == ("bare: 25 %", "1 layer: 50 %", "2 layers: 25 %")
     assert "25 % of the part bare" in scene.frame.subtitle
 
 
-def test_each_cell_has_the_layers_over_its_middle(of: Subject) -> None:
+def test_the_image_of_the_layers_lies_on_the_part_by_its_uv(of: Subject) -> None:
     scene = layers_scene(of)
-    middles = scene.part.points[scene.part.quads].mean(axis=1)
     laid = bands(of.paths, of.layup.bands.width, 24)
-    assert len(middles) == len(scene.steps) == laid.layers.size
-    assert np.abs(middles - of.paths.surface.points(laid.uv)).max() < 0.01
-    assert np.array_equal(scene.steps, laid.layers.ravel())
+    assert np.array_equal(scene.steps, laid.layers)
+    # the image goes once around the part: its corners are at the surface's, and no quad spans the seam
+    assert np.abs(scene.part.points - of.paths.surface.points(scene.uv)).max() < 1e-9
+    assert np.ptp(scene.uv[scene.part.quads, 0], axis=1).max() < 0.5
+    assert (scene.uv.min(axis=0) == 0.0).all() and (scene.uv.max(axis=0) == 1.0).all()
     # about as many cells lie across a band as are to
     assert np.sqrt(of.layup.bands.width**2 / np.median(laid.area)) == pytest.approx(24.0, rel=0.3)
 

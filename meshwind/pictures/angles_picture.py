@@ -16,9 +16,8 @@ _LEFT, _BASE, _GAP = canvas.LEFT + 110, 130.0, 40.0
 """Margins of the curves, for a page of 1600 x 1200."""
 
 
-def draw(window: Any, scene: AnglesScene, page: Page) -> Any:
-    """Draw the curves; the window is not needed."""
-    del window
+def draw(scene: AnglesScene, page: Page) -> Any:
+    """Draw the curves."""
     s, curves = page.unit, Curves(page)
     width, height = page.width / s - _LEFT - canvas.LEFT, page.height / s - canvas.TOP - _BASE
     low = (height - _GAP) * _COVER_SHARE if scene.cover is not None else -_GAP

@@ -10,7 +10,7 @@ import pyvista as pv
 
 from meshwind.appearance.view import View
 from meshwind.core.cast import Floats
-from meshwind.pictures import bodies, canvas, movie, winding_picture
+from meshwind.pictures import bodies, camera, canvas, movie, winding_picture
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import AnimationScene, Motion
 
@@ -44,7 +44,7 @@ def frames(window: Any, scene: AnimationScene, page: Page) -> Iterator[Any]:
             actor.mapper.dataset = whole.clip_scalar(scalars="laid", value=done) if clipped else whole
         head.position = _head(scene, done, thick)
         head.visibility = 0 < k < scene.motion.frames - 1
-        image = canvas.portrait(window, page, view, part.points)
+        image = camera.portrait(window, page, view, part.points)
         seen = replace(winding, frame=replace(frame, view=view))
         yield counted(winding_picture.lettered(image, seen, page), page, done, scene.motion.total, frame.units)
 
@@ -59,8 +59,8 @@ def steps(motion: Motion, view: View) -> Iterator[tuple[float, View]]:
 def _fibres(window: Any, scene: AnimationScene, thick: float) -> Iterator[tuple[Any, Any]]:
     fibres = scene.winding.fibres
     points, converged = bodies.lifted(fibres, thick), fibres.converged
-    kinds = [(colour, (fibres.family == name) & converged, 1.0) for name, colour in bodies.FAMILY.items()]
-    for colour, mine, share in [*kinds, (bodies.LOOSE, ~converged, 0.6)]:
+    kinds = [(colour, (fibres.family == name) & converged, 1.0) for name, colour in canvas.FAMILY.items()]
+    for colour, mine, share in [*kinds, (canvas.LOOSE, ~converged, 0.6)]:
         if mine.any():
             lines = bodies.polylines(points[mine].reshape(-1, 3), np.full(mine.sum(), points.shape[1]))
             lines.point_data["laid"] = scene.laid[mine].ravel()

@@ -8,7 +8,7 @@ import pyvista as pv
 from meshwind.appearance.looks import colour_map
 from meshwind.core.cast import Floats
 from meshwind.core.vectors import unit as unit_of
-from meshwind.pictures import bodies, canvas
+from meshwind.pictures import bodies, camera, canvas
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import CrossingsScene
 
@@ -32,7 +32,7 @@ def draw(window: Any, scene: CrossingsScene, page: Page) -> Any:
     bodies.add_part(window, scene.part)
     bodies.add_fibres(window, scene.fibres, stroke, {1: FIBRE, -1: FIBRE})
     add_dots(window, scene, scale, page.unit, stroke.radius)
-    image = canvas.portrait(window, page, view, scene.part.points)
+    image = camera.portrait(window, page, view, scene.part.points)
     pen = canvas.titled(image, page, scene.frame)
     canvas.legend(pen, page, [(FIBRE, "fibres")])
     canvas.scale_bar(image, pen, page, scene.scale)

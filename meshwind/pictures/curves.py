@@ -3,8 +3,6 @@
 from typing import Any
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 from PIL import Image
 
 from meshwind.core.cast import Floats
@@ -19,6 +17,10 @@ class Curves:
     """A figure as large as a page, without a background."""
 
     def __init__(self, page: Page) -> None:
+        # late: the process that draws parts needs them for few pictures
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+
         self._page = page
         self._figure = Figure(figsize=(page.width / _DPI, page.height / _DPI), dpi=_DPI, facecolor="none")
         self._agg = FigureCanvasAgg(self._figure)

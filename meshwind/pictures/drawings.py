@@ -42,6 +42,11 @@ def unpack(packed: bytes) -> tuple[Path, Drawing]:
     return Path(str(arrays["picture"])), Drawing(scene, _record(Page, _below(arrays, "page")))
 
 
+def save(image: Any, file: Path) -> None:
+    """Write an image as a .png, quickly rather than small."""
+    image.save(str(file), compress_level=1)
+
+
 def _arrays(record: Any) -> dict[str, Any]:
     """Fields of a record, and of records in it, that are not None, as arrays."""
     arrays: dict[str, Any] = {}

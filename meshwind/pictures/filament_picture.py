@@ -9,7 +9,7 @@ from meshwind.appearance.looks import SIGNAL, Scale, colour_map, rgb
 from meshwind.appearance.strips import Gear, Ribbons
 from meshwind.appearance.view import View
 from meshwind.core.cast import Floats, Ints
-from meshwind.pictures import bodies, canvas
+from meshwind.pictures import bodies, camera, canvas
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import FilamentScene, Groups
 
@@ -31,7 +31,7 @@ def draw(window: Any, scene: FilamentScene, page: Page) -> Any:
     """Draw part, turnarounds and bands, with text."""
     add_stand(window, scene)
     add_bands(window, scene, page)
-    image = canvas.portrait(window, page, scene.frame.view, scene.part.points)
+    image = camera.portrait(window, page, scene.frame.view, scene.part.points)
     return lettered(image, scene, page)
 
 
@@ -59,7 +59,7 @@ def rows(scene: FilamentScene) -> list[tuple[str, str]]:
 def add_stand(window: Any, scene: FilamentScene) -> list[Any]:
     """Add the part, in a signal colour where bands are in groups, and what the turnarounds stand on; return these."""
     signal = scene.groups is not None
-    part = canvas.add_smooth(
+    part = bodies.add_smooth(
         window, bodies.body(scene.part), color=SIGNAL if signal else canvas.PART, ambient=0.6 if signal else 0.3,
         diffuse=0.5 if signal else 0.8,
         backface_params={"color": canvas.INSIDE, "ambient": 0.25, "interpolation": "Phong"},

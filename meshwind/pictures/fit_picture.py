@@ -7,7 +7,7 @@ import pyvista as pv
 
 from meshwind.appearance.looks import colour_map
 from meshwind.core.cast import Floats, Ints
-from meshwind.pictures import canvas
+from meshwind.pictures import camera, canvas
 from meshwind.pictures.bodies import coloured
 from meshwind.pictures.canvas import FAINT, INK, PAPER, Box, face
 from meshwind.pictures.page import Page
@@ -83,8 +83,8 @@ def below(page: Page, box: Box) -> Box:
 def paste(window: Any, image: Any, page: Page, scene: FitScene, box: Box, target: Floats, scale: float) -> None:
     """Paste the window's view into a box of the image, its target in the middle."""
     left, top, width, height = (round(x) for x in box)
-    canvas.aim(window, page, scene.frame.view, scene.mesh.points, target, canvas.middle(box), scale)
-    image.paste(canvas.shot(window, page).crop((left, top, left + width, top + height)), (left, top))
+    camera.aim(window, page, scene.frame.view, scene.mesh.points, target, canvas.middle(box), scale)
+    image.paste(camera.shot(window, page).crop((left, top, left + width, top + height)), (left, top))
 
 
 def add(window: Any, scene: FitScene, name: str, scale: float) -> None:

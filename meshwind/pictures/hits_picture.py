@@ -7,7 +7,7 @@ import pyvista as pv
 
 from meshwind.appearance.looks import SIGNAL
 from meshwind.core.cast import Floats
-from meshwind.pictures import bodies, canvas, filament_picture
+from meshwind.pictures import bodies, camera, canvas, filament_picture
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import HitsScene
 
@@ -33,7 +33,7 @@ def draw(window: Any, scene: HitsScene, page: Page) -> Any:
     for places, colour in ((scene.entries, _SPAN), (scene.eyes, _EYE), (scene.astray, _ASTRAY)):
         if len(places):
             _both(window, _balls(places, _MARK * page.unit * pixel), colour, nearer)
-    image = canvas.portrait(window, page, view, scene.part.points)
+    image = camera.portrait(window, page, view, scene.part.points)
     pen = canvas.titled(image, page, scene.frame)
     rows = [
         (colour, words)

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from meshwind.appearance.looks import colour_map
-from meshwind.pictures import bodies, canvas
+from meshwind.pictures import bodies, camera, canvas
 from meshwind.pictures.curves import LABEL, TICKS, Curves
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import LaminateScene
@@ -30,8 +30,8 @@ def draw(window: Any, scene: LaminateScene, page: Page) -> Any:
     _, top, _, height = canvas.room(page)
     box = s * canvas.LEFT, top, _PART * page.width, height
     scale = max(view.width / box[2], view.height / box[3])
-    canvas.aim(window, page, view, scene.part.points, view.centre, canvas.middle(box), scale)
-    image = canvas.shot(window, page)
+    camera.aim(window, page, view, scene.part.points, view.centre, canvas.middle(box), scale)
+    image = camera.shot(window, page)
     image = _curves(scene, page).on(image)
     pen = canvas.titled(image, page, scene.frame)
     canvas.ruler(pen, page, scale, scene.frame.units)

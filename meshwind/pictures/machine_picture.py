@@ -10,7 +10,7 @@ import pyvista as pv
 from meshwind.appearance.looks import SIGNAL
 from meshwind.appearance.strips import Ribbons
 from meshwind.core.cast import Floats
-from meshwind.pictures import animation_picture, canvas, filament_picture
+from meshwind.pictures import animation_picture, camera, canvas, filament_picture
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import MachineScene
 
@@ -66,7 +66,7 @@ def frames(window: Any, scene: MachineScene, page: Page) -> Iterator[Any]:
                 end = tip + _REACH * scene.band * (way @ scene.frame)
                 arrow.mapper.dataset = pv.Line(tip, end).tube(radius=_AXIS * scene.thick, n_sides=10)
         eye.user_matrix = _matrix(_rolled(scene.frame, float(shots.roll[k])), tip)
-        yield _lettered(canvas.portrait(window, page, view, filament.part.points), scene, page, k)
+        yield _lettered(camera.portrait(window, page, view, filament.part.points), scene, page, k)
 
 
 def _lifted(laid: Ribbons, drawn: Any) -> Floats:

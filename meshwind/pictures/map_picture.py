@@ -7,7 +7,7 @@ import pyvista as pv
 
 from meshwind.appearance.looks import colour_map
 from meshwind.core.cast import Floats
-from meshwind.pictures import bodies, canvas
+from meshwind.pictures import bodies, camera, canvas
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import Fans, MapScene
 
@@ -22,7 +22,7 @@ def draw(window: Any, scene: MapScene, page: Page) -> Any:
     fans = scene.fans if scene.fans is not None and len(scene.fans.points) else None
     if fans is not None:
         add_fans(window, fans, view.eye)
-    image = canvas.portrait(window, page, view, scene.part.points)
+    image = camera.portrait(window, page, view, scene.part.points)
     pen = canvas.titled(image, page, scene.frame)
     if fans is not None:
         canvas.note(pen, page, ["fans: directions", "that press; none", "where nearly all do"])

@@ -57,6 +57,7 @@ class Painter:
             stderr=self._complaint,
         )
         self._sent: list[Path] = []
+        self._flat: list[tuple[Path, Drawing]] = []
         self._blocks: SimpleQueue[bytes | None] = SimpleQueue()
         self._ready = False
         # a thread, as scenes fill the pipe while the process draws the one before
@@ -82,9 +83,13 @@ class Painter:
     def send(self, picture: Path, drawing: "Drawing") -> None:
         """Have a drawing drawn into its file, after those that were sent before."""
         from meshwind.pictures.drawings import pack
+        from meshwind.pictures.scenes import FlatScene
 
         self._sent.append(picture)
-        self._put(pack(picture, drawing))
+        if isinstance(drawing.scene, FlatScene):
+            self._flat.append((picture, drawing))
+        else:
+            self._put(pack(picture, drawing))
 
     def finish(self, drawn: Drawn | None = None) -> str:
         """Wait for all that was sent; return "" or one line that says which picture is missing and why.
@@ -127,9 +132,25 @@ class Painter:
         with suppress(OSError):
             stdin.close()
 
+    def _draw_flat(self, words: list[str], drawn: Drawn | None) -> None:
+        """Draw in this process, once the other is at work, what it is not needed for; add what it would say to words.
+
+        It would take as long to load what draws these as to draw all of a usual part.
+        """
+        for picture, drawing in self._flat:
+            from meshwind.pictures.flat import draw
+
+            draw(picture, drawing)
+            words.append(picture.name)
+            if drawn is not None:
+                drawn(picture.name)
+        self._flat = []
+
     def _work(self, drawn: Drawn | None) -> tuple[list[str], bool]:
         """Wait for the end of a batch or of the process: its output, and whether it was too slow and killed."""
         process, words = self.process, list[str]()
+        if self._ready:
+            self._draw_flat(words, drawn)
         stdout = process.stdout
         assert stdout is not None
         watch = Timer(_SILENT_SECONDS, process.kill)
@@ -142,6 +163,8 @@ class Painter:
                 watch.cancel()
                 if word == DONE:
                     break
+                if word == READY:
+                    self._draw_flat(words, drawn)
                 watch = Timer(_SILENT_SECONDS, process.kill)
                 watch.start()
                 if drawn is not None and word != READY:

@@ -6,7 +6,7 @@ import numpy as np
 import pyvista as pv
 
 from meshwind.core.cast import Ints
-from meshwind.pictures import bodies, canvas
+from meshwind.pictures import bodies, camera, canvas
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import QuadsScene
 
@@ -31,7 +31,7 @@ def draw(window: Any, scene: QuadsScene, page: Page) -> Any:
         nearer = 3.0 * page.unit * scale * view.eye
         dots = pv.PolyData(np.concatenate([off + nearer, off - nearer]) if view.both else off + nearer)
         window.add_mesh(dots, color=OFF, point_size=size, render_points_as_spheres=True, lighting=False, render=False)
-    image = canvas.portrait(window, page, view, scene.part.points)
+    image = camera.portrait(window, page, view, scene.part.points)
     pen = canvas.titled(image, page, scene.frame)
     rows = [(colour, words) for _, colour, words in faces]
     canvas.legend(pen, page, rows + ([(OFF, "off the surface")] if len(off) else []))

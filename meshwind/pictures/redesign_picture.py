@@ -6,7 +6,7 @@ import numpy as np
 import pyvista as pv
 
 from meshwind.appearance.looks import colour_map
-from meshwind.pictures import canvas
+from meshwind.pictures import camera, canvas
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import RedesignScene
 
@@ -26,9 +26,9 @@ def draw(window: Any, scene: RedesignScene, page: Page) -> Any:
         left, top, width, height = box[0], box[1] + head, box[2], box[3] - head
         window.clear_actors()
         add(window, scene, name == "after")
-        canvas.aim(window, page, view, both, view.centre, canvas.middle((left, top, width, height)), scale)
+        camera.aim(window, page, view, both, view.centre, canvas.middle((left, top, width, height)), scale)
         edges = round(left), round(top), round(left + width), round(top + height)
-        image.paste(canvas.shot(window, page).crop(edges), edges[:2])
+        image.paste(camera.shot(window, page).crop(edges), edges[:2])
         pen.text(box[:2], name, canvas.INK, font=canvas.face(page, 25))
     if len(scene.arrows):
         words = "arrows: how it moves" if scene.longer == 1.0 else f"arrows: {scene.longer:g} times the displacement"

@@ -10,7 +10,7 @@ import pyvista as pv
 from meshwind.appearance.strips import WORDS, Ribbons
 from meshwind.core.cast import Floats
 from meshwind.filament.kinds import Kind
-from meshwind.pictures import animation_picture, canvas, filament_picture
+from meshwind.pictures import animation_picture, camera, canvas, filament_picture
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import ReelScene
 
@@ -34,7 +34,7 @@ def frames(window: Any, scene: ReelScene, page: Page) -> Iterator[Any]:
             actor.mapper.dataset = mesh
         free.mapper.dataset = pv.Line(*_free(laid, _FREE * max(frame.view.width, frame.view.height)))
         free.visibility = 0 < k < last
-        image = canvas.portrait(window, page, view, filament.part.points)
+        image = camera.portrait(window, page, view, filament.part.points)
         seen = replace(filament, frame=replace(frame, view=view))
         image = filament_picture.lettered(image, seen, page)
         canvas.note(canvas.pen(image), page, said(laid), below=len(filament_picture.rows(filament)))

@@ -14,9 +14,8 @@ import pyvista as pv  # noqa: F401  (before the next line, so that nothing besid
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 from meshwind.pictures import (
-    angles_picture,
     animation_picture,
-    canvas,
+    camera,
     crossings_picture,
     drawings,
     filament_picture,
@@ -30,11 +29,8 @@ from meshwind.pictures import (
     quads_picture,
     redesign_picture,
     reel_picture,
-    rounds_picture,
     scenes,
-    slice_picture,
     slip_picture,
-    unrolled_picture,
     winding_picture,
 )
 
@@ -46,12 +42,8 @@ DRAWN_BY: dict[type, Callable[..., Any]] = {
     scenes.SlipScene: slip_picture.draw,
     scenes.CrossingsScene: crossings_picture.draw,
     scenes.QuadsScene: quads_picture.draw,
-    scenes.UnrolledScene: unrolled_picture.draw,
     scenes.RedesignScene: redesign_picture.draw,
-    scenes.RoundsScene: rounds_picture.draw,
-    scenes.SliceScene: slice_picture.draw,
     scenes.FilamentScene: filament_picture.draw,
-    scenes.AnglesScene: angles_picture.draw,
     scenes.LaminateScene: laminate_picture.draw,
     scenes.HitsScene: hits_picture.draw,
 }
@@ -65,7 +57,7 @@ FRAME = "frame"
 
 def main() -> None:
     """Test that the machine can draw, read scenes, draw them."""
-    window = canvas.plotter()
+    window = camera.plotter()
     say(painter.READY)
     for packed in blocks():
         if not packed:
@@ -78,7 +70,7 @@ def main() -> None:
             animation_picture.draw(frames, drawing.scene.motion, drawing.page, lambda: say(FRAME))
         else:
             image = DRAWN_BY[type(drawing.scene)](window, drawing.scene, drawing.page)
-            image.save(str(file), compress_level=1)
+            drawings.save(image, file)
         say(file.name)
     window.close()
 

@@ -16,9 +16,8 @@ _LOWEST = 0.3
 """Of the least gap that is no contact, or of the threshold: where contact is drawn on the logarithmic scale."""
 
 
-def draw(window: Any, scene: RoundsScene, page: Page) -> Any:
-    """Draw three curves one above the other; the window is not needed."""
-    del window
+def draw(scene: RoundsScene, page: Page) -> Any:
+    """Draw three curves one above the other."""
     s, curves, count = page.unit, Curves(page), len(scene.gaps)
     unit = f", {scene.frame.units}" if scene.frame.units else ""
     width = page.width / s - _LEFT - canvas.LEFT

@@ -128,11 +128,13 @@ class MapScene:
 class LayersScene:
     """The layers of band over each cell of the part, in steps.
 
-    steps (q,): of the part's quads, numbers of the colours and words; the first is for what is bare.
+    uv (k, 2): of the part's points; steps (nu, nv): numbers of the colours and words over the middles of cells that are
+    even in u and v; the first is for what is bare.
     """
 
     frame: Frame
     part: Part
+    uv: Floats
     steps: Ints
     colours: tuple[str, ...]
     words: tuple[str, ...]
@@ -302,11 +304,12 @@ class HitsScene:
     notes: tuple[str, ...]
 
 
+FlatScene: TypeAlias = AnglesScene | RoundsScene | SliceScene | UnrolledScene
+"""What has no part in space, and is drawn without graphics."""
 Scene: TypeAlias = (
     WindingScene
     | FilamentScene
     | LaminateScene
-    | AnglesScene
     | AnimationScene
     | ReelScene
     | MachineScene
@@ -316,9 +319,7 @@ Scene: TypeAlias = (
     | LayersScene
     | SlipScene
     | QuadsScene
-    | UnrolledScene
     | FitScene
     | RedesignScene
-    | RoundsScene
-    | SliceScene
+    | FlatScene
 )

@@ -35,7 +35,7 @@ def window(blocks: Mapping[str, Block], title: str, **options: Any) -> pyvista.P
     """The window, not open yet; options: of PyVista's Plotter."""
     import pyvista
 
-    from meshwind.pictures import bodies, canvas
+    from meshwind.pictures import canvas
 
     made = pyvista.Plotter(title=title, **options)
     thick = _THICK * float(np.linalg.norm(np.ptp(blocks["part"].points, axis=0)))
@@ -45,7 +45,7 @@ def window(blocks: Mapping[str, Block], title: str, **options: Any) -> pyvista.P
             made.add_mesh(mesh, color=canvas.PART, smooth_shading=True, name=name)
         elif name == "fibres":
             tubes = mesh.tube(radius=thick, n_sides=8)
-            colours = [bodies.FAMILY[family] for family in (-1, 1)]
+            colours = [canvas.FAMILY[family] for family in (-1, 1)]
             made.add_mesh(tubes, scalars="family", cmap=colours, show_scalar_bar=False, name=name)
         elif name == "bridges":
             tubes = mesh.tube(radius=1.5 * thick, n_sides=8)

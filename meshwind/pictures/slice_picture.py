@@ -19,9 +19,8 @@ _SHOWN = 0.2
 """Of the height: at least so much is taken by the gap."""
 
 
-def draw(window: Any, scene: SliceScene, page: Page) -> Any:
-    """Draw both profiles, the fibre and its gap; the window is not needed."""
-    del window
+def draw(scene: SliceScene, page: Page) -> Any:
+    """Draw both profiles, the fibre and its gap."""
     s, curves = page.unit, Curves(page)
     width, height = page.width / s - _LEFT - canvas.LEFT, page.height / s - canvas.TOP - _BASE - _ROOM
     (x, low), (to, high) = scene.low, scene.high

@@ -7,7 +7,7 @@ import numpy as np
 from meshwind.appearance.looks import SIGNAL, colour_map
 from meshwind.core.cast import Bools, Floats
 from meshwind.core.lists import spread
-from meshwind.pictures import bodies, canvas
+from meshwind.pictures import bodies, camera, canvas
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import SlipScene
 
@@ -24,14 +24,14 @@ def draw(window: Any, scene: SlipScene, page: Page) -> Any:
     stroke = bodies.stroke(scene.part, scale, page.unit)
     points = bodies.lifted(scene.fibres, stroke.radius)
     bodies.add_part(window, scene.part)
-    bodies.add_paths(window, points[~converged], stroke.times(0.6), bodies.LOOSE)
+    bodies.add_paths(window, points[~converged], stroke.times(0.6), canvas.LOOSE)
     _add_known(window, scene, points[converged], stroke)
-    image = canvas.portrait(window, page, view, scene.part.points)
+    image = camera.portrait(window, page, view, scene.part.points)
     pen = canvas.titled(image, page, scene.frame)
     rows = [(OFF, "off the surface")] if scene.bridges else []
     if not scene.needed:
         rows = [(_zero(scene), "needs none"), *rows]
-    canvas.legend(pen, page, rows if converged.all() else [(bodies.LOOSE, "not at rest"), *rows])
+    canvas.legend(pen, page, rows if converged.all() else [(canvas.LOOSE, "not at rest"), *rows])
     if scene.needed:
         canvas.scale_bar(image, pen, page, scene.scale)
         add_histogram(pen, scene, page)

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from meshwind.core.cast import Floats
-from meshwind.pictures import bodies, canvas
+from meshwind.pictures import canvas
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import UnrolledScene
 
@@ -22,9 +22,8 @@ _VEIL = 0.35
 _DPI = 100.0
 
 
-def draw(window: Any, scene: UnrolledScene, page: Page) -> Any:
-    """Draw the chart; the window is not needed."""
-    del window
+def draw(scene: UnrolledScene, page: Page) -> Any:
+    """Draw the chart."""
     s = page.unit
     figure = Figure(figsize=(page.width / _DPI, page.height / _DPI), dpi=_DPI, facecolor="none")
     agg = FigureCanvasAgg(figure)
@@ -39,10 +38,10 @@ def draw(window: Any, scene: UnrolledScene, page: Page) -> Any:
     image = canvas.blank(page)
     image.paste(drawn, (0, 0), drawn) if not page.transparent else image.alpha_composite(drawn)
     pen = canvas.titled(image, page, scene.frame)
-    rows = [(bodies.FAMILY[name], words) for name, words in bodies.NAMES.items()]
+    rows = [(canvas.FAMILY[name], words) for name, words in canvas.NAMES.items()]
     rows += [(_BRIDGING, "bridging")] if scene.bridging.any() else []
     rows += [(_PARTED, "parting")] if len(scene.parted) else []
-    canvas.legend(pen, page, rows if scene.converged.all() else [*rows, (bodies.LOOSE, "not at rest")])
+    canvas.legend(pen, page, rows if scene.converged.all() else [*rows, (canvas.LOOSE, "not at rest")])
     return image
 
 
@@ -54,7 +53,7 @@ def _fill(axes: Any, scene: UnrolledScene, s: float, width: float) -> None:
         for turn in np.arange(np.floor(outline[:, 0].min()), np.ceil(outline[:, 0].max())):
             axes.fill(*(outline - [turn, 0.0]).T, facecolor=_PARTED, alpha=_VEIL, edgecolor="none")
     for path, (uv, family) in enumerate(zip(scene.uv, scene.family, strict=True)):
-        colour = bodies.FAMILY[int(family)] if scene.converged[path] else bodies.LOOSE
+        colour = canvas.FAMILY[int(family)] if scene.converged[path] else canvas.LOOSE
         axes.plot(*_wrapped(uv), color=colour, linewidth=thick)
         off = np.where(scene.bridging[path][:, None], uv, np.nan)
         if scene.bridging[path].any():

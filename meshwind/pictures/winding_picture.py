@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from meshwind.appearance.looks import colour_map, round_below
-from meshwind.pictures import bodies, canvas
+from meshwind.pictures import bodies, camera, canvas
 from meshwind.pictures.page import Page
 from meshwind.pictures.scenes import Fibres, WindingScene
 
@@ -19,7 +19,7 @@ def draw(window: Any, scene: WindingScene, page: Page) -> Any:
     bodies.add_part(window, scene.part)
     bodies.add_fibres(window, scene.fibres, stroke)
     add_bridges(window, scene, stroke)
-    return lettered(canvas.portrait(window, page, scene.frame.view, scene.part.points), scene, page)
+    return lettered(camera.portrait(window, page, scene.frame.view, scene.part.points), scene, page)
 
 
 def lettered(image: Any, scene: WindingScene, page: Page) -> Any:
@@ -37,8 +37,8 @@ def lettered(image: Any, scene: WindingScene, page: Page) -> Any:
 
 def families(fibres: Fibres) -> list[tuple[str, str]]:
     """Rows of the legend: colour and name of each family."""
-    rows = [(bodies.FAMILY[name], words) for name, words in bodies.NAMES.items()]
-    return rows if fibres.converged.all() else [*rows, (bodies.LOOSE, "not at rest")]
+    rows = [(canvas.FAMILY[name], words) for name, words in canvas.NAMES.items()]
+    return rows if fibres.converged.all() else [*rows, (canvas.LOOSE, "not at rest")]
 
 
 def add_bridges(window: Any, scene: WindingScene, stroke: bodies.Stroke) -> None:
