@@ -11,6 +11,7 @@ from meshwind.appearance.layer_steps import step_firsts, step_words
 from meshwind.appearance.looks import SIGNAL
 from meshwind.layup.bands import bands
 from meshwind.pictures.layers_scene import layers_scene, percent
+from meshwind.pictures.layup_scenes import quads_scene
 from meshwind.pictures.subject import Subject, subject_of
 from meshwind.results.reading import read_results
 
@@ -62,3 +63,10 @@ def test_steps_are_few_and_leave_none_out() -> None:
 def test_little_is_not_none_and_nearly_all_is_not_all() -> None:
     shares = 0.0, 2e-5, 0.031, 0.29, 0.997, 1.0
     assert [percent(share) for share in shares] == ["0.0 %", "< 0.1 %", "3.1 %", "29 %", "99.7 %", "100 %"]
+
+
+def test_the_words_tell_how_far_the_part_is_from_flat_quads(of: Subject) -> None:
+    """Over the middle of a quad whose corners span an angle a on a cylinder of radius 1: (1 - cos(a / 2)) / 2."""
+    words = quads_scene(of).frame.subtitle
+    told = float(words.rpartition("the part up to ")[2].split()[0])
+    assert told == pytest.approx(0.5 * (1.0 - np.cos(np.pi / COUNT)), rel=0.02)

@@ -4,6 +4,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from meshwind.appearance.looks import Look, Scale, fixed
+from meshwind.appearance.words import quantity
 from meshwind.core.cast import Floats
 from meshwind.path.apart import to_next
 from meshwind.path.lengths import bridging, lengths
@@ -52,11 +53,23 @@ def quads_scene(of: Subject) -> QuadsScene:
     where = "every corner on the surface"
     if off:
         where = f"{off} of {len(mesh.points)} corners off the surface"
-    subtitle = f"{len(mesh.quads)} quads, {len(mesh.triangles)} triangles  ·  {where}"
+    flat = quantity(_bulge(of), of.units, 2)
+    subtitle = f"{len(mesh.quads)} quads, {len(mesh.triangles)} triangles  ·  {where}  ·  the part up to {flat} away"
     if not len(mesh.quads) + len(mesh.triangles):
         subtitle = f"no quad mesh: {mesh.note}" if mesh.note else "no quad mesh"
     frame = of.frame(f"{of.name}: quad mesh on the crossings", subtitle)
     return QuadsScene(frame, of.part, mesh.points, ~mesh.on_surface, mesh.quads, mesh.triangles)
+
+
+def _bulge(of: Subject) -> float:
+    """Largest distance of the part from the middles of the quads, square to the part."""
+    mesh, surface = of.layup.quads, of.paths.surface
+    corners = mesh.uv[mesh.quads]
+    # corners across the seam are as near as those on the same side of it
+    u = corners[..., 0] - np.round(corners[..., 0] - corners[:, :1, 0])
+    uv = np.stack([np.mod(u.mean(axis=1), 1.0), corners[..., 1].mean(axis=1)], axis=1)
+    away = surface.points(uv) - mesh.points[mesh.quads].mean(axis=1)
+    return float(np.abs(np.einsum("qk,qk->q", away, surface.normals(uv))).max(initial=0.0))
 
 
 def slip_scene(of: Subject) -> SlipScene:

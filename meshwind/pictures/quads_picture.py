@@ -14,6 +14,9 @@ QUAD, TRIANGLE, EDGE, OFF = "#cfdce8", "#f0c987", "#33485a", "#b0127b"
 _CLEAR = 20.0
 """Distance between fibres, in pixels, above which edges are drawn opaque."""
 
+_VEIL = 0.3
+"""Opacity of the part over the faces."""
+
 
 def draw(window: Any, scene: QuadsScene, page: Page) -> Any:
     """Draw the quad mesh, with text."""
@@ -23,7 +26,9 @@ def draw(window: Any, scene: QuadsScene, page: Page) -> Any:
     faces = [kind for kind in kinds if len(kind[0])]
     for cells, colour, _ in faces:
         add_faces(window, scene, cells, colour, scale, page.unit)
-    if not faces:
+    if faces:  # the flat faces cut off what bulges between their corners
+        bodies.add_smooth(window, bodies.body(scene.part), color=canvas.PART, opacity=_VEIL, culling="back")
+    else:
         bodies.add_part(window, scene.part)
     off = scene.corners[scene.off] if faces else ()
     if len(off):
@@ -33,7 +38,7 @@ def draw(window: Any, scene: QuadsScene, page: Page) -> Any:
         window.add_mesh(dots, color=OFF, point_size=size, render_points_as_spheres=True, lighting=False, render=False)
     image = camera.portrait(window, page, view, scene.part.points)
     pen = canvas.titled(image, page, scene.frame)
-    rows = [(colour, words) for _, colour, words in faces]
+    rows = [(colour, words) for _, colour, words in faces] + [(canvas.PART, "the part")]
     canvas.legend(pen, page, rows + ([(OFF, "off the surface")] if len(off) else []))
     canvas.ruler(pen, page, scale, scene.frame.units)
     canvas.axes(pen, page, view)
