@@ -20,7 +20,7 @@ RUNS: dict[str, dict[str, float | str | None]] = {
     "cast.ply": {"particles": None},
 }
 """Bridges; friction; particles that are chosen."""
-THREADS = 1, 2, 4
+THREADS = 1, 4
 
 
 def leave(folder: Path) -> None:

@@ -62,9 +62,10 @@ def test_a_cone_is_covered_at_its_large_end() -> None:
 @pytest.mark.parametrize(("part", "angle"), [("tank.ply", 30.0), ("elbow.obj", 30.0), ("cast.ply", 30.0)])
 def test_the_angle_is_met_in_the_files(part: str, angle: float, tmp_path: Path) -> None:
     """Measured from paths.vtp alone: steps of the fibre against the level lines of the fitted surface."""
-    result = mw.wind(f"data/{part}", angle=angle, angle_at="v=0.5", friction=0.2, out=tmp_path, render=False)
+    result = mw.wind(f"data/{part}", angle=angle, angle_at="v=0.5", friction=0.2, paths=6,
+                     particles=201, out=tmp_path, render=False)  # fmt: skip
     fibres = pv.read(tmp_path / "paths.vtp")
-    uv, points = fibres.point_data["uv"].reshape(24, -1, 2), np.asarray(fibres.points).reshape(24, -1, 3)
+    uv, points = fibres.point_data["uv"].reshape(12, -1, 2), np.asarray(fibres.points).reshape(12, -1, 3)
     found = []
     for path, at in zip(points, uv, strict=True):
         k = min(max(int(np.searchsorted(at[:, 1], 0.5)), 1), len(at) - 1)
