@@ -135,7 +135,8 @@ def test_the_command_line(tmp_path: Path) -> None:
     assert done.returncode == 0
     lines = [line.split(None, 1) for line in done.stdout.splitlines()]
     assert {kind for kind, _ in lines} == {"note", "file"}
-    assert {"fibers.vtu", "fibers.vtk", "shell.inp", "shell_s4r.inp", "frames", "formats"} == {
+    decks = {"shell.inp", "shell_s4r.inp", "shell.json"}
+    assert {"fibers.vtu", "fibers.vtk", *decks, "frames", "formats"} == {
         file.name for file in out.iterdir()
     }
     assert f"{out}/frames/path_000.csv and 31 more" in done.stdout

@@ -161,6 +161,8 @@ def test_calculix_stretches_a_cylinder_as_laminate_theory_says(tmp_path: Path) -
     assert "*ERROR" not in done.stdout
     rows = (line.split() for line in (tmp_path / "shell.dat").read_text().splitlines())
     moved = np.array([list(map(float, row)) for row in rows if len(row) == 4 and row[0].isdigit()])
+    points = np.array([list(map(float, line.split(","))) for line in blocks(tmp_path / SHELL, "*NODE,")[0]])
+    moved = moved[points[moved[:, 0].astype(int) - 1, 3] > 3.99]
     expected = FORCE * 4.0 / (2.0 * np.pi * thicknesses(deck).sum(axis=0).mean() * axial_modulus(ply.angle[0]))
     assert moved[:, 3].mean() == pytest.approx(expected, rel=0.03)
     assert np.abs(moved[:, 1:3].mean(axis=0)).max() < 0.01 * expected

@@ -11,8 +11,9 @@ from meshwind.layup.quads import edge_counts
 from meshwind.results.reading import Results
 from meshwind.results.schema import QUADS, UV
 from meshwind.results.vtk_reading import read_faces
-from meshwind.surface.forms import area_elements
+from meshwind.surface.forms import area_elements, fundamental_forms
 from meshwind.surface.grid import grid_quads, midpoints, parameter_grid
+from meshwind.surface.principal import principal
 from meshwind.surface.surface import Surface
 
 _FEWEST = 12, 4
@@ -71,7 +72,15 @@ class Elements:
     @property
     def pressed(self) -> Floats:
         """Area (k,) of each element on the skin that pressure acts on, over its own."""
+        if self.skin is self.surface:
+            return np.ones(len(self))
         return np.asarray(self.samples(self.skin)[1].sum(axis=1) / self.samples()[1].sum(axis=1))
+
+    def offset(self, depth: Floats) -> Floats:
+        """Area (k,) of each element, moved by a depth (k,) along its inward normal, over its own."""
+        frames = self.surface.frames(self.centre)
+        bend = principal(frames, fundamental_forms(frames))
+        return np.asarray((1.0 - depth * bend.largest) * (1.0 - depth * bend.smallest))
 
     def between(self, edges: Ints) -> Floats:
         """Midpoints in uv (e, 2) of edges (e, 2), by the shorter way around."""

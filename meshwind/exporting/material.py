@@ -17,6 +17,12 @@ _SHIPPED = Shipped(__package__, "materials", "material")
 _STIFF = "e1", "e2", "nu12", "nu23", "g12", "density"
 STRENGTHS = "xt", "xc", "yt", "yc", "s"
 """Strengths along the fibre in tension and compression, across it, and in shear."""
+INTERACTION = "interaction"
+_USUAL = -0.5
+"""F12 of the criterion of Tsai and Wu over sqrt(F11 F22), where no test in two directions says better.
+
+With it the criterion of an isotropic material as strong in tension as in compression is that of von Mises.
+"""
 _KG_M3 = 1e-12
 """A kilogram per cubic metre in t/mm3."""
 
@@ -26,7 +32,7 @@ class Material:
     """A transversely isotropic layer, fibres along 1: moduli and strengths in MPa (N/mm2), density in t/mm3.
 
     words: what it is; strengths: those of `STRENGTHS` that are known, as compression's above 0; sources: where each
-    figure is from, by its name.
+    figure is from, by its name; interaction: F12 of the criterion of Tsai and Wu over sqrt(F11 F22).
     """
 
     name: str
@@ -39,11 +45,17 @@ class Material:
     words: str = ""
     strengths: Mapping[str, float] = field(default_factory=dict)
     sources: Mapping[str, str] = field(default_factory=dict)
+    interaction: float = _USUAL
 
     @property
     def g23(self) -> float:
         """Shear modulus of the isotropic plane across the fibres, e2 / (2 (1 + nu23))."""
         return self.e2 / (2.0 * (1.0 + self.nu23))
+
+    @staticmethod
+    def stress(value: float, units: str) -> float:
+        """A stress in MPa in N over the unit of length squared."""
+        return value * millimetres(units) ** 2
 
     def moduli(self, units: str) -> tuple[float, ...]:
         """E1, E2, E3, nu12, nu13, nu23, G12, G13, G23; moduli in N over the unit of length squared."""
@@ -70,7 +82,7 @@ def read_material(name: str = DEFAULT) -> Material:
 
 def _material_of(table: dict[str, Any], file: Path) -> Material:
     """A material from the table of its file, with the density in kg/m3 there."""
-    where, known = f"material {file}", (*_STIFF, *STRENGTHS)
+    where, known = f"material {file}", (*_STIFF, *STRENGTHS, INTERACTION)
     for key in table:
         if key not in (*known, "words", "sources"):
             raise BadInputError(f"{where} has no {key!r}; {nearest(key, known)}")
@@ -89,7 +101,10 @@ def _material_of(table: dict[str, Any], file: Path) -> Material:
         raise BadInputError(f"sources of {where} is no table of texts; give [sources] with a text for each figure")
     stiff = {key: values[key] for key in _STIFF}
     stiff["density"] *= _KG_M3
-    made = Material(_name(file.stem), **stiff, words=words, strengths=found, sources=sources)
+    made = Material(
+        _name(file.stem), **stiff, words=words, strengths=found, sources=sources,
+        interaction=values.get(INTERACTION, _USUAL),
+    )  # fmt: skip
     _check(made, where)
     return made
 
@@ -97,7 +112,7 @@ def _material_of(table: dict[str, Any], file: Path) -> Material:
 def _number(value: Any, key: str, where: str) -> float:
     if not isinstance(value, int | float) or isinstance(value, bool) or not isfinite(value):
         raise BadInputError(f"{key} of {where} is {value!r}; give a number")
-    if value <= 0.0 and not key.startswith("nu"):
+    if value <= 0.0 and not (key.startswith("nu") or key == INTERACTION):
         raise BadInputError(f"{key} of {where} is {value:g}; give a number above 0")
     return float(value)
 
@@ -109,7 +124,9 @@ def _name(stem: str) -> str:
 
 
 def _check(material: Material, where: str) -> None:
-    """Raise BadInputError where a deformation of the material would cost no energy."""
+    """Raise BadInputError where a deformation of the material would cost no energy, or it would bear any stress."""
+    if not -1.0 < material.interaction < 1.0:
+        raise BadInputError(f"{INTERACTION} of {where} is {material.interaction:g}; give a number between -1 and 1")
     cross = material.nu12**2 * material.e2 / material.e1
     if not -1.0 < material.nu23 < 1.0 - 2.0 * cross:
         raise BadInputError(

@@ -18,12 +18,13 @@ from meshwind.core.vectors import TINY
 from meshwind.exporting.elements import Elements
 from meshwind.exporting.material import STRENGTHS, Material
 from meshwind.exporting.plies import Plies
+from meshwind.exporting.shell_about import About, fingerprint, write_about
 from meshwind.exporting.shell_groups import SHARES, TOLERANCE, Groups, Laid, grouped
-from meshwind.exporting.shell_loads import FORCE, Loads, step
+from meshwind.exporting.shell_loads import FORCE, Loads, Pressing, step
 from meshwind.exporting.shell_nodes import nodes_of
 from meshwind.exporting.shell_sections import Sections, listed
 from meshwind.path.winding_angle import axes
-from meshwind.results.schema import SHELL, SHELL_S4R
+from meshwind.results.schema import SHELL, SHELL_ABOUT, SHELL_S4R
 
 LEAST = 0.05
 """Least thickness of a family, in layers, also where it has no fibres."""
@@ -34,6 +35,8 @@ CalculiX joins elements of different thickness by rigid knots.
 """
 _KNOTS = 0.5
 """Largest share of the nodes that are knots: CalculiX stopped for want of room at 0.7 of them, and not at 0.58."""
+_LEAST_FACE = 0.1
+"""Least area of the inner face of an element that is pressed on, over its own: thick hollows have none."""
 _MUCH = 0.1
 """Change of an element's thickness that is worth a note."""
 _WIDE = 110
@@ -45,7 +48,8 @@ _SHAPES = {3: "S3", 4: "S4R", 6: "S6", 8: "S8R"}
 class Deck:
     """Contents of a deck: mesh, plies, material, unit of length, name of the part, and loads.
 
-    tolerance: degrees within which elements share a section, 0 for sections of their own.
+    tolerance: degrees within which elements share a section, 0 for sections of their own; run: the fingerprint of the
+    run that it is of.
     """
 
     elements: Elements
@@ -55,6 +59,7 @@ class Deck:
     name: str = "part"
     loads: Loads = field(default_factory=Loads)
     tolerance: float = TOLERANCE
+    run: str = ""
 
     @cached_property
     def levels(self) -> Ints:
@@ -81,10 +86,12 @@ class Deck:
 
 
 def write_decks(folder: Path, deck: Deck) -> list[str]:
-    """Write both decks into an existing folder; return what the user should know."""
+    """Write both decks, and what they do not hold, into an existing folder; return what the user should know."""
     for name, quadratic in ((SHELL, True), (SHELL_S4R, False)):
         with (folder / name).open("w", encoding="ascii", errors="replace") as file:
             _write(file, deck, quadratic)
+    about = About(deck.name, deck.units, deck.run, fingerprint(folder / SHELL), deck.material)
+    write_about(folder / SHELL_ABOUT, about)
     notes = [f"{SHELL}: {note}" for note in (_of_layers(deck) if deck.plies.wound else _of_families(deck))]
     counts = f"{len(deck.fixed.groups)} sections, {SHELL_S4R} {len(deck.groups)}"
     notes.append(f"{SHELL}: {counts}: elements with angles within {deck.tolerance:g} degrees share one")
@@ -187,9 +194,20 @@ def _write(file: TextIO, deck: Deck, quadratic: bool) -> None:
         file.write(f"*NSET, NSET={name}\n")
         file.writelines(f"{line}\n" for line in listed(rim.nodes + 1))
     file.writelines(f"{line}\n" for line in _material(deck))
+    if not quadratic and deck.material.strengths:
+        file.writelines(f"{line}\n" for line in _strengths(deck))
     lines = deck.fixed.fixed() if quadratic else deck.sections.distributed()
     file.writelines(f"{line}\n" for line in lines)
-    file.writelines(f"{line}\n" for line in step(nodes, deck.elements, deck.loads, deck.units))
+    file.writelines(f"{line}\n" for line in step(nodes, deck.loads, deck.units, _pressing(deck, quadratic)))
+
+
+def _pressing(deck: Deck, quadratic: bool) -> Pressing:
+    """How pressure acts: CalculiX makes shells solid, and presses on their inner faces."""
+    elements = deck.elements
+    if not quadratic:
+        return Pressing(elements.pressed, False)
+    inner = elements.offset(0.5 * thicknesses(deck).sum(axis=0))
+    return Pressing(elements.pressed / np.maximum(inner, _LEAST_FACE), True)
 
 
 def _head(deck: Deck, quadratic: bool) -> Iterator[str]:
@@ -252,6 +270,13 @@ def _material(deck: Deck) -> Iterator[str]:
     yield f"{deck.material.moduli(deck.units)[8]:.9g}"
     yield "*DENSITY"
     yield f"{deck.material.mass(deck.units):.9g}"
+
+
+def _strengths(deck: Deck) -> Iterator[str]:
+    """For the criterion of Tsai and Wu of Abaqus, where strengths in compression are below 0."""
+    xt, xc, yt, yc, s = (deck.material.stress(deck.material.strengths[name], deck.units) for name in STRENGTHS)
+    yield "*FAIL STRESS"
+    yield ", ".join(f"{value:.9g}" for value in (xt, -xc, yt, -yc, s, deck.material.interaction))
 
 
 def _about_material(material: Material) -> Iterator[str]:

@@ -10,13 +10,14 @@ from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import millimetres
 from meshwind.core.vectors import TINY
-from meshwind.exporting.elements import Elements
 from meshwind.exporting.shell_nodes import Nodes, Rim
 
 FORCE = 1000.0
 """Axial force, in N, of a deck that is asked for no load: something to begin with."""
 START, END, BOTH, NONE = HELD = "start", "end", "both", "none"
 """What holds the part: a clamped rim, both, or nothing, where six displacements are 0 to keep the part in place."""
+EVERY_NODE, EVERY_ELEMENT = "NALL", "SHELL"
+"""Sets of all nodes and of all elements."""
 _NOTHING = 1e-12
 """Share of a load along an axis below which it is left out."""
 
@@ -59,7 +60,18 @@ class Loads:
         return replace(self, pressure=pressure * mm * mm, axial=axial, torque=torque * 1000.0 / mm)
 
 
-def step(nodes: Nodes, elements: Elements, asked: Loads, units: str) -> Iterator[str]:
+@dataclass(frozen=True)
+class Pressing:
+    """How a deck has pressure: the area (k,) of each element's inside over that which the solver presses on.
+
+    calculix: whether the deck is for CalculiX, which has output of its own kinds.
+    """
+
+    shares: Floats
+    calculix: bool
+
+
+def step(nodes: Nodes, asked: Loads, units: str, pressing: Pressing) -> Iterator[str]:
     """Lines of the load step."""
     loads = asked.scaled(units)
     pressure, axial, torque = loads.pressure or 0.0, loads.axial or 0.0, loads.torque or 0.0
@@ -81,18 +93,34 @@ def step(nodes: Nodes, elements: Elements, asked: Loads, units: str) -> Iterator
         yield "*CLOAD"
         yield from on_rims
     if pressure:
-        yield from _inside(elements, pressure)
-    for name in (START, END):
-        if loads.held in (name, BOTH):
-            yield f"*NODE PRINT, NSET={name.upper()}, TOTALS=ONLY"
-            yield "RF"
-    yield "*NODE PRINT, NSET=END"
+        yield from _inside(pressing.shares, pressure)
+    yield from _output_of_calculix() if pressing.calculix else _output_of_abaqus()
+    yield "*END STEP"
+
+
+def _output_of_calculix() -> Iterator[str]:
+    """Tables of displacements, and of stresses and strains at all points of all layers, and a file for viewers."""
+    yield "** shell.dat: displacements of all nodes; stresses and strains in the axes of each layer's fibres, which are"
+    yield "** components 11, 22, 33, 12, 13, 23, at the integration points, layer by layer from the inside out; shear"
+    yield "** strains are half the engineering ones. shell.frd: the same at nodes, in global axes. CalculiX has neither"
+    yield "** forces of sections of shells nor failure indices; meshwind solve computes these."
+    yield f"*NODE PRINT, NSET={EVERY_NODE}"
     yield "U"
+    yield f"*EL PRINT, ELSET={EVERY_ELEMENT}"
+    yield "S, E"
     yield "*NODE FILE"
     yield "U, RF"
     yield "*EL FILE"
-    yield "S"
-    yield "*END STEP"
+    yield "S, E"
+
+
+def _output_of_abaqus() -> Iterator[str]:
+    """Fields for Abaqus's viewer; stresses and strains of layers are in the axes of their fibres there."""
+    yield "*OUTPUT, FIELD"
+    yield "*NODE OUTPUT"
+    yield "U, RF"
+    yield "*ELEMENT OUTPUT, DIRECTIONS=YES"
+    yield "S, E, SF, CFAILURE"
 
 
 def _about(nodes: Nodes, loads: Loads, given: bool) -> Iterator[str]:
@@ -161,13 +189,13 @@ def _around(points: Floats, rim: Rim, axis: Floats) -> Floats:
     return np.asarray(turned / max(float((np.cross(axis, points - rim.shares @ points) * turned).sum()), TINY))
 
 
-def _inside(elements: Elements, pressure: float) -> Iterator[str]:
+def _inside(shares: Floats, pressure: float) -> Iterator[str]:
     """Pressure along the outward normals, as large on each element as its inside has it."""
     yield "*DLOAD"
-    if elements.skin is elements.surface:
-        yield f"SHELL, P, {pressure:.9g}"
+    if (shares == 1.0).all():
+        yield f"{EVERY_ELEMENT}, P, {pressure:.9g}"
         return
-    for e, share in enumerate(elements.pressed, 1):
+    for e, share in enumerate(shares, 1):
         yield f"{e}, P, {pressure * share:.9g}"
 
 

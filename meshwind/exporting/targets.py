@@ -17,6 +17,7 @@ from meshwind.exporting.frames import Limits, write_frames
 from meshwind.exporting.material import DEFAULT, read_material
 from meshwind.exporting.ordered_frames import write_ordered_frames
 from meshwind.exporting.plies import laid_on, plies
+from meshwind.exporting.shell_about import fingerprint_of_run
 from meshwind.exporting.shell_deck import Deck, write_decks
 from meshwind.exporting.shell_groups import TOLERANCE
 from meshwind.exporting.shell_loads import Loads
@@ -133,7 +134,7 @@ def _deck(folder: Path, results: Results, options: ExportOptions) -> list[str]:
         )
     elements = _elements(results, options, 1000)
     laid = plies(results, elements, options.thickness, options.width)
-    about = results.units, results.name, options.loads, options.tolerance
+    about = results.units, results.name, options.loads, options.tolerance, fingerprint_of_run(results.folder)
     return write_decks(folder, Deck(elements, laid, read_material(options.material), *about))
 
 

@@ -7,7 +7,15 @@ from pathlib import Path
 
 from meshwind.core.errors import BadInputError
 from meshwind.core.spoken import argument
-from meshwind.results.schema import EXPORT_FOLDERS, EXPORTS, RESULTS
+from meshwind.results.schema import (
+    EXPORT_FOLDERS,
+    EXPORTS,
+    RESULTS,
+    SHELL,
+    SOLVED,
+    SOLVED_FIGURES,
+    SOLVED_PICTURE,
+)
 from meshwind.results.staging import staged
 
 
@@ -47,8 +55,8 @@ def writing(out: Path, overwrite: bool = False) -> Iterator[Path]:
 def beside(out: Path) -> Iterator[Path]:
     """Yield a folder for exports of a run; they move to `out` beside its other files at the end, or vanish on an error.
 
-    Files of the same name in `out` are replaced, and numbered files (path_007.csv) of an earlier export in a folder
-    of the same name are removed.  Other files stay.  Raises BadInputError if `out` cannot be written.
+    Files of the same name in `out` are replaced.  Numbered files (path_007.csv) of an earlier export in a folder of the
+    same name are removed, and with a new deck what was solved of an earlier one.  Other files stay.  Raises BadInputError if `out` cannot be written.
     """
     _not_a_file(out)
     with staged(out, lambda fresh: _outdated(out, fresh)) as staging:
@@ -94,7 +102,9 @@ def _held(out: Path, overwrite: bool) -> list[str]:
 
 
 def _outdated(out: Path, fresh: list[Path]) -> Iterator[Path]:
-    """Numbered files of an earlier export, of kinds that this one writes into the same folder."""
+    """Files of an earlier export: numbered ones of kinds that this one writes into a folder, and those of a deck."""
+    if Path(SHELL) in fresh:
+        yield from (Path(name) for name in (SOLVED, SOLVED_FIGURES, SOLVED_PICTURE) if (out / name).is_file())
     for top in {name.parts[0] for name in fresh if len(name.parts) > 1}:
         kinds = {name.name.rsplit("_", 1)[0] for name in fresh if name.parts[0] == top and "_" in name.name}
         for old in (out / top).iterdir() if (out / top).is_dir() else ():

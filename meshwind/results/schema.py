@@ -201,7 +201,10 @@ BEFORE, AFTER, SLICE, ROUNDS = picture("before"), picture("after"), picture("sli
 
 EDITED_STEP = File("edited.step")
 VIEWER = File("viewer.html")
-SHELL, SHELL_S4R = File("shell.inp"), File("shell_s4r.inp")
+SHELL, SHELL_S4R, SHELL_ABOUT = File("shell.inp"), File("shell_s4r.inp"), File("shell.json")
+"""Decks, and what a deck for CalculiX does not hold: run, unit of length, strengths."""
+SOLVED, SOLVED_FIGURES, SOLVED_PICTURE = File("solved.vtu"), File("solved.json"), picture("solved")
+"""What CalculiX makes of the deck: fields, figures and a picture."""
 STEP = File("surface.step")
 PROGRAM_CSV, PROGRAM_JSON, POSES = File("program.csv"), File("program.json"), File("poses.csv")
 PROGRAM_LEGEND = File("program_columns.csv")
@@ -292,7 +295,11 @@ SUFFIXES = {
 EXPORT_FOLDERS = FRAMES_FOLDER, FORMATS_FOLDER
 EXPORTS = re.compile(
     "|".join(
-        re.escape(name) for name in (SHELL, SHELL_S4R, FIBERS, FIBERS_LEGACY, STEP, POSES, AXES_PICTURE, HITS_PICTURE)
+        re.escape(name)
+        for name in (
+            (SHELL, SHELL_S4R, SHELL_ABOUT, SOLVED, SOLVED_FIGURES, SOLVED_PICTURE, FIBERS, FIBERS_LEGACY, STEP, POSES)
+            + (AXES_PICTURE, HITS_PICTURE)
+        )
     )
     + rf"|{PROGRAM_CSV.stem}(_\w+)?\.\w+"
     + rf"|{FRAMES_FOLDER}/(path_\d{{3,}}\.csv|layer_\d{{3,}}\.csv|{re.escape(ALL_FRAMES)}|{re.escape(FILAMENT_FRAMES)}"
