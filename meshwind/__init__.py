@@ -142,6 +142,8 @@ if TYPE_CHECKING:
     from meshwind.run.loaded import load as load
     from meshwind.run.redesign import write_redesign as write_redesign
     from meshwind.run.result import Result as Result
+    from meshwind.run.solve import Solution as Solution
+    from meshwind.run.solve import solve_deck as solve_deck
     from meshwind.run.wind import wind as wind
     from meshwind.studies.run import Swept as Swept
     from meshwind.studies.run import sweep as sweep
@@ -170,6 +172,7 @@ _HOME = {
     "read_cad": "exporting.cad_surface",
     "Redesign": "editing.redesign", "redesign": "editing.redesign", "write_redesign": "run.redesign",
     "Result": "run.result", "wind": "run.wind", "load": "run.loaded", "LoadedResult": "run.loaded",
+    "solve_deck": "run.solve", "Solution": "run.solve",
     "export": "run.export", "Exported": "exporting.targets", "sweep": "studies.run", "Swept": "studies.run",
     "render": "pictures.render", "Page": "pictures.page", "Picture": "pictures.picture",
     "draw_redesign": "pictures.redesign_scene",

@@ -25,6 +25,7 @@ ORDER = [
     "workflow",
     "editing",
     "exporting",
+    "solving",
     "pictures",
     "program",
     "run",

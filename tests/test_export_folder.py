@@ -136,9 +136,7 @@ def test_the_command_line(tmp_path: Path) -> None:
     lines = [line.split(None, 1) for line in done.stdout.splitlines()]
     assert {kind for kind, _ in lines} == {"note", "file"}
     decks = {"shell.inp", "shell_s4r.inp", "shell.json"}
-    assert {"fibers.vtu", "fibers.vtk", *decks, "frames", "formats"} == {
-        file.name for file in out.iterdir()
-    }
+    assert {"fibers.vtu", "fibers.vtk", *decks, "frames", "formats"} == {file.name for file in out.iterdir()}
     assert f"{out}/frames/path_000.csv and 31 more" in done.stdout
     assert "ply: no lines; paths and bridges are written as their points" in done.stdout
     assert json.loads((tmp_path / "report.json").read_text())["mesh"]["units"] == "mm"

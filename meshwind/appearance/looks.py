@@ -184,3 +184,7 @@ MAPS: dict[str, Look] = {
 """The scalar maps of surface.vtu."""
 LAMINATE = Look("thickness of the laminate", "thickness of\nall layers", schema.LENGTHS, SEQUENTIAL, from_zero)
 """The thickness of laminate.vtu, whose points are those of surface.vtu."""
+EXPOSURE = Look("exposure", "load over that\nwhich makes\na ply fail", "", "distance", from_zero)
+"""The exposure of solved.vtu."""
+MOVED = Look("displacement", "displacement", schema.LENGTHS, SEQUENTIAL, from_zero)
+"""The length of the displacements of solved.vtu."""

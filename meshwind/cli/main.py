@@ -12,7 +12,7 @@ from typing import NoReturn
 
 import typer
 
-from meshwind.cli import check, compile, export, info, program, redesign, render, sweep, wind
+from meshwind.cli import check, compile, export, info, program, redesign, render, solve, sweep, wind
 from meshwind.cli.help import Command, Group
 from meshwind.core.errors import BadInputError
 from meshwind.core.spoken import as_command
@@ -62,6 +62,7 @@ app.command(cls=Command, short_help="Change a mesh until no fibre bridges.", epi
 app.command(cls=Command, short_help="Wind many cases from one study.", epilog=sweep.EXAMPLES)(sweep.sweep)
 app.command(cls=Command, short_help="Draw the pictures of a run.", epilog=render.EXAMPLES)(render.render)
 app.command(cls=Command, short_help="Write results for solvers, robots and CAD.", epilog=export.EXAMPLES)(export.export)
+app.command(cls=Command, short_help="Solve the shell deck of a run.", epilog=solve.EXAMPLES)(solve.solve)
 app.command(cls=Command, short_help="Write the program of a winding machine.", epilog=program.EXAMPLES)(program.program)
 app.command(cls=Command, short_help="Compile all kernels ahead.", epilog=compile.EXAMPLES)(compile.compile)
 app.command(cls=Command, short_help="Describe a mesh, a run or this installation.", epilog=info.EXAMPLES)(info.info)

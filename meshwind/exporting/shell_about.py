@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from meshwind.core.errors import BadInputError
-from meshwind.core.spoken import called
+from meshwind.core.spoken import argument, called
 from meshwind.exporting.material import INTERACTION, STRENGTHS, Material
 from meshwind.results.schema import LAYER_SURFACES, PATHS, SPLINE
 
@@ -58,6 +58,11 @@ def fingerprint_of_run(folder: Path) -> str:
     return sha256("".join(map(fingerprint, files)).encode("ascii")).hexdigest()[:_DIGITS]
 
 
+def again() -> str:
+    """What writes a deck, for messages."""
+    return f"{called('export')} with {argument('to', 'inp')}"
+
+
 def write_about(file: Path, about: About) -> None:
     """Write the file."""
     material = about.material
@@ -79,7 +84,6 @@ def write_about(file: Path, about: About) -> None:
 
 def read_about(file: Path) -> ReadAbout:
     """Read the file; raises BadInputError if it is not there or is damaged."""
-    again = f"export the deck again: {called('export')}"
     try:
         held: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
         material = held["material"]
@@ -87,9 +91,11 @@ def read_about(file: Path) -> ReadAbout:
         if strengths and (set(strengths) != set(STRENGTHS) or min(strengths.values()) <= 0.0):
             raise ValueError
         words = str(material["words"] or material["name"])
-        texts = (str(held[name]) for name in ("part", "units", "run", "deck"))
-        return ReadAbout(*texts, words, Strengths(strengths, float(material[INTERACTION])))
+        part, units, run, deck = (str(held[name]) for name in ("part", "units", "run", "deck"))
+        return ReadAbout(part, units, run, deck, words, Strengths(strengths, float(material[INTERACTION])))
     except FileNotFoundError as error:
-        raise BadInputError(f"{file} is missing, which says the strengths of the deck; {again}") from error
+        raise BadInputError(
+            f"{file} is missing, which says the strengths of the deck; write it again: {again()}"
+        ) from error
     except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
-        raise BadInputError(f"{file} is damaged; {again}") from error
+        raise BadInputError(f"{file} is damaged; write it again: {again()}") from error

@@ -56,7 +56,8 @@ def beside(out: Path) -> Iterator[Path]:
     """Yield a folder for exports of a run; they move to `out` beside its other files at the end, or vanish on an error.
 
     Files of the same name in `out` are replaced.  Numbered files (path_007.csv) of an earlier export in a folder of the
-    same name are removed, and with a new deck what was solved of an earlier one.  Other files stay.  Raises BadInputError if `out` cannot be written.
+    same name are removed, and with a new deck what was solved of an earlier one.  Other files stay.
+    Raises BadInputError if `out` cannot be written.
     """
     _not_a_file(out)
     with staged(out, lambda fresh: _outdated(out, fresh)) as staging:

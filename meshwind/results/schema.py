@@ -203,8 +203,13 @@ EDITED_STEP = File("edited.step")
 VIEWER = File("viewer.html")
 SHELL, SHELL_S4R, SHELL_ABOUT = File("shell.inp"), File("shell_s4r.inp"), File("shell.json")
 """Decks, and what a deck for CalculiX does not hold: run, unit of length, strengths."""
-SOLVED, SOLVED_FIGURES, SOLVED_PICTURE = File("solved.vtu"), File("solved.json"), picture("solved")
-"""What CalculiX makes of the deck: fields, figures and a picture."""
+MPA = "MPa"
+EXPOSURE, TSAI_WU = Field("exposure"), Field("tsai_wu")
+"""Of an element's point nearest to failure: the load over that which makes it fail, and the criterion's value."""
+WORST_PLY, WORST_LAYER, WORST_FAMILY = (Field(f"worst_{name}", dtype="int64") for name in ("ply", "layer", "family"))
+SOLVED = File("solved.vtu", (DISPLACEMENT,), (EXPOSURE, TSAI_WU, WORST_PLY, WORST_LAYER, WORST_FAMILY, NORMAL))
+"""What CalculiX makes of the deck, beside thickness and the fields of each ply."""
+SOLVED_FIGURES, SOLVED_PICTURE = File("solved.json"), picture("solved")
 STEP = File("surface.step")
 PROGRAM_CSV, PROGRAM_JSON, POSES = File("program.csv"), File("program.json"), File("poses.csv")
 PROGRAM_LEGEND = File("program_columns.csv")
@@ -247,6 +252,21 @@ def layer_family_fields(layer: int, family: int) -> LayerFamilyFields:
     return LayerFamilyFields(
         Field(f"fibre_{layer}_{number}", columns=3), Field(f"angle_{layer}_{number}", DEGREES)
     )  # fmt: skip
+
+
+class PlyFields(NamedTuple):
+    """The fields of a layer's family in the file of a solved deck; stress and strain are those 11, 22, 12."""
+
+    direction: Field
+    stress: Field
+    strain: Field
+
+
+def ply_fields(layer: int, family: int) -> PlyFields:
+    """The fields of a layer, the first being number 1, and of its family, +1 numbered 1 and -1 numbered 2."""
+    names = layer_family_fields(layer, family)
+    ends = names.direction.removeprefix("fibre")
+    return PlyFields(names.direction, Field(f"stress{ends}", MPA, columns=3), Field(f"strain{ends}", columns=3))
 
 
 U, V = Field("u"), Field("v")

@@ -1,0 +1,1 @@
+"""Solving a shell deck with CalculiX, and what its stresses mean for the plies."""
