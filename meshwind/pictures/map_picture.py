@@ -1,18 +1,21 @@
-"""Pictures of maps: the part coloured by a map, with a scale and, if the scene has them, fans of directions."""
+"""Pictures of maps: the part coloured by a map, with a scale and, if the scene has them, fans of directions
+and a ring round the worst place."""
 
 from typing import Any
 
 import numpy as np
 import pyvista as pv
 
-from meshwind.appearance.looks import colour_map
+from meshwind.appearance.looks import SIGNAL, colour_map
 from meshwind.core.cast import Floats
 from meshwind.pictures import bodies, camera, canvas
 from meshwind.pictures.page import Page
-from meshwind.pictures.scenes import Fans, MapScene
+from meshwind.pictures.scenes import Fans, MapScene, Spot
 
 _ARC = 12
 """Segments of a fan's arc."""
+_LIFT, _INNER, _AROUND = 0.3, 0.72, 48
+"""Of a ring: its distance from the part and its inner radius, over its radius, and its number of segments."""
 
 
 def draw(window: Any, scene: MapScene, page: Page) -> Any:
@@ -22,14 +25,25 @@ def draw(window: Any, scene: MapScene, page: Page) -> Any:
     fans = scene.fans if scene.fans is not None and len(scene.fans.points) else None
     if fans is not None:
         add_fans(window, fans, view.eye)
+    if scene.worst is not None:
+        add_ring(window, scene.worst)
     image = camera.portrait(window, page, view, scene.part.points)
     pen = canvas.titled(image, page, scene.frame)
     if fans is not None:
         canvas.note(pen, page, ["fans: directions", "that press; none", "where nearly all do"])
+    if scene.worst is not None:
+        canvas.note(pen, page, list(scene.worst.words))
     canvas.scale_bar(image, pen, page, scene.scale)
     canvas.ruler(pen, page, canvas.fitting(page, view), scene.frame.units)
     canvas.axes(pen, page, view)
     return image
+
+
+def add_ring(window: Any, spot: Spot) -> None:
+    """Add a flat ring round a place, lifted so that the part does not cut it."""
+    centre = spot.point + _LIFT * spot.size * spot.normal
+    ring = pv.Disc(center=centre, inner=_INNER * spot.size, outer=spot.size, normal=spot.normal, c_res=_AROUND)
+    window.add_mesh(ring, color=SIGNAL, lighting=False, render=False)
 
 
 def add_fans(window: Any, fans: Fans, eye: Floats) -> None:

@@ -114,14 +114,28 @@ class Fans:
 
 
 @dataclass(frozen=True)
+class Spot:
+    """A place (3,) on the part with the outward unit normal (3,) there, the radius of its ring, and what it is."""
+
+    point: Floats
+    normal: Floats
+    size: float
+    words: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class MapScene:
-    """A map on the part: positions of its values on the scale (k,) and, if it has them, fans of directions."""
+    """A map on the part: positions of its values on the scale (k,) and, if it has them, fans of directions.
+
+    worst: the place that the picture is about, which gets a ring.
+    """
 
     frame: Frame
     part: Part
     scale: Scale
     shares: Floats
     fans: Fans | None = None
+    worst: Spot | None = None
 
 
 @dataclass(frozen=True)

@@ -77,6 +77,13 @@ class ReadDeck:
         corner = self.points[self.faces]
         return unit(np.cross(corner[:, 2] - corner[:, 0], corner[:, 3] - corner[:, 1]))
 
+    @cached_property
+    def normal_at(self) -> Floats:
+        """Outward unit normal (n, 3) at corners, the mean of their elements'."""
+        total = np.zeros_like(self.points)
+        np.add.at(total, self.faces, self.normal[:, None])
+        return unit(total)
+
     def direction(self, axes: str) -> Floats:
         """Unit vector (3,) along the fibres of axes by name."""
         return unit(self.axes[axes][:1])[0]

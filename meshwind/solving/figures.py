@@ -29,7 +29,7 @@ class Failure(Place):
 
     exposure: the load over that at which it fails; load_factor: 1 over it, None without stress; tsai_wu: the
     criterion's polynomial; ply of plies of the element from the inside out, its layer and family; stress: 11, 22, 12 in
-    MPa.
+    MPa; thickness of the element.
     """
 
     exposure: float
@@ -41,6 +41,7 @@ class Failure(Place):
     family: int
     stress: list[float]
     from_rim: float
+    thickness: float
 
 
 class Moved(Place):
@@ -115,6 +116,7 @@ def _failure(done: Solved, among: Ints, from_rim: Floats) -> Failure:
         "at": done.deck.centre[e].tolist(),
         "number": e + 1,
         "from_rim": float(from_rim[e]),
+        "thickness": float(done.thickness[e]),
     }
 
 
@@ -162,7 +164,8 @@ def lines(made: SolvedFigures) -> list[str]:
 
 
 def _words(found: Failure, units: str) -> str:
-    place = f"element {found['number']} at {_at(found['at'])}, {quantity(found['from_rim'], units, 2)} from a rim"
+    away, thick = quantity(found["from_rim"], units, 2), quantity(found["thickness"], units, 2)
+    place = f"element {found['number']} at {_at(found['at'])}, {thick} thick, {away} from a rim"
     return f"{found['exposure']:.3g} in {which(found)}, {place}"
 
 
