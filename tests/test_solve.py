@@ -11,11 +11,12 @@ from export_results import laminate, layered_results, leave, waisted_results
 from layup_shapes import cylinder, helices
 
 import meshwind as mw
-from meshwind.core.cast import Floats
+from meshwind.core.cast import Bools, Floats
 from meshwind.exporting.material import Material, read_material
 from meshwind.exporting.shell_about import Strengths, read_about
 from meshwind.results.schema import SHELL, SHELL_ABOUT, SOLVED, SOLVED_FIGURES
 from meshwind.solving.deck import ReadDeck, read_deck
+from meshwind.solving.figures import SolvedFigures
 from meshwind.solving.tsai_wu import index
 
 BAND = 0.02
@@ -32,8 +33,8 @@ class Tube:
 
     deck: ReadDeck
     data: dict[str, Floats]
-    figures: dict[str, object]
-    inside: np.ndarray
+    figures: SolvedFigures
+    inside: Bools
 
     def mean(self, name: str) -> Floats:
         return np.asarray(self.data[name][self.inside].mean(axis=0))
@@ -50,14 +51,15 @@ class Tube:
         return float(np.arctan2((fibre * around).sum(axis=1), fibre[:, 2]).mean())
 
 
-def tube(folder: Path, turns: float, material: str, **loads: float) -> Tube:
+def tube(folder: Path, turns: float, material: str, loads: dict[str, float]) -> Tube:
     leave(folder, helices(16, turns, 401, cylinder(64)))
-    mw.export(folder, "inp", thickness=BAND, elements=300, material=material, held="none", **loads)
+    deck = {"thickness": BAND, "elements": 300, "material": material, "held": "none", **loads}
+    mw.export(folder, "inp", **deck)  # type: ignore[arg-type]
     done = mw.solve_deck(folder, render=False)
     assert [file.name for file in done.files] == [SOLVED_FIGURES, SOLVED]
     deck = read_deck(folder / SHELL)
     data = {name: values[0] for name, values in meshio.read(folder / SOLVED).cell_data.items()}
-    return Tube(deck, data, dict(done.figures), np.abs(deck.centre[:, 2] - 2.0) < 0.8)
+    return Tube(deck, data, done.figures, np.abs(deck.centre[:, 2] - 2.0) < 0.8)
 
 
 def reduced(m: Material) -> Floats:
@@ -80,7 +82,7 @@ def plies_of(tube: Tube, m: Material, forces: Floats) -> dict[int, tuple[Floats,
     wall = sum(0.5 * tube.thickness * turn(a).T @ q @ turn(a) for a in (angle, -angle))
     strain = np.linalg.solve(wall, forces)
     # from z to around is a turn about the inward normal, while axis 2 of a ply is square to 1 about the outward one
-    own = {family: (1.0, 1.0, -1.0) * (turn(family * angle) @ strain) for family in (1, -1)}
+    own = {family: np.array([1.0, 1.0, -1.0]) * (turn(family * angle) @ strain) for family in (1, -1)}
     return {family: (each, q @ each) for family, each in own.items()}
 
 
@@ -96,7 +98,7 @@ def test_plies_have_the_stresses_of_laminate_theory(
     tmp_path: Path, loads: dict[str, float], forces: tuple[float, float, float]
 ) -> None:
     """A tube of +-54.7 degrees, radius 1: under p the forces are p / 2 along and p around, with their signs."""
-    found = tube(tmp_path, TURN, "e-glass-epoxy", **loads)
+    found = tube(tmp_path, TURN, "e-glass-epoxy", loads)
     assert np.degrees(abs(found.angle)) == pytest.approx(54.7356, abs=0.3)
     m = read_material("e-glass-epoxy")
     for family, (strain, stress) in plies_of(found, m, np.array(forces)).items():
@@ -117,10 +119,10 @@ def test_plies_have_the_stresses_of_laminate_theory(
 
 def test_a_tube_of_dry_tow_is_a_net(tmp_path: Path) -> None:
     """At 54.7 degrees fibres alone bear 2 to 1: p R = t s sin^2, p R / 2 = t s cos^2; without strengths no index."""
-    found = tube(tmp_path, TURN, "dry-tow", pressure=0.8)
+    found = tube(tmp_path, TURN, "dry-tow", {"pressure": 0.8})
     assert found.mean("stress_1_1")[0] == pytest.approx(1.5 * 0.8 / found.thickness, rel=0.02)
     assert "exposure" not in found.data and "largest" not in found.figures
-    assert any("no strengths are known" in note for note in found.figures["notes"])  # type: ignore[union-attr]
+    assert any("no strengths are known" in note for note in found.figures["notes"])
 
 
 def test_an_isotropic_tube_has_the_stresses_of_boiler_formula(tmp_path: Path) -> None:

@@ -7,7 +7,8 @@ from scipy.spatial import cKDTree
 
 from meshwind.appearance.words import quantity
 from meshwind.core.cast import Floats, Ints
-from meshwind.exporting.shell_about import ReadAbout
+from meshwind.core.errors import BadInputError
+from meshwind.exporting.shell_about import ReadAbout, again
 from meshwind.results.schema import SHELL
 from meshwind.solving.fields import Solved
 
@@ -72,8 +73,16 @@ class SolvedFigures(TypedDict):
 
 
 def figures(done: Solved, about: ReadAbout, deck: str) -> SolvedFigures:
-    """The figures; deck: the fingerprint of the deck that was solved."""
+    """The figures; deck: the fingerprint of the deck that was solved.
+
+    Raises BadInputError if the part moves by more than its size, as a part that nothing holds does.
+    """
     node = int(done.moved.argmax())
+    if (most := float(done.moved[node])) > _size(done):
+        raise BadInputError(
+            f"the part moves by {quantity(most, about.units, 3)}, more than its size: it is not held, or the "
+            f"load is far too large; see the step of {SHELL}, or write it again: {again()}"
+        )
     from_rim, edge = _from_rim(done)
     made: SolvedFigures = {
         "part": about.name,
@@ -128,6 +137,11 @@ def _from_rim(done: Solved) -> tuple[Floats, float]:
     return np.asarray(away), _EDGE * float(np.sqrt(radius * np.median(done.thickness)))
 
 
+def _size(done: Solved) -> float:
+    """Diagonal of the part."""
+    return float(np.linalg.norm(np.ptp(done.deck.points, axis=0)))
+
+
 def _notes(done: Solved, about: ReadAbout, deck: str) -> list[str]:
     """What a user should know."""
     notes = []
@@ -135,7 +149,7 @@ def _notes(done: Solved, about: ReadAbout, deck: str) -> list[str]:
         notes.append(f"{SHELL} was changed after its export; strengths are those of its export")
     if done.worst is None:
         notes.append(f"no strengths are known of {about.material}, so that there is no index of failure")
-    size = float(np.linalg.norm(np.ptp(done.deck.points, axis=0)))
+    size = _size(done)
     most = max(float(np.nanmax(np.abs(fields.strain))) for fields in done.plies.values())
     if done.deck.curved:
         notes.append("the deck is geometrically nonlinear, so that stresses do not grow in proportion with the load")
@@ -143,7 +157,7 @@ def _notes(done: Solved, about: ReadAbout, deck: str) -> list[str]:
         moved = 100.0 * float(done.moved.max()) / size
         notes.append(
             f"displacements reach {moved:.2g} % of the part and strains {100.0 * most:.2g} %: "
-            "too much for a linear solution; see that the load is meant, and in its unit"
+            "too much for a linear solution; see that the load is meant and in its unit, and that the part is held"
         )
     return notes
 

@@ -62,9 +62,10 @@ def _last(text: bytes) -> dict[str, bytes]:
     """The last table of each kind, of the set of all."""
     heads = list(_HEAD.finditer(text))
     found: dict[str, bytes] = {}
-    for head, after in zip(heads, [*(each.start() for each in heads[1:]), len(text)], strict=True):
+    ends = [*(head.start() for head in heads), len(text)][1:]
+    for head, end in zip(heads, ends, strict=True):
         if head[2] in (b"NALL", b"SHELL"):
-            found[head[1].decode()] = text[head.end() : after]
+            found[head[1].decode()] = text[head.end() : end]
     return found
 
 
