@@ -63,7 +63,8 @@ def test_check(tmp_path: Path) -> None:
 def test_export(tmp_path: Path) -> None:
     waisted_results(tmp_path)
     printed = read(meshwind("export", tmp_path, "--to", "fibers,inp", "--thickness", "0.01", "--json"))
-    assert {Path(file).name for file in printed["files"]} == {"fibers.vtu", "fibers.vtk", "shell.inp", "shell_s4r.inp"}
+    decks = {"shell.inp", "shell.json", "shell_s4r.inp"}
+    assert {Path(file).name for file in printed["files"]} == {"fibers.vtu", "fibers.vtk", *decks}
     assert all(Path(file).is_file() for file in printed["files"])
     assert any("elements" in note for note in printed["notes"])
 

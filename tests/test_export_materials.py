@@ -10,8 +10,9 @@ from export_results import plain_results
 from meshwind.cli import export as command
 from meshwind.core.errors import BadInputError
 from meshwind.exporting.material import STRENGTHS, Material, material_names, read_material
+from meshwind.exporting.shell_about import read_about
 from meshwind.exporting.targets import ExportOptions, write_exports
-from meshwind.results.schema import SHELL, SHELL_S4R
+from meshwind.results.schema import SHELL, SHELL_ABOUT, SHELL_S4R
 
 OWN = "e1 = 40000\ne2 = 12000\nnu12 = 0.3\nnu23 = 0.4\ng12 = 4000\ndensity = 2000\n"
 
@@ -40,6 +41,19 @@ def test_the_default_is_t700_and_help_names_all() -> None:
     assert not read_material("dry-tow").strengths
 
 
+def test_interaction_and_strengths_come_from_the_file(tmp_path: Path) -> None:
+    """Also in metres: stresses in Pa."""
+    (tmp_path / "own.toml").write_text(OWN + "xt = 1000\nxc = 600\nyt = 40\nyc = 150\ns = 60\ninteraction = -0.2\n")
+    plain_results(tmp_path, "m")
+    asked = ExportOptions(count=100, thickness=0.01, material=str(tmp_path / "own.toml"))
+    write_exports(tmp_path, ("inp",), options=asked)
+    assert (
+        "*FAIL STRESS\n1e+09, -600000000, 40000000, -150000000, 60000000, -0.2\n" in (tmp_path / SHELL_S4R).read_text()
+    )
+    about = read_about(tmp_path / SHELL_ABOUT)
+    assert (about.strengths.of["xc"], about.strengths.interaction, about.units) == (600.0, -0.2, "m")
+
+
 def test_decks_have_the_material_of_a_file_and_say_its_sources(tmp_path: Path) -> None:
     plain_results(tmp_path)
     (tmp_path / "2 glass.toml").write_text(OWN + "[sources]\ne1 = 'coupons of our own'\n")
@@ -57,6 +71,9 @@ def test_decks_have_the_material_of_a_file_and_say_its_sources(tmp_path: Path) -
             wanted = read_material(material)
             assert list(map(float, after[1].rstrip(",").split(","))) == pytest.approx(wanted.moduli("mm")[:8])
             assert float(after[after.index("*DENSITY") + 1]) == pytest.approx(wanted.density)
+            assert ("*FAIL STRESS\n1280, -800, 40, -145, 73, -0.5\n" in text) == (
+                deck == SHELL_S4R and bool(wanted.strengths)
+            )
 
 
 @pytest.mark.parametrize(
@@ -68,6 +85,7 @@ def test_decks_have_the_material_of_a_file_and_say_its_sources(tmp_path: Path) -
         (OWN.replace("nu23 = 0.4", "nu23 = 1.0"), "not stable: nu23 is 1"),
         (OWN + "youngs = 3", "has no 'youngs'"),
         (OWN + "xt = 3", "no xc; give all of"),
+        (OWN + "interaction = -1", "interaction of .* is -1; give a number between -1 and 1"),
         (OWN + "words = 3", "words of .* is 3"),
         (OWN + "sources = 3", "give \\[sources\\]"),
     ],

@@ -17,7 +17,7 @@ from meshwind.program.targets import write_program
 DATA = Path(__file__).parents[1] / "data"
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     "wind": mw.wind, "check": mw.check, "redesign": mw.redesign, "render": mw.render, "export": mw.export,
-    "sweep": mw.sweep, "program": write_program,
+    "sweep": mw.sweep, "program": write_program, "solve": mw.solve_deck,
 }  # fmt: skip
 OTHERWISE = {"frozen": "freeze"}
 """Names of arguments that the command has another name for."""
@@ -46,7 +46,7 @@ def defaults(command: str) -> dict[str, tuple[Any, Any]]:
 @pytest.mark.parametrize("command", FUNCTIONS)
 def test_defaults_are_those_of_the_command(command: str) -> None:
     both = defaults(command)
-    assert len(both) >= {"program": 6, "sweep": 4, "render": 3}.get(command, 6)
+    assert len(both) >= {"program": 6, "sweep": 4, "render": 3, "solve": 3}.get(command, 6)
     for name, (mine, its) in both.items():
         if (command, name) not in APART:
             same = mine == its or str(mine) == its  # a number that may be a word is a text on the command line

@@ -53,8 +53,8 @@ class Tube:
 
 def tube(folder: Path, turns: float, material: str, loads: dict[str, float]) -> Tube:
     leave(folder, helices(16, turns, 401, cylinder(64)))
-    deck = {"thickness": BAND, "elements": 300, "material": material, "held": "none", **loads}
-    mw.export(folder, "inp", **deck)  # type: ignore[arg-type]
+    asked = {"thickness": BAND, "elements": 300, "material": material, "held": "none", **loads}
+    mw.export(folder, "inp", **asked)  # type: ignore[arg-type]
     done = mw.solve_deck(folder, render=False)
     assert [file.name for file in done.files] == [SOLVED_FIGURES, SOLVED]
     deck = read_deck(folder / SHELL)

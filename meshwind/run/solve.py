@@ -45,7 +45,7 @@ class Solution:
     --------
     >>> import meshwind as mw
     >>> result = mw.wind("data/tank.ply", paths=12, out="out", render=False)
-    >>> done = mw.export("out", "inp", thickness=0.4, elements=300, pressure=1, held="none")
+    >>> done = mw.export("out", "inp", thickness=0.4, elements=300, axial=100)
     >>> mw.solve_deck("out", render=False).figures["largest"]["load_factor"] > 1
     True
     """
@@ -100,7 +100,7 @@ def solve_deck(
     --------
     >>> import meshwind as mw
     >>> result = mw.wind("data/tank.ply", paths=12, out="out", render=False)
-    >>> done = mw.export("out", "inp", thickness=0.4, elements=300, pressure=1, held="none")
+    >>> done = mw.export("out", "inp", thickness=0.4, elements=300, axial=100)
     >>> solution = mw.solve_deck("out", render=False)
     >>> [file.name for file in solution.files]
     ['solved.json', 'solved.vtu']
