@@ -12,7 +12,7 @@ from meshwind.core.cast import Floats
 from meshwind.pictures.scenes import Frame, MapScene, Part, Spot
 from meshwind.solving.deck import ReadDeck
 from meshwind.solving.fields import Solved
-from meshwind.solving.figures import SolvedFigures, loaded, which
+from meshwind.solving.figures import SolvedFigures, loaded
 
 _RING = 0.03
 """Radius of the ring, over the longer side of what is seen."""
@@ -31,8 +31,7 @@ def solved_scene(done: Solved, made: SolvedFigures) -> MapScene:
         title, subtitle = "displacement", f"{moved}; no strengths are known of {made['material']}"
     else:
         values, look = np.repeat(done.worst.exposure, 4), EXPOSURE
-        where = f"{quantity(largest['from_rim'], units, 2)} from a rim"
-        title, subtitle = "Tsai-Wu index of the worst ply", f"{loaded(largest)}: {which(largest)}, {where}  ·  {moved}"
+        title, subtitle = "Tsai-Wu index of the worst ply", f"{loaded(made)}  ·  {moved}"
     scale = look.scale(values, units)
     frame = Frame(f"{made['part']}: {title}", subtitle, units, _view(deck, values))
     return MapScene(frame, _part(deck), scale, scale.shares(values), worst=_ring(done, made, frame.view))
@@ -43,7 +42,8 @@ def _ring(done: Solved, made: SolvedFigures, view: View) -> Spot:
     size, largest = _RING * max(view.width, view.height), made.get("largest")
     if largest is not None:
         e = largest["number"] - 1
-        return Spot(done.deck.centre[e], done.deck.normal[e], size, ("ring: where the", "first ply fails"))
+        ply = f"ply {largest['ply']} of {largest['plies']}", f"layer {largest['layer']}, family {largest['family']:+d}"
+        return Spot(done.deck.centre[e], done.deck.normal[e], size, ("ring: fails first", *ply))
     node = made["moved"]["number"] - 1
     return Spot(done.deck.points[node], done.deck.normal_at[node], size, ("ring: where it", "moves most"))
 

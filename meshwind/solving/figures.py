@@ -173,18 +173,17 @@ def lines(made: SolvedFigures) -> list[str]:
         if inside is not None and inside["number"] != largest["number"]:
             edge = quantity(made["edge"], units, 2)
             out.append(f"          further than {edge} from the rims {_words(inside, units)}")
-        out.append(f"load      {loaded(largest)}")
+        out.append(f"load      {loaded(made)}")
     return out
 
 
 def _words(found: Failure, units: str) -> str:
     away, thick = quantity(found["from_rim"], units, 2), quantity(found["thickness"], units, 2)
     place = f"element {found['number']} at {_at(found['at'])}, {thick} thick, {away} from a rim"
-    return f"{found['exposure']:.3g} in {which(found)}, {place}"
+    return f"{found['exposure']:.3g} in {_which(found)}, {place}"
 
 
-def which(found: Failure) -> str:
-    """The ply in words."""
+def _which(found: Failure) -> str:
     return f"ply {found['ply']} of {found['plies']} (layer {found['layer']}, family {found['family']:+d})"
 
 
@@ -194,12 +193,16 @@ def _stressed(found: Failure, interaction: float) -> str:
     return f"{there}; Tsai-Wu, F12 = {interaction:g} sqrt(F11 F22)"
 
 
-def loaded(found: Failure) -> str:
-    """At what multiple of the load the first ply fails, in words."""
-    factor = found["load_factor"]
-    if factor is None:
+def loaded(made: SolvedFigures) -> str:
+    """At what multiples of the load the first ply fails, anywhere and beyond the reach of the rims, in words."""
+    largest, inside = made.get("largest"), made.get("inside")
+    factor = None if largest is None else largest["load_factor"]
+    if largest is None or factor is None:
         return "no ply has any stress"
-    return f"the first ply fails at {factor:.3g} times the load" + (", so it fails" if factor < 1.0 else "")
+    words = f"the first ply fails at {factor:.3g} times the load"
+    if inside is not None and inside["number"] != largest["number"] and inside["load_factor"] is not None:
+        words += f", beyond the reach of the rims at {inside['load_factor']:.3g} times"
+    return words
 
 
 def _at(point: list[float]) -> str:
