@@ -50,6 +50,7 @@ def _as_property(value: object) -> Any:
     return value.fget if isinstance(value, property) else value.func if isinstance(value, cached_property) else None
 
 
+SOLVES = {"solve_deck", "Solution"}
 DRAWS = {"render", "draw_redesign", "Views.plot", "Picture", "Picture.save"}
 PUBLIC = dict(documented())
 WHOLE = [name for name, shown in PUBLIC.items() if not _as_property(shown)]
@@ -115,7 +116,7 @@ def test_defaults_are_those_of_the_signature(name: str) -> None:
 
 
 @pytest.mark.usefixtures("folder")
-@pytest.mark.parametrize("name", sorted(set(WHOLE) - DRAWS))
+@pytest.mark.parametrize("name", sorted(set(WHOLE) - DRAWS - SOLVES))
 def test_examples_run(name: str) -> None:
     assert _failures(name) == ""
 
@@ -123,6 +124,12 @@ def test_examples_run(name: str) -> None:
 @pytest.mark.usefixtures("opengl", "folder")
 @pytest.mark.parametrize("name", sorted(DRAWS))
 def test_examples_that_draw_run(name: str) -> None:
+    assert _failures(name) == ""
+
+
+@pytest.mark.usefixtures("calculix", "folder")
+@pytest.mark.parametrize("name", sorted(SOLVES))
+def test_examples_that_solve_run(name: str) -> None:
     assert _failures(name) == ""
 
 
