@@ -1,11 +1,11 @@
-"""Put the results of the scripts into README: its tables, and the figures in its sentences.
+"""Put the results of the scripts into README and the site: their tables, and the figures in their sentences.
 
     python examples/readme_tables.py --keep out/*
 
---keep takes the tables that README needs from folders of results and keeps them in `benchmarks/results`, and its charts
-in `gallery`; without it README is made from what is kept.  `benchmarks/claims.csv` then says which lines of which
-table, or which test, each table and sentence rests on.  `tests/test_readme_figures.py` fails where README is another
-than this makes it.
+--keep takes the tables that the pages need from folders of results and keeps them in `benchmarks/results`, and their
+charts in `gallery`; without it the pages are made from what is kept.  `benchmarks/claims.csv` then says which lines of
+which table, or which test, each table and sentence rests on.  `tests/test_readme_figures.py` fails where a page is
+another than this makes it.
 """
 
 import argparse
@@ -15,28 +15,28 @@ import shutil
 from pathlib import Path
 
 from gallery import small
+from readme.documents import ROOT, documents
 from readme.kept import RESULTS, Kept
 from readme.page import filled, traced, untrue
 from readme.tables import NEEDED
 
-README = Path(__file__).parents[1] / "README.md"
 GALLERY = Path(__file__).parent / "gallery"
 PICTURES = {
     "speed_and_accuracy": "speed_and_accuracy",
     "time_step": "stability",
     "rough_mesh_to_surface": "rough_meshes",
 }
-"""Charts that README shows, by the names of their files, and what they are called there."""
+"""Charts that the pages show, by the names of their files, and what they are called there."""
 CLAIMS = RESULTS.with_name("claims.csv")
 
 
 def keep(folder: Path) -> list[str]:
-    """Copy the tables and charts that README needs from a folder of results, whose run must have been a whole one."""
+    """Copy the tables and charts that the pages need from a folder of results, whose run must have been a whole one."""
     report = folder / "results.json"
     if not report.is_file():
         return []
     if json.loads(report.read_text(encoding="utf-8"))["quick"]:
-        raise SystemExit(f"{folder} is of a quick run; README shows whole ones")
+        raise SystemExit(f"{folder} is of a quick run; the pages show whole ones")
     names = [name for name in NEEDED if (folder / f"{name}.csv").is_file()]
     for name in names:
         shutil.copyfile(folder / f"{name}.csv", RESULTS / f"{name}.csv")
@@ -47,14 +47,14 @@ def keep(folder: Path) -> list[str]:
 
 
 def main() -> None:
-    """Keep results, write README and the table of claims."""
+    """Keep results, write the pages and the table of claims."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--keep", type=Path, nargs="+", default=[], help="folders of results to take tables from")
     given = parser.parse_args()
     for folder in given.keep:
-        print(f"{folder}: {', '.join(keep(folder)) or 'nothing that README needs'}")
-    page = filled(README.read_text(encoding="utf-8"), Kept())
-    README.write_text(page, encoding="utf-8")
+        print(f"{folder}: {', '.join(keep(folder)) or 'nothing that a page needs'}")
+    for name, text in filled(documents(), Kept()).items():
+        (ROOT / name).write_text(text, encoding="utf-8")
     rows = list(traced())
     with CLAIMS.open("w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, ["claim", "rests on"], lineterminator="\n")

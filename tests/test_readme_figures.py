@@ -1,19 +1,19 @@
-"""README's tables and figures are those of the results that are kept, and each is traced to its lines or its test."""
+"""Tables and figures of README and the site are those of the results that are kept, and each is traced to its lines or its test."""
 
 import ast
 import csv
 import re
-from pathlib import Path
 
 import pytest
 from readme.claims import CLAIMS, TESTED, Claim
+from readme.documents import ROOT, documents
 from readme.kept import RESULTS, Kept, spans
-from readme.page import TABLE, filled, pattern, traced, untrue
+from readme.page import TABLE, filled, once, pattern, traced, untrue
 from readme.tables import NEEDED, TABLES
 from readme.words import figure, span
 
-ROOT = Path(__file__).parents[1]
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGES = documents()
+ALL = "\n".join(PAGES.values())
 AGAIN = "; run python examples/readme_tables.py"
 
 
@@ -23,14 +23,14 @@ def flat(text: str) -> str:
 
 @pytest.mark.parametrize("name", TABLES)
 def test_tables_are_made_from_what_is_kept(name: str) -> None:
-    found = re.search(TABLE.format(name), README, re.DOTALL)
-    assert found, f"README has no table {name}"
+    found = re.search(TABLE.format(name), ALL, re.DOTALL)
+    assert found, f"no page has the table {name}"
     assert f"{found[1]}{TABLES[name](Kept())}{found[2]}" == found[0], f"the table {name} is another" + AGAIN
 
 
 @pytest.mark.parametrize("claim", CLAIMS, ids=lambda claim: claim.figures.__name__)
 def test_sentences_have_the_figures_of_what_is_kept(claim: Claim) -> None:
-    assert flat(claim.text.format(*claim.figures(Kept()))) in flat(README), AGAIN
+    assert flat(claim.text.format(*claim.figures(Kept()))) in flat(ALL), AGAIN
     assert claim.holds(Kept()), f"the results do not bear out: {claim.text}"
 
 
@@ -57,20 +57,24 @@ def test_tests_that_sentences_rest_on_are_there() -> None:
         file, name = place.split("::")
         tree = ast.parse((ROOT / "tests" / file).read_text(encoding="utf-8"))
         assert name in {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}, place
-        assert flat(words) in flat(README), words
+        assert flat(words) in flat(ALL), words
 
 
 def test_another_figure_or_table_is_seen_and_put_right() -> None:
     claim = CLAIMS[1]
-    (found,) = pattern(claim.text).finditer(README)
+    page, found = once(PAGES, pattern(claim.text), claim.text)
     begin, end = found.span(1)
-    wrong = README[:begin] + "9,999" + README[end:]
-    assert filled(wrong, Kept()) == README != wrong
-    name = next(iter(TABLES))
-    row = TABLES[name](Kept()).splitlines()[-1]
-    assert filled(README.replace(row, "| none |"), Kept()) == README
+
+    def holding(words: str) -> dict[str, str]:
+        return PAGES | {page: PAGES[page][:begin] + words + PAGES[page][end:]}
+
+    assert filled(holding("9,999"), Kept()) == PAGES != holding("9,999")
+    for name in TABLES:
+        row = TABLES[name](Kept()).splitlines()[-1]
+        wrong = {each: text.replace(row, "| none |") for each, text in PAGES.items()}
+        assert wrong != PAGES and filled(wrong, Kept()) == PAGES
     with pytest.raises(LookupError, match="found 0 times"):
-        filled(README[:begin] + "many" + README[end:], Kept())
+        filled(holding("many"), Kept())
     assert not untrue(Kept())
 
 

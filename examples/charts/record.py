@@ -1,4 +1,4 @@
-"""Tables of figures as CSV, everything together as results.json, and tables of the README as Markdown."""
+"""Tables of figures as CSV, everything together as results.json, and tables of the documentation as Markdown."""
 
 import csv
 import json
@@ -64,7 +64,7 @@ class Results:
         print(f"{summary}, {wall:.0f} s ({processor:.0f} s of a core); charts in {self.folder}")
 
     def _markdown(self) -> None:
-        """Write the tables of the README that the folder has all results for, as they stand there."""
+        """Write the tables of the documentation that the folder has all results for, as they stand there."""
         for name, table in TABLES.items():
             with suppress(FileNotFoundError):
                 (self.folder / f"{name}.md").write_text(table(Kept(self.folder)) + "\n", encoding="utf-8")

@@ -1,1 +1,1 @@
-"""README's tables and figures, made from the results of the scripts that are kept."""
+"""Tables and figures of README and the site, made from the results of the scripts that are kept."""

@@ -1,4 +1,4 @@
-"""The tables of results that README rests on, as they are kept, and which of their lines were read."""
+"""The tables of results that the documentation rests on, as they are kept, and which of their lines were read."""
 
 import csv
 from collections import defaultdict

@@ -1,4 +1,4 @@
-"""README with its tables and figures put in from the results that are kept, and a table of what each rests on."""
+"""The documentation with its tables and figures put in from the results that are kept, and a table of what each rests on."""
 
 import re
 from collections.abc import Iterator
@@ -20,21 +20,21 @@ def pattern(text: str) -> re.Pattern[str]:
     return re.compile(FIGURE.join(parts))
 
 
-def filled(page: str, kept: Kept) -> str:
-    """The page with all tables and all figures of its sentences made anew."""
+def filled(pages: dict[str, str], kept: Kept) -> dict[str, str]:
+    """The pages with all tables and all figures of their sentences made anew; each is on one of them."""
+    pages = dict(pages)
     for name, table in TABLES.items():
-        page = put(page, name, table(kept))
+        page, _ = once(pages, re.compile(TABLE.format(name), re.DOTALL), f"the table {name}")
+        pages[page] = put(pages[page], name, table(kept))
     for claim in CLAIMS:
-        found = list(pattern(claim.text).finditer(page))
-        if len(found) != 1:
-            raise LookupError(f"found {len(found)} times: {claim.text}")
+        page, found = once(pages, pattern(claim.text), claim.text)
         figures = claim.figures(kept)
         if len(figures) != claim.text.count("{}"):
             raise LookupError(f"{len(figures)} figures for: {claim.text}")
         for group, figure in reversed(list(enumerate(figures, 1))):
-            begin, end = found[0].span(group)
-            page = page[:begin] + figure + page[end:]
-    return page
+            begin, end = found.span(group)
+            pages[page] = pages[page][:begin] + figure + pages[page][end:]
+    return pages
 
 
 def put(page: str, name: str, table: str) -> str:
@@ -43,6 +43,14 @@ def put(page: str, name: str, table: str) -> str:
     if many != 1:
         raise LookupError(f"the table {name} is marked {many} times")
     return new
+
+
+def once(pages: dict[str, str], wanted: re.Pattern[str], what: str) -> tuple[str, re.Match[str]]:
+    """The page that has what is wanted, and where it has it."""
+    found = [(page, match) for page, text in pages.items() for match in wanted.finditer(text)]
+    if len(found) != 1:
+        raise LookupError(f"found {len(found)} times: {what}")
+    return found[0]
 
 
 def untrue(kept: Kept) -> list[str]:

@@ -1,4 +1,4 @@
-"""README's tables, each made from results that are kept."""
+"""Tables of README and the site, each made from results that are kept."""
 
 from collections.abc import Callable
 
@@ -170,4 +170,4 @@ NEEDED = (
     "fit_order", "fit_facets", "against_flipout", "first_run_medians", "first_run_versions", "scaling",
     "scaling_growth",
 )  # fmt: skip
-"""Results that README rests on, by the names of their files."""
+"""Results that the documentation rests on, by the names of their files."""

@@ -1,4 +1,4 @@
-"""Figures as README writes them."""
+"""Figures as the documentation writes them."""
 
 from collections.abc import Sequence
 from math import floor, log10
