@@ -1,7 +1,6 @@
-"""The README describes every file, field, code and option, and its figures hold."""
+"""README and the pages describe every file, field, code and option, and their figures hold."""
 
 import re
-import shlex
 import subprocess
 import sys
 from dataclasses import replace
@@ -11,6 +10,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from layup_shapes import bridged
+from readme.documents import ROOT, documents
 from typer.main import get_command
 
 import meshwind as mw
@@ -25,13 +25,13 @@ from meshwind.surface import shapes
 from meshwind.surface.grid import grid
 from meshwind.workflow.options import Options
 
-ROOT = Path(__file__).parents[1]
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGES = documents()
 
 
 def rows(heading: str) -> list[list[str]]:
-    """The cells of the table whose first heading is the given one."""
-    table = README.split(f"\n| {heading} |")[1].split("\n\n")[0]
+    """The cells of the one table whose first headings are the given ones."""
+    _, table = "\n\n".join(PAGES.values()).split(f"\n| {heading} |")
+    table = table.split("\n\n")[0]
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()[2:]]
 
 
@@ -47,7 +47,7 @@ def test_every_field_is_described_and_no_other(tmp_path: Path) -> None:
         held |= {(name, file.stem) for name in (*read.point_data.keys(), *read.cell_data.keys())}
     listed = {
         (name, place.strip())
-        for names, places, *_ in rows("field")
+        for names, places, *_ in rows("field | in")
         for name in re.findall(r"`(\w+)`", names)
         for place in places.split(",")
     }
@@ -69,22 +69,7 @@ def test_every_status_has_advice_and_a_number_of_its_own() -> None:
 
 
 def test_every_file_is_described() -> None:
-    assert {name for cells in rows("file") for name in re.findall(r"`([\w.]+)`", cells[0])} == RESULTS
-
-
-def test_commands_run_as_they_stand(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Their options are known and the meshes that they name are there."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "vase-wound").mkdir()
-    (tmp_path / "vase-wound" / "meshwind.toml").write_text('mesh = "vase.stl"\n')  # as the first command leaves it
-    blocks = re.findall(r"```sh\n(.*?)```", README, re.DOTALL)
-    lines = [line for block in blocks for line in block.splitlines() if line.startswith("meshwind ")]
-    assert len(lines) >= 10
-    for line in lines:
-        name, *arguments = shlex.split(line, comments=True)[1:]
-        get_command(app).commands[name].make_context(name, list(arguments))  # type: ignore[attr-defined]
-        for word in arguments:
-            assert not word.startswith("data/") or (ROOT / word).is_file()
+    assert {name for cells in rows("file | contents") for name in re.findall(r"`([\w.]+)`", cells[0])} == RESULTS
 
 
 def test_every_option_is_described() -> None:
@@ -97,23 +82,19 @@ def test_every_option_is_described() -> None:
     }
 
 
+def test_every_option_of_every_command_is_named() -> None:
+    """All but those that only turn off what is off unless it is turned on, and on what is on."""
+    named = set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", "\n".join(PAGES.values())))
+    for command in get_command(app).commands.values():  # type: ignore[attr-defined]
+        for parameter in command.params:
+            words = {each for each in (*parameter.opts, *parameter.secondary_opts) if each.startswith("--")}
+            assert words & named if parameter.secondary_opts else words <= named, (command.name, parameter.name)
+
+
 def test_every_package_is_named() -> None:
-    section = README.split("\n## How it works\n")[1]
+    section = PAGES["examples/site/how_it_works.md"]
     rooms = {file.parent.name for file in (ROOT / "meshwind").glob("*/__init__.py")}
     assert rooms <= set(re.findall(r"`([a-z]+)`", section))
-
-
-@pytest.mark.usefixtures("opengl")
-def test_snippets_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """All Python of the README, one after the other, as a reader would type it."""
-    (tmp_path / "data").symlink_to(ROOT / "data")
-    monkeypatch.chdir(tmp_path)
-    names: dict[str, object] = {}
-    snippets = re.findall(r"```python\n(.+?)```", README, re.DOTALL)
-    for number, snippet in enumerate(snippets):
-        exec(compile(snippet, f"README.md, snippet {number}", "exec"), names)
-    assert {"result", "layup", "barrel", "held", "field"} <= set(names)
-    assert (tmp_path / "out" / "slip.png").is_file()
 
 
 def test_options_are_described_as_in_the_help() -> None:

@@ -1,4 +1,4 @@
-"""Tables and figures of README and the site are those of the results that are kept, and each is traced to its lines or its test."""
+"""Tables and figures of README and the site are those of the results that are kept, and each is traced to them."""
 
 import ast
 import csv

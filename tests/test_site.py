@@ -1,28 +1,31 @@
-"""The documentation site: its pages run as they stand and print what they say, and it is built without a warning."""
+"""README and the site: their pages run as they stand and print what they say, and it is built without a warning."""
 
 import contextlib
 import io
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from importlib.util import find_spec
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 from needs import STRICT
+from readme.documents import README, ROOT, SITE, documents
 from typer.main import get_command
 
 import meshwind as mw
 from meshwind.cli.main import app
 
-ROOT = Path(__file__).parents[1]
-SITE = ROOT / "examples" / "site"
-PAGES = {file.relative_to(SITE).as_posix(): file.read_text(encoding="utf-8") for file in sorted(SITE.rglob("*.md"))}
+PAGES = documents()
 FENCE = re.compile(r"^```(sh|python|text|toml)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"(\d[\d,]*(?:\.\d+)?(?:e-?\d+)?)")
-DRAW = {"wind", "redesign"}
+WINDS = {"wind", "redesign"}
+DRAWN = [f"examples/site/{page}.md" for page in ("command/pictures", "how_to/library")]
+"""Pages of which a command or a line of Python draws."""
 ROUNDING = 0.05
 """By how much of itself, or one of its last decimal, a figure may be off what is printed, as machines round each so."""
 
@@ -41,24 +44,58 @@ def test_all_theory_is_on_the_pages() -> None:
         assert f".. automodule:: meshwind.theory.{name}\n" in page
 
 
-def test_all_of_the_readme_is_on_the_pages() -> None:
-    """Every section is included somewhere, but for its last lines, which are about the files beside it."""
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    included = ""
-    for text in PAGES.values():
-        for first, last in re.findall(r'README\.md\n:start-after: "(#.+)"\n:end-before: "(.+)"', text):
-            begin = readme.index(first.replace("\\n", "\n")) + len(first.replace("\\n", ""))
-            included += readme[begin : readme.index(last, begin)]
-    for section in re.split(r"^#+ .+$", re.sub(r"```.*?```", "", readme, flags=re.DOTALL), flags=re.MULTILINE):
-        if section.strip():
-            assert section.strip().splitlines()[0] in included
+def test_every_page_is_listed() -> None:
+    """Each is in one list of contents below the index, and what README links to is there."""
+    lists = {"index": SITE / "index.md", **{f"{room}/index": SITE / room / "index.rst" for room in ("api", "theory")}}
+    listed = []
+    for file in lists.values():
+        room = file.parent.relative_to(SITE)
+        for block in re.findall(r"toctree.*?\n\n(.*?)(?:```|\Z)", file.read_text(encoding="utf-8"), re.DOTALL):
+            listed += [(room / name).as_posix() for name in block.split()]
+    pages = [file.relative_to(SITE).with_suffix("").as_posix() for file in SITE.rglob("*.*") if is_page(file)]
+    assert sorted([*listed, "index"]) == sorted(pages)
+    links = [target for target in re.findall(r"\]\(([^)#]+)[^)]*\)", PAGES[README]) if "://" not in target]
+    assert len(links) > 10 and all((ROOT / target).is_file() for target in links)
 
 
-@pytest.mark.parametrize("page", [name for name, text in PAGES.items() if FENCE.search(text)])
-def test_pages_run_and_print_what_they_say(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def is_page(file: Path) -> bool:
+    return file.suffix in {".md", ".rst"}
+
+
+def test_readme_is_for_newcomers() -> None:
+    assert len(PAGES[README].split()) <= 2500
+
+
+class Made(NamedTuple):
+    """What a command printed, and the folders and files that it made."""
+
+    printed: str
+    files: list[Path]
+
+
+@pytest.fixture(scope="module")
+def made() -> dict[str, Made]:
+    """Commands that have run, so that what several pages wind is wound once."""
+    return {}
+
+
+@pytest.mark.parametrize("page", [name for name, text in PAGES.items() if FENCE.search(text) and name not in DRAWN])
+def test_pages_run_and_print_what_they_say(
+    page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, made: dict[str, Made]
+) -> None:
+    read(page, tmp_path, monkeypatch, made)
+
+
+@pytest.mark.usefixtures("opengl")
+@pytest.mark.parametrize("page", DRAWN)
+def test_pages_that_draw_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, made: dict[str, Made]) -> None:
+    read(page, tmp_path, monkeypatch, made)
+
+
+def read(page: str, folder: Path, monkeypatch: pytest.MonkeyPatch, made: dict[str, Made]) -> None:
     """Block after block, as a reader would type it, without the pictures of `wind` and `redesign`."""
-    (tmp_path / "data").symlink_to(ROOT / "data")
-    monkeypatch.chdir(tmp_path)
+    (folder / "data").symlink_to(ROOT / "data")
+    monkeypatch.chdir(folder)
     names: dict[str, object] = {}
     printed = ""
     for kind, block in FENCE.findall(PAGES[page]):
@@ -67,7 +104,8 @@ def test_pages_run_and_print_what_they_say(page: str, tmp_path: Path, monkeypatc
             assert name, "its first line is a comment with its name"
             Path(name[1]).write_text(block, encoding="utf-8")
         elif kind == "sh":
-            printed = "".join(_output(line) for line in block.splitlines())
+            lines = [line for line in block.splitlines() if page != README or line.startswith("meshwind ")]
+            printed = "".join(run(line, folder, made) for line in lines)
         elif kind == "python":
             with contextlib.redirect_stdout(io.StringIO()) as output:
                 exec(compile(block, page, "exec"), names)
@@ -77,13 +115,28 @@ def test_pages_run_and_print_what_they_say(page: str, tmp_path: Path, monkeypatc
                 assert any(_says(said, line) for said in printed.splitlines()), f"{line!r} is not in:\n{printed}"
 
 
-def _output(line: str) -> str:
-    """What a command prints; it must end well."""
+def run(line: str, folder: Path, made: dict[str, Made]) -> str:
+    """What a command prints, which must end well; one that winds is run once for all pages that have it."""
     words = shlex.split(line, comments=True)
     assert words[0] == "meshwind"
-    words += ["--no-render"] if words[1] in DRAW else []
-    done = subprocess.run([sys.executable, "-m", *words], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
+    if words[1] not in WINDS:
+        return output(words, folder)
+    key = shlex.join(words)
+    if key in made:
+        for each in made[key].files:
+            shutil.copytree(each, folder / each.name)
+        return made[key].printed
+    before = set(folder.iterdir())
+    printed = output([*words, "--no-render"], folder)
+    if not any(Path(word).suffix == ".toml" for word in words):
+        made[key] = Made(printed, sorted(set(folder.iterdir()) - before))
+    return printed
+
+
+def output(words: list[str], folder: Path) -> str:
+    """What a command prints that ends well."""
+    done = subprocess.run([sys.executable, "-m", *words], capture_output=True, text=True, check=False, cwd=folder)
+    assert done.returncode == 0, f"{shlex.join(words)}\n{done.stdout}{done.stderr}"
     return done.stdout
 
 
@@ -110,9 +163,8 @@ def test_figures_are_compared() -> None:
     assert not _says("paths     24 of 24 at rest", "paths     24 of 24 slide")
 
 
-@pytest.mark.parametrize("page", ["gallery.md"])
-def test_commands_in_tables_are_known(page: str) -> None:
-    text = PAGES[page] + (ROOT / "examples" / "README.md").read_text(encoding="utf-8")
+def test_commands_in_tables_are_known() -> None:
+    text = PAGES["examples/site/gallery.md"] + (ROOT / "examples" / "README.md").read_text(encoding="utf-8")
     lines = re.findall(r"`(meshwind [^`]+)`", text)
     assert len(lines) >= 8
     for line in lines:
@@ -127,14 +179,14 @@ def test_it_is_built_without_a_warning(tmp_path: Path) -> None:
     if find_spec("furo") is None or find_spec("myst_parser") is None:
         advice = "the generator of the site is missing (pip install '.[docs]')"
         (pytest.fail if os.environ.get(STRICT) else pytest.skip)(advice)
-    line = re.search(r"^# build the documentation\n.* -m (sphinx .+)$", (ROOT / "README.md").read_text("utf-8"), re.M)
+    line = re.search(r"^# build the documentation\n.* -m (sphinx .+)$", PAGES[README], re.M)
     assert line
     words = [str(tmp_path) if word == "out/site" else word for word in shlex.split(line[1])]
     assert {"--fail-on-warning", str(tmp_path)} <= set(words)
     built = subprocess.run([sys.executable, "-m", *words], cwd=ROOT, capture_output=True, text=True, check=False)
     assert built.returncode == 0, built.stderr
     pages = {file: file.read_text(encoding="utf-8") for file in tmp_path.rglob("*.html") if "_modules" not in str(file)}
-    assert len(pages) >= len(PAGES) + 12
+    assert len(pages) >= len(PAGES) + 11
     pictures = 0
     for file, text in pages.items():
         for target in re.findall(r'(?:href|src)="([^"#?:]+)[^":]*"', text):

@@ -1,4 +1,4 @@
-"""The documentation with its tables and figures put in from the results that are kept, and a table of what each rests on."""
+"""Documentation with tables and figures put in from the results that are kept, and a table of what they rest on."""
 
 import re
 from collections.abc import Iterator
