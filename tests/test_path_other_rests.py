@@ -41,6 +41,15 @@ def bottle() -> mw.Surface:
     return fitted("bottle.obj")
 
 
+def test_paths_of_few_and_of_many_particles_are_slid_together() -> None:
+    """One that bridges needs more than one that lies on the part all along, and still the latter can be looked at."""
+    surface = fitted("cast.ply")
+    ends = mw.families(surface, 24, 0.625)
+    paths = mw.solve(surface, ends.start[14:16], ends.end[14:16], family=ends.family[14:16], friction=0.2)
+    assert not paths.on_surface[0].all() and paths.on_surface[1].all()
+    assert paths.other_rests.found.tolist() == [True, True]
+
+
 def test_a_state_that_less_friction_leads_to_is_found(bottle: mw.Surface) -> None:
     paths = wound(bottle, 6, 0.55, 0.15)
     rests = paths.other_rests

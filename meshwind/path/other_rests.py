@@ -130,7 +130,7 @@ def look_for_other_rests(paths: "Paths") -> OtherRests:
     asked = _asked(paths)
     index = np.flatnonzero(paths.status == Status.CONVERGED)
     if asked is not None and len(index):
-        slides = _Slides(paths, asked)
+        slides = _Slides(paths, asked, index)
         states = [slides.run(index, way) for way in WAYS]
         moves = np.stack([between(slides.rest(index, state), state) for state in states])
         result.moved[index] = moves.max(axis=0)  # NaN where one has no answer
@@ -162,11 +162,14 @@ def _asked(paths: "Paths") -> Asked | None:
 class _Slides:
     """Slides of paths with something changed.
 
-    curves (p, n, 2): starting curves; left (p, n, 2): the step in (u, v) by one unit of length to their left.
+    index: all paths that are slid; each is slid on as many segments, alone as among the others, so that where it comes
+    to lie can be compared.  curves (p, n, 2): starting curves; left (p, n, 2): the step in (u, v) by one unit of length to their left.
     """
 
     paths: "Paths"
     asked: Asked
+    index: Ints
+    segments: int = field(init=False)
     curves: Floats = field(init=False)
     left: Floats = field(init=False)
     far: float = field(init=False)
@@ -177,6 +180,15 @@ class _Slides:
         self.curves = resampled(ends, paths.uv.shape[1])
         self.far = FAR * paths.surface.size
         self.left = _to_the_left(paths, self.curves)
+        self.segments = self.enough()
+
+    def enough(self) -> int:
+        """Half the segments on which the paths were slid."""
+        n, curves = self.curves.shape[1], self.curves[self.index]
+        level = min((halvings(curve, n) for curve in curves), default=0)
+        if not self.paths.on_surface[self.index].all():
+            level = min(level, *(fine_level(curve, n) for curve in curves))
+        return max(segments(n, level + 1), 2)
 
     def rest(self, index: Ints, like: _State) -> _State:
         """Where paths rest, on as many particles as another state has."""
@@ -184,12 +196,8 @@ class _Slides:
 
     def run(self, index: Ints, change: _Change) -> _State:
         """Paths slid with a change, on half the particles on which they were slid, or where that stalls on as many."""
-        n, curves = self.curves.shape[1], self.curves[index]
         starts = self.shifted(index, change.shift)
-        level = min((halvings(curve, n) for curve in curves), default=0)
-        if not self.paths.on_surface[index].all():
-            level = min(level, *(fine_level(curve, n) for curve in curves))
-        batch = self.slid(starts, max(segments(n, level + 1), 2), change)
+        batch = self.slid(starts, self.segments, change)
         stalled = np.flatnonzero(batch.status == Status.STALLED)
         if len(stalled):
             batch.put(stalled, self.slid(starts[stalled], 2 * (batch.particles - 1), change).halved())
