@@ -1,4 +1,4 @@
-"""The pictures of the README beside this file: every part in data/ wound, and a redesign.
+"""The pictures of the README beside this file and of the site: parts of data/ wound, and a redesign.
 
     python examples/gallery.py --out examples/gallery
 
@@ -6,6 +6,10 @@
 """
 
 import argparse
+import re
+import shlex
+import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -15,6 +19,7 @@ from PIL import Image
 import meshwind as mw
 
 DATA = Path(__file__).parents[1] / "data"
+SITE = Path(__file__).with_name("site")
 PAGE = mw.Page(1000, 750)
 
 
@@ -38,17 +43,24 @@ SHOWN = {
     "elbow": Shown("elbow.obj", "windability", 1.0),
     "mesh": Shown("elbow.obj", "quads", 1.0, paths=24),
 }
+ON_PAGES = {
+    "foot": ("tutorial.md", "filament"),
+    "vessel": ("how_to/pressure_vessel.md", "bands"),
+    "socket": ("how_to/socket.md", "laminate"),
+    "duct": ("how_to/duct.md", "filament"),
+}
+"""Folders of windings on pages of the site, the page of each, and the picture of it that is shown there."""
 
 
 def main() -> None:
     """Wind, draw and write."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, default=Path("out/gallery"), help="folder for the pictures")
-    parser.add_argument("--only", default=",".join((*SHOWN, "redesign")), help="names by commas")
+    parser.add_argument("--only", default=",".join((*SHOWN, *ON_PAGES, "redesign")), help="names by commas")
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
     for name in given.only.split(","):
-        (redesigned if name == "redesign" else wound)(name, given.out)
+        (redesigned if name == "redesign" else as_written if name in ON_PAGES else wound)(name, given.out)
         print(f"wrote {given.out / name}.png", flush=True)
 
 
@@ -68,6 +80,20 @@ def wound(name: str, out: Path) -> None:
         )
         mw.render(run, only=[shown.picture], page=PAGE)
         small(run / f"{shown.picture}.png", out / f"{name}.png")
+
+
+def as_written(name: str, out: Path) -> None:
+    """The picture of a winding by the command of a page, with the files that the page has."""
+    page, picture = ON_PAGES[name]
+    text = (SITE / page).read_text(encoding="utf-8").replace("\\\n", " ")
+    with TemporaryDirectory() as folder:
+        Path(folder, "data").symlink_to(DATA)
+        for block in re.findall(r"```toml\n(.*?)```", text, re.DOTALL):
+            Path(folder, block.split(":")[0].removeprefix("# ")).write_text(block, encoding="utf-8")
+        (line,) = re.findall(rf"^meshwind wind .*--out {name}$", text, re.MULTILINE)
+        subprocess.run([sys.executable, "-m", *shlex.split(line), "--no-render"], cwd=folder, check=True)
+        mw.render(Path(folder) / name, only=[picture], page=PAGE)
+        small(Path(folder) / name / f"{picture}.png", out / f"{name}.png")
 
 
 def redesigned(name: str, out: Path) -> None:

@@ -105,7 +105,8 @@ def read(page: str, folder: Path, monkeypatch: pytest.MonkeyPatch, made: dict[st
             assert name, "its first line is a comment with its name"
             Path(name[1]).write_text(block, encoding="utf-8")
         elif kind == "sh":
-            lines = [line for line in block.splitlines() if page != README or line.startswith("meshwind ")]
+            lines = block.replace("\\\n", " ").splitlines()
+            lines = [line for line in lines if page != README or line.startswith("meshwind ")]
             printed = "".join(run(line, folder, made) for line in lines)
         elif kind == "python":
             with contextlib.redirect_stdout(io.StringIO()) as output:

@@ -1,5 +1,8 @@
 """How Sphinx makes the site of README, the pages beside this file, theory and docstrings, without a second copy."""
 
+import re
+from typing import Any
+
 import meshwind
 
 project = "meshwind"
@@ -25,6 +28,25 @@ napoleon_use_rtype = False
 html_theme = "furo"
 html_title = f"meshwind {version}"
 html_static_path = ["static"]
-html_css_files = ["wide.css"]
+html_css_files = ["pages.css"]
 html_copy_source = False
 html_show_sphinx = False
+
+NUMBERED = re.compile(r"(\s+\S.*?)\s{2,}(\(\d+\.\d[^)]*\).*)")
+"""A line of an equation, and its number with what is said of it."""
+PAGE = 86
+"""Characters that a line of an equation has room for on a page of usual width."""
+
+
+def setup(app: Any) -> None:
+    """Have docstrings changed as they are read."""
+    app.connect("autodoc-process-docstring", nearer)
+
+
+def nearer(app: Any, what: str, name: str, thing: object, options: Any, lines: list[str]) -> None:
+    """Move the numbers of equations, which are at column 118 in the code, to the left as far as a page is wide."""
+    del app, what, name, thing, options
+    for number, line in enumerate(lines):
+        if found := NUMBERED.fullmatch(line):
+            equation, rest = found.groups()
+            lines[number] = equation + " " * max(2, PAGE - len(equation) - len(rest)) + rest

@@ -163,7 +163,8 @@ class _Slides:
     """Slides of paths with something changed.
 
     index: all paths that are slid; each is slid on as many segments, alone as among the others, so that where it comes
-    to lie can be compared.  curves (p, n, 2): starting curves; left (p, n, 2): the step in (u, v) by one unit of length to their left.
+    to lie can be compared.  curves (p, n, 2): starting curves; left (p, n, 2): the step in (u, v) by one unit of length
+    to their left.
     """
 
     paths: "Paths"
