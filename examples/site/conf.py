@@ -34,8 +34,8 @@ html_show_sphinx = False
 
 NUMBERED = re.compile(r"(\s+\S.*?)\s{2,}(\(\d+\.\d[^)]*\).*)")
 """A line of an equation, and its number with what is said of it."""
-PAGE = 86
-"""Characters that a line of an equation has room for on a page of usual width."""
+NUMBER = 62
+"""Column of these numbers, with which also what is said of them has room on a page of usual width."""
 
 
 def setup(app: Any) -> None:
@@ -44,9 +44,9 @@ def setup(app: Any) -> None:
 
 
 def nearer(app: Any, what: str, name: str, thing: object, options: Any, lines: list[str]) -> None:
-    """Move the numbers of equations, which are at column 118 in the code, to the left as far as a page is wide."""
+    """Move the numbers of equations, which end at column 118 in the code, onto the page."""
     del app, what, name, thing, options
     for number, line in enumerate(lines):
         if found := NUMBERED.fullmatch(line):
             equation, rest = found.groups()
-            lines[number] = equation + " " * max(2, PAGE - len(equation) - len(rest)) + rest
+            lines[number] = equation + " " * max(2, NUMBER - len(equation)) + rest
