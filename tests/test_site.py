@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import json
 import os
 import re
 import shlex
@@ -25,7 +26,7 @@ PAGES = documents()
 FENCE = re.compile(r"^```(sh|python|text|toml)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"(\d[\d,]*(?:\.\d+)?(?:e-?\d+)?)")
 WINDS = {"wind", "redesign"}
-DRAWN = [f"examples/site/{page}.md" for page in ("command/pictures", "how_to/library")]
+DRAWN = [f"examples/site/{page}" for page in ("command/pictures.md", "how_to/library.md", "notebooks/vessel.ipynb")]
 """Pages of which a command or a line of Python draws."""
 ROUNDING = 0.05
 """By how much of itself, or one of its last decimal, a figure may be off what is printed, as machines round each so."""
@@ -60,7 +61,14 @@ def test_every_page_is_listed() -> None:
 
 
 def is_page(file: Path) -> bool:
-    return file.suffix in {".md", ".rst"}
+    return file.suffix in {".md", ".rst", ".ipynb"}
+
+
+@pytest.mark.parametrize("notebook", sorted(SITE.rglob("*.ipynb")), ids=lambda file: file.name)
+def test_notebooks_hold_no_results(notebook: Path) -> None:
+    cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+    code = [cell for cell in cells if cell["cell_type"] == "code"]
+    assert code and not any(cell["outputs"] or cell["execution_count"] for cell in code)
 
 
 def test_readme_is_for_newcomers() -> None:

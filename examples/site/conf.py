@@ -1,9 +1,17 @@
 """How Sphinx makes the site of README, the pages beside this file, theory and docstrings, without a second copy."""
 
 import re
+import sys
+from pathlib import Path
 from typing import Any
 
+from myst_parser.parsers.sphinx_ import MystParser
+
 import meshwind
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from readme.documents import as_markdown
 
 project = "meshwind"
 author = "The meshwind authors"
@@ -11,7 +19,7 @@ copyright = author
 version = release = meshwind.__version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
-source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
+source_suffix = {".md": "markdown", ".rst": "restructuredtext", ".ipynb": "notebook"}
 nitpicky = False  # docstrings put file fields and words of the glossary in the same quotes as names
 default_role = "py:obj"
 
@@ -32,6 +40,17 @@ html_css_files = ["pages.css"]
 html_copy_source = False
 html_show_sphinx = False
 
+
+class Notebook(MystParser):
+    """Shows a notebook as the page that it says, without what it printed when it last ran."""
+
+    supported = ("notebook",)
+
+    def parse(self, inputstring: str, document: Any) -> None:
+        """Read its cells as Markdown."""
+        super().parse(as_markdown(inputstring), document)
+
+
 NUMBERED = re.compile(r"(\s+\S.*?)\s{2,}(\(\d+\.\d[^)]*\).*)")
 """A line of an equation, and its number with what is said of it."""
 NUMBER = 62
@@ -39,7 +58,8 @@ NUMBER = 62
 
 
 def setup(app: Any) -> None:
-    """Have docstrings changed as they are read."""
+    """Have docstrings changed as they are read, and notebooks shown."""
+    app.add_source_parser(Notebook)
     app.connect("autodoc-process-docstring", nearer)
 
 
