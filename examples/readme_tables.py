@@ -24,6 +24,7 @@ GALLERY = Path(__file__).parent / "gallery"
 PICTURES = {
     "speed_and_accuracy": "speed_and_accuracy",
     "time_step": "stability",
+    "ours_friction": "friction",
     "rough_mesh_to_surface": "rough_meshes",
 }
 """Charts that the pages show, by the names of their files, and what they are called there."""
