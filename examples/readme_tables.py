@@ -54,8 +54,10 @@ def main() -> None:
     given = parser.parse_args()
     for folder in given.keep:
         print(f"{folder}: {', '.join(keep(folder)) or 'nothing that a page needs'}")
-    for name, text in filled(documents(), Kept()).items():
-        (ROOT / name).write_text(text, encoding="utf-8")
+    before = documents()
+    for name, text in filled(before, Kept()).items():
+        if text != before[name]:  # a notebook, of which this is not the file, has no table
+            (ROOT / name).write_text(text, encoding="utf-8")
     rows = list(traced())
     with CLAIMS.open("w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, ["claim", "rests on"], lineterminator="\n")

@@ -28,6 +28,9 @@ NUMBER = re.compile(r"(\d[\d,]*(?:\.\d+)?(?:e-?\d+)?)")
 WINDS = {"wind", "redesign"}
 DRAWN = [f"examples/site/{page}" for page in ("command/pictures.md", "how_to/library.md", "notebooks/vessel.ipynb")]
 """Pages of which a command or a line of Python draws."""
+SOLVED = ["examples/site/how_to/solver.md"]
+"""Pages of which a command runs CalculiX, and draws."""
+
 ROUNDING = 0.05
 """By how much of itself, or one of its last decimal, a figure may be off what is printed, as machines round each so."""
 
@@ -88,7 +91,9 @@ def made() -> dict[str, Made]:
     return {}
 
 
-@pytest.mark.parametrize("page", [name for name, text in PAGES.items() if FENCE.search(text) and name not in DRAWN])
+@pytest.mark.parametrize(
+    "page", [name for name, text in PAGES.items() if FENCE.search(text) and name not in {*DRAWN, *SOLVED}]
+)
 def test_pages_run_and_print_what_they_say(
     page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, made: dict[str, Made]
 ) -> None:
@@ -98,6 +103,14 @@ def test_pages_run_and_print_what_they_say(
 @pytest.mark.usefixtures("opengl")
 @pytest.mark.parametrize("page", DRAWN)
 def test_pages_that_draw_run(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, made: dict[str, Made]) -> None:
+    read(page, tmp_path, monkeypatch, made)
+
+
+@pytest.mark.usefixtures("calculix", "opengl")
+@pytest.mark.parametrize("page", SOLVED)
+def test_pages_that_solve_run(
+    page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, made: dict[str, Made]
+) -> None:
     read(page, tmp_path, monkeypatch, made)
 
 
