@@ -65,6 +65,13 @@ def test_little_is_not_none_and_nearly_all_is_not_all() -> None:
     assert [percent(share) for share in shares] == ["0.0 %", "< 0.1 %", "3.1 %", "29 %", "99.7 %", "100 %"]
 
 
+def test_many_layers_are_named_in_few_words(of: Subject) -> None:
+    layup = replace(of.layup, coverage=replace(of.layup.coverage, width=12.0 * HALF))
+    words = layers_scene(replace(of, layup=layup)).words
+    assert words[:2] == ("bare: 0.0 %", "1 layer: 0.0 %") and words[-1].startswith("8 or more: ")
+    assert all(len(each) <= len("8 or more: 100.0 %") for each in words)
+
+
 def test_the_words_tell_how_far_the_part_is_from_flat_quads(of: Subject) -> None:
     """Over the middle of a quad whose corners span an angle a on a cylinder of radius 1: (1 - cos(a / 2)) / 2."""
     words = quads_scene(of).frame.subtitle

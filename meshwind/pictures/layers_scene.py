@@ -21,12 +21,18 @@ def layers_scene(of: Subject) -> LayersScene:
     steps = np.searchsorted(firsts, laid.layers, side="right") - 1
     shares = np.bincount(steps.ravel(), laid.area.ravel(), len(firsts)) / max(float(laid.area.sum()), 1e-300)
     words = tuple(
-        f"{named}: {percent(share)}" for named, share in zip(step_words(firsts), shares.tolist(), strict=True)
+        f"{_short(named)}: {percent(share)}" for named, share in zip(step_words(firsts), shares.tolist(), strict=True)
     )
     first = "first layer alone  ·  " if of.laminate is not None and of.laminate.layers > 1 else ""
     subtitle = f"{first}band {quantity(laid.width, of.units, 3)} wide  ·  {percent(float(shares[0]))} of the part bare"
     frame = of.frame(f"{of.name}: layers of band over each place", subtitle)
     return LayersScene(frame, *_sheet(of), steps, STEP_COLOURS[: len(firsts)], words)
+
+
+def _short(words: str) -> str:
+    """Words of a step of several numbers without what the title says, so that the legend keeps its size."""
+    numbers = words.removesuffix(" layers")
+    return numbers if " " in numbers else words
 
 
 def percent(share: float) -> str:
