@@ -2,12 +2,12 @@
 
 import json
 import subprocess
-import sys
 import tomllib
 from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from command import meshwind
 
 import meshwind as mw
 
@@ -16,8 +16,7 @@ TIMED = {"report.json"}
 
 
 def wind(*arguments: str | Path, folder: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "meshwind", "wind", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, cwd=folder)
+    return meshwind("wind", *arguments, folder=folder)
 
 
 def contents(folder: Path) -> dict[str, bytes]:

@@ -7,6 +7,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
+from command import meshwind
 from export_results import waisted_results
 
 import meshwind as mw
@@ -15,8 +16,7 @@ DATA = Path(__file__).parents[1] / "data"
 
 
 def info(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "meshwind", "info", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120)
+    return meshwind("info", *arguments)
 
 
 def test_a_mesh() -> None:

@@ -1,16 +1,10 @@
 """With --json an error is JSON as well, with the words of the error line."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-
-
-def meshwind(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "meshwind", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, cwd=folder)
+from command import meshwind
 
 
 @pytest.mark.parametrize("arguments", [
@@ -20,7 +14,7 @@ def meshwind(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 ])  # fmt: skip
 def test_an_error_has_the_same_words_as_json(arguments: list[str], tmp_path: Path) -> None:
     (tmp_path / "part.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-    plain, done = meshwind(tmp_path, *arguments), meshwind(tmp_path, *arguments, "--json")
+    plain, done = (meshwind(*arguments, *more, folder=tmp_path) for more in ((), ("--json",)))
     assert plain.returncode == done.returncode == 2
     assert done.stdout == ""
     printed = json.loads(done.stderr)

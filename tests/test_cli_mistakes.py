@@ -1,10 +1,9 @@
 """What newcomers type: each mistake is answered by one line that says what to type instead, and nothing is written."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from command import meshwind
 
 DATA = Path(__file__).parents[1] / "data"
 MISTAKES = {
@@ -38,9 +37,7 @@ def test_mistakes(typed: str, tmp_path: Path) -> None:
     (tmp_path / "letter").write_text("dear engineer")
     (tmp_path / "folder").mkdir()
     before = sorted(tmp_path.rglob("*"))
-    done = subprocess.run(
-        [sys.executable, "-m", "meshwind", *typed.split()], capture_output=True, text=True, cwd=tmp_path, timeout=120
-    )
+    done = meshwind(*typed.split(), folder=tmp_path)
     complaint = [line for line in done.stderr.splitlines() if not line.endswith("...")]
     assert done.returncode == 2
     assert len(complaint) == 1

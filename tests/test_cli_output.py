@@ -2,19 +2,15 @@
 
 import json
 import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
+from command import meshwind
 from export_results import waisted_results
+from test_cli import from_outside
 
 DATA = Path(__file__).parents[1] / "data"
-
-
-def meshwind(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "meshwind", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120)
 
 
 def read(done: subprocess.CompletedProcess[str]) -> Any:
@@ -25,7 +21,7 @@ def read(done: subprocess.CompletedProcess[str]) -> Any:
 
 
 def test_wind_as_json_is_the_report(tmp_path: Path) -> None:
-    done = meshwind("wind", DATA / "tank.ply", "--out", tmp_path, "--paths", "2", "--no-render", "--json")
+    done = from_outside("wind", DATA / "tank.ply", "--out", tmp_path, "--paths", "2", "--no-render", "--json")
     assert done.returncode == 0
     printed, report = read(done), json.loads((tmp_path / "report.json").read_text())
     assert printed.pop("folder") == str(tmp_path)

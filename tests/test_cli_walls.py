@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista as pv
-from test_cli import meshwind
+from command import meshwind
 from walled_shapes import GRID, INNER, OUTER, Walled, bent, blob, bottle, chamfered, pipe, tunnelled
 
 import meshwind as mw
