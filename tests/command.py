@@ -4,50 +4,57 @@ import gc
 import os
 import subprocess
 import sys
-import tempfile
+from collections.abc import Iterator
+from contextlib import chdir, contextmanager
 from pathlib import Path
+from tempfile import TemporaryFile
+from typing import IO
 
 from meshwind.cli import main
 
 
-class _Caught:
-    """A standard stream that goes to a file meanwhile, whether Python writes to it or a library in C."""
+@contextmanager
+def _caught(name: str, number: int) -> Iterator[IO[bytes]]:
+    """A file that a standard stream goes to meanwhile, whether Python writes to it or a library in C."""
+    before, kept = getattr(sys, name), os.dup(number)
+    before.flush()
+    with TemporaryFile() as file:
+        os.dup2(file.fileno(), number)
+        try:
+            with open(number, "w", encoding="utf-8", closefd=False) as stream:
+                setattr(sys, name, stream)
+                yield file
+        finally:
+            setattr(sys, name, before)
+            os.dup2(kept, number)
+            os.close(kept)
 
-    def __init__(self, name: str, number: int) -> None:
-        self.name, self.number, self.before = name, number, getattr(sys, name)
-        self.before.flush()
-        self.kept = os.dup(number)
-        self.file = tempfile.TemporaryFile()
-        os.dup2(self.file.fileno(), number)
-        setattr(sys, name, open(number, "w", encoding="utf-8", closefd=False))
 
-    def text(self) -> str:
-        """Put the stream back, and tell what was written."""
-        getattr(sys, self.name).close()
-        setattr(sys, self.name, self.before)
-        os.dup2(self.kept, self.number)
-        os.close(self.kept)
-        self.file.seek(0)
-        with self.file:
-            return self.file.read().decode("utf-8")
+def _text(file: IO[bytes]) -> str:
+    file.seek(0)
+    return file.read().decode("utf-8")
 
 
 def meshwind(*arguments: str | Path, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
     """Type `meshwind` with arguments in a folder: exit status, standard output and standard error."""
-    here, argv, collected = Path.cwd(), sys.argv, gc.get_threshold()
-    sys.argv = ["meshwind", *map(str, arguments)]
-    os.chdir(folder or here)
-    out, err = _Caught("stdout", 1), _Caught("stderr", 2)
+    typed, argv, threshold = ["meshwind", *map(str, arguments)], sys.argv, gc.get_threshold()
+    sys.argv = typed
     try:
-        main()
-        status: object = 0
-    except SystemExit as ended:
-        status = ended.code or 0
+        with chdir(folder or Path.cwd()), _caught("stdout", 1) as out, _caught("stderr", 2) as err:
+            status = _exit_status()
+            sys.stdout.flush()
+            sys.stderr.flush()
+            return subprocess.CompletedProcess(typed, status, _text(out), _text(err))
     finally:
-        printed = out.text(), err.text()
-        os.chdir(here)
         sys.argv = argv
         gc.unfreeze()
-        gc.set_threshold(*collected)
-    assert isinstance(status, int)
-    return subprocess.CompletedProcess(["meshwind", *map(str, arguments)], status, *printed)
+        gc.set_threshold(*threshold)
+
+
+def _exit_status() -> int:
+    try:
+        main()
+    except SystemExit as ended:
+        assert isinstance(ended.code, int)
+        return ended.code
+    raise AssertionError("the command line has not ended by an exit status")

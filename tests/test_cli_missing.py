@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from command import meshwind
 from export_results import waisted_results
 
 DATA = Path(__file__).parents[1] / "data"
@@ -92,6 +93,5 @@ def test_a_file_that_does_not_exist_is_told_before_the_folder_that_does(argument
     shutil.copy(DATA / "tank.ply", tmp_path / "part.ply")
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "report.json").write_text("{}")
-    command = [sys.executable, "-m", "meshwind", *arguments, "--out", "out"]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    done = meshwind(*arguments, "--out", "out", folder=tmp_path)
     assert done.returncode == 2 and "none." in done.stderr and "holds results" not in done.stderr

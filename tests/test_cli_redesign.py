@@ -8,6 +8,8 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
+from coarse_parts import coarse_vase, saved
+from command import meshwind
 from scipy.spatial import cKDTree
 
 import meshwind as mw
@@ -19,7 +21,7 @@ PICTURES = {"before.png", "after.png", "redesign.png", "slice.png", "rounds.png"
 BY_CAD = {"edited.step"}
 
 
-def meshwind(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+def from_outside(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "meshwind", *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True, timeout=300)
 
@@ -27,8 +29,8 @@ def meshwind(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
 @pytest.fixture(scope="module")
 def vase(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     folder = tmp_path_factory.mktemp("redesign")
-    done = meshwind("redesign", DATA / "vase.stl", "--revolutions", "0.8", "--paths", "6", "--units", "mm",
-                    "--out", folder)  # fmt: skip
+    done = from_outside("redesign", DATA / "vase.stl", "--revolutions", "0.8", "--paths", "6", "--units", "mm",
+                        "--out", folder)  # fmt: skip
     assert done.returncode == 0, done.stderr
     return folder, done.stdout
 
@@ -93,13 +95,14 @@ def test_render_draws_the_folder_again(vase: tuple[Path, str], tmp_path: Path) -
 
 
 def test_what_must_not_move_does_not_and_an_impossible_demand_exits_3(tmp_path: Path) -> None:
-    done = meshwind("redesign", DATA / "vase.stl", "--revolutions", "0.3", "--paths", "4", "--bound", "0.01",
-                    "--freeze", "v<0.1", "--rounds", "2", "--no-render", "--out", tmp_path)  # fmt: skip
+    done = meshwind("redesign", saved(coarse_vase(), tmp_path / "vase.ply"), "--revolutions", "0.3", "--paths", "4",
+                    "--particles", "101", "--bound", "0.01", "--freeze", "v<0.1", "--rounds", "2", "--no-render",
+                    "--out", tmp_path / "out")  # fmt: skip
     assert done.returncode == 3, done.stderr
     assert "cannot reach the fibre" in done.stdout
-    report = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
+    report = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))
     assert not report["redesign"]["windable"] and report["redesign"]["bridged"]["after"] > 0.0
-    vtu = meshio.read(tmp_path / "edited.vtu")
+    vtu = meshio.read(tmp_path / "out" / "edited.vtu")
     size = np.linalg.norm(vtu.point_data["displacement"], axis=1)
     assert size.max() <= 0.01 * (1 + 1e-9)
 

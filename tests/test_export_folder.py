@@ -2,12 +2,12 @@
 
 import json
 import subprocess
-import sys
 from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
 import pytest
+from command import meshwind
 from export_results import leave, waisted_results
 from layup_shapes import bridged
 
@@ -121,9 +121,8 @@ def test_what_cannot_be_exported_is_refused(tmp_path: Path, to: list[str], given
         write_exports(tmp_path, to, options=ExportOptions(**given))  # type: ignore[arg-type]
 
 
-def run(*arguments: object) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "meshwind", "export", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120)
+def run(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    return meshwind("export", *arguments)
 
 
 def test_the_command_line(tmp_path: Path) -> None:

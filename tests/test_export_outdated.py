@@ -1,10 +1,9 @@
 """A folder that is wound anew loses all that was exported of the earlier run, and nothing else."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from command import meshwind
 from export_results import waisted_results
 
 from meshwind.core.errors import BadInputError
@@ -69,11 +68,11 @@ def test_from_the_command_line(tmp_path: Path) -> None:
         ["wind", str(DATA / "tank.ply"), "--out", "run", "--paths", "2", "--no-render"],
         ["export", "run", "--to", "fibers,frames,viewer"],
     ):
-        subprocess.run([sys.executable, "-m", "meshwind", *arguments], cwd=tmp_path, check=True, capture_output=True)
+        assert meshwind(*arguments, folder=tmp_path).returncode == 0
     assert {"fibers.vtu", "viewer.html", "frames/path_003.csv"} <= everything(tmp_path / "run")
     (tmp_path / "run" / "frames" / "robot.txt").write_text("mine")
     again = "wind", "--config", "run/meshwind.toml", "--quiet", "--overwrite"
-    subprocess.run([sys.executable, "-m", "meshwind", *again], cwd=tmp_path, check=True, capture_output=True)
+    assert meshwind(*again, folder=tmp_path).returncode == 0
     assert not exports_in(tmp_path / "run")
     assert everything(tmp_path / "run") >= {"report.json", "frames/robot.txt"}
     assert "viewer.html" not in everything(tmp_path / "run")

@@ -2,13 +2,13 @@
 
 import json
 import subprocess
-import sys
 from dataclasses import FrozenInstanceError, asdict
 from pathlib import Path
 
 import numpy as np
 import pytest
 from broken_meshes import MESHES, branch, double_skin, fin, flipped, klein, save_obj, torus
+from command import meshwind
 from mesh_shapes import Part, cone, joined, pear
 
 from meshwind.core.errors import BadInputError
@@ -96,8 +96,7 @@ def test_findings_are_frozen_and_plain() -> None:
 
 
 def checked(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "meshwind", "check", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120)
+    return meshwind("check", *arguments)
 
 
 def test_the_command_prints_the_findings_and_writes_nothing(tmp_path: Path) -> None:

@@ -1,12 +1,12 @@
 """Pictures from a results folder: all of them, each readable, none where this machine cannot draw."""
 
 import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from command import meshwind
 from export_results import leave
 from layup_shapes import bridged, cylinder, helices
 from PIL import Image
@@ -275,8 +275,7 @@ def test_a_redesign_shows_what_moved(tmp_path: Path) -> None:
 @pytest.mark.usefixtures("opengl")
 def test_the_command_line(waist: Path, tmp_path: Path) -> None:
     def run(*more: str) -> subprocess.CompletedProcess[str]:
-        command = [sys.executable, "-m", "meshwind", "render", str(waist), "--out", str(tmp_path / "o"), *more]
-        return subprocess.run(command, capture_output=True, text=True, timeout=120)
+        return meshwind("render", waist, "--out", tmp_path / "o", *more)
 
     done = run("--only", "winding, slip", "--size", "400x300", "--view", "-X")
     assert done.returncode == 0
@@ -290,6 +289,5 @@ def test_the_command_line(waist: Path, tmp_path: Path) -> None:
 
 
 def test_help_names_every_picture() -> None:
-    command = [sys.executable, "-m", "meshwind", "render", "--help"]
-    words = " ".join(subprocess.run(command, capture_output=True, text=True, check=True).stdout.split())
+    words = " ".join(meshwind("render", "--help").stdout.split())
     assert all(name in words for name in (*PICTURES, "redesign", "sheet"))

@@ -1,11 +1,10 @@
 """Tables of pins as spreadsheets of several languages write them, and what cannot be told of them."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from command import meshwind
 
 from meshwind import shapes
 from meshwind.core.errors import BadInputError
@@ -117,8 +116,7 @@ def test_many_rows_are_read_quickly(tmp_path: Path) -> None:
 
 
 def run(*arguments: str, folder: Path) -> tuple[int, str]:
-    command = [sys.executable, "-m", "meshwind", *arguments]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, cwd=folder)
+    done = meshwind(*arguments, folder=folder)
     return done.returncode, done.stderr
 
 

@@ -3,13 +3,13 @@
 import csv
 import json
 import subprocess
-import sys
 import tomllib
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from command import meshwind
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from program_parts import filament, work, write_run
@@ -54,9 +54,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def called(*arguments: object) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "meshwind", "program", *map(str, arguments)], capture_output=True, text=True, check=False
-    )
+    return meshwind("program", *map(str, arguments))
 
 
 def test_the_files_keep_to_their_contract(run: Path, tmp_path: Path) -> None:

@@ -1,8 +1,6 @@
 """Files of CAD given to `check` and `wind`: true to the CAD surface, in its unit, and the word on what to install."""
 
 import re
-import subprocess
-import sys
 from codecs import BOM_UTF8
 from collections.abc import Callable
 from pathlib import Path
@@ -10,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from command import meshwind
 
 import meshwind as mw
 from meshwind.core import opencascade
@@ -289,7 +288,6 @@ def test_without_opencascade_the_extra_is_named(suffix: str, tmp_path: Path, mon
 @pytest.mark.usefixtures("cad")
 def test_check_takes_a_step_file(tmp_path: Path) -> None:
     save(tmp_path / "part.step", pipe(), "INCH")
-    command = [sys.executable, "-m", "meshwind", "check", "part.step"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, cwd=tmp_path)
+    done = meshwind("check", "part.step", folder=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     assert "can be opened and wound" in done.stdout and "120 mm" in done.stdout

@@ -1,11 +1,10 @@
 """Messages speak of arguments to a script, and of options to who types a command."""
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from command import meshwind
 
 import meshwind as mw
 from meshwind.core.spoken import argument, as_command, called
@@ -51,8 +50,7 @@ def test_an_error_speaks_the_language_of_its_caller(
         getattr(mw, function)(mesh, **given)
     assert says in str(caught.value) and not OPTION.search(str(caught.value))
     words = [f"--{name.replace('_', '-')}={'auto' if value is None else value}" for name, value in given.items()]
-    command = [sys.executable, "-m", "meshwind", function, str(mesh), *words]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, check=False)
+    done = meshwind(function, mesh, *words, folder=tmp_path)
     assert done.returncode == 2 and its in done.stderr
 
 

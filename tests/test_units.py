@@ -3,14 +3,13 @@
 import inspect
 import json
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import meshio
 import numpy as np
 import pytest
 import pyvista as pv
+from command import meshwind
 from export_results import waisted_results
 from PIL import Image
 
@@ -113,10 +112,7 @@ def test_unknown_units_are_refused(name: object) -> None:
 
 def test_the_command_line_counts_in_millimetres(tmp_path: Path) -> None:
     assert inspect.signature(wind).parameters["units"].default is None
-    done = subprocess.run(
-        [sys.executable, "-m", "meshwind", "wind", str(DATA / "tank.ply"), "--units", "milimeter", "--out", "x"],
-        capture_output=True, text=True, cwd=tmp_path, timeout=60,
-    )  # fmt: skip
+    done = meshwind("wind", DATA / "tank.ply", "--units", "milimeter", "--out", "x", folder=tmp_path)
     assert done.returncode == 2
     assert done.stderr == (
         "meshwind: error: units is 'milimeter'; give mm, cm, m, um, in, ft, or \"\" where the unit is not known\n"
