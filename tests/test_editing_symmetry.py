@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
-from test_editing import hyperboloid
 
 import meshwind as mw
 from meshwind.core.vectors import rotation
@@ -13,7 +12,7 @@ from meshwind.editing.options import EditOptions
 from meshwind.editing.redesign import redesign
 from meshwind.editing.symmetry import mesh_group, net_group, planes, reflected
 from meshwind.mesh import Mesh, mesh_from
-from meshwind.surface import Surface
+from meshwind.surface import Surface, shapes
 from meshwind.workflow.options import Options
 
 X, Z = planes("x")[0], planes("z")[0]
@@ -21,9 +20,9 @@ WINDING = Options(4, 0.05, 61)
 FLIPS = {"x": [-1.0, 1.0, 1.0], "y": [1.0, -1.0, 1.0], "z": [1.0, 1.0, -1.0]}
 
 
-def uneven() -> Surface:
-    """A waist that is no surface of revolution, symmetric by reflection in x, y and z."""
-    return Surface(hyperboloid().control_points * [1.4, 1.0, 1.0])
+def uneven(count: int = 16) -> Surface:
+    """A waist that is no surface of revolution, symmetric by reflection in x, y and z, of so many spans each way."""
+    return Surface(shapes.hyperboloid(1.0, 0.6, 1.5, (count, count)).control_points * [1.4, 1.0, 1.0])
 
 
 def waist(turned: float = 0.0) -> Mesh:
@@ -57,7 +56,7 @@ def test_the_change_of_a_surface_is_its_own_mirror_image(mirror: str) -> None:
 
 
 def test_without_a_mirror_a_skew_winding_moves_the_part_otherwise() -> None:
-    surface = uneven()
+    surface = uneven(10)
     mask = np.zeros(surface.control_points.shape[:2], dtype=bool)
     mask[:3] = True
     free, kept = (edit(surface, WINDING, EditOptions(mirror=m, rounds=1, frozen=mask)) for m in (None, "x"))
