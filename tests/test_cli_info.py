@@ -7,6 +7,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
+from coarse_parts import coarse_vase, saved
 from command import meshwind
 from export_results import waisted_results
 
@@ -55,29 +56,24 @@ def test_a_run(tmp_path: Path) -> None:
 def test_a_redesign_which_its_own_options_repeat(tmp_path: Path) -> None:
     given = (
         "redesign",
-        DATA / "tank.ply",
+        saved(coarse_vase(), tmp_path / "vase.ply"),
         "--paths",
         "2",
+        "--particles",
+        "101",
         "--revolutions",
-        "0.2",
+        "0.8",
         "--no-render",
         "--out",
         tmp_path / "r",
     )
-    command = [sys.executable, "-m", "meshwind", *map(str, given)]
-    made = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
+    made = meshwind(*given)
+    assert made.returncode == 0, made.stderr
     lines = info(tmp_path / "r").stdout.splitlines()
     assert lines[0].startswith("run       meshwind redesign ")
     assert lines[1:] == made.stdout.splitlines()[:-1]
-    again = [
-        *command[:3],
-        "redesign",
-        "--config",
-        str(tmp_path / "r" / "meshwind.toml"),
-        "--out",
-        str(tmp_path / "s"),
-    ]
-    subprocess.run(again, capture_output=True, check=True, timeout=120)
+    again = meshwind("redesign", "--config", tmp_path / "r" / "meshwind.toml", "--out", tmp_path / "s")
+    assert again.returncode == 0, again.stderr
     for name in ("edited.ply", "edited.vtu", "meshwind.toml"):
         assert (tmp_path / "s" / name).read_bytes() == (tmp_path / "r" / name).read_bytes()
 

@@ -96,7 +96,7 @@ def test_render_draws_the_folder_again(vase: tuple[Path, str], tmp_path: Path) -
 
 def test_what_must_not_move_does_not_and_an_impossible_demand_exits_3(tmp_path: Path) -> None:
     done = meshwind("redesign", saved(coarse_vase(), tmp_path / "vase.ply"), "--revolutions", "0.3", "--paths", "4",
-                    "--particles", "101", "--bound", "0.01", "--freeze", "v<0.1", "--rounds", "2", "--no-render",
+                    "--particles", "101", "--bound", "0.01", "--freeze", "v<0.1", "--rounds", "1", "--no-render",
                     "--out", tmp_path / "out")  # fmt: skip
     assert done.returncode == 3, done.stderr
     assert "cannot reach the fibre" in done.stdout

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from coarse_parts import coarse_vase
 from test_editing import hyperboloid
 
 import meshwind as mw
@@ -71,11 +72,11 @@ def test_bridges_that_are_left_name_their_winding() -> None:
 
 
 def test_two_layers_at_once_on_the_vase_and_each_wound_anew_does_not_bridge() -> None:
-    found = redesign(DATA / "vase.stl", revolutions=[0.3, 0.8])
+    found = redesign(coarse_vase(), revolutions=[0.3, 0.8], paths=8, particles=201)
     assert found.windable and found.settled and len(found.windings) == 2
     assert min(found.before.gaps) > 0.1
     for turns, limit in zip((0.3, 0.8), found.after.gaps, strict=True):
-        again = mw.wind(found.mesh, revolutions=turns)
+        again = mw.wind(found.mesh, revolutions=turns, paths=8, particles=201)
         assert again.settled and again.paths.gap.max() == pytest.approx(limit, abs=1e-12)
         assert again.report()["paths"]["bridged_fraction"] == 0.0
 

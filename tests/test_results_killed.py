@@ -16,7 +16,7 @@ from meshwind.results.folder import prepare, writing
 Sights = list[dict[str, Any]]
 OLD = dict.fromkeys(("paths.vtp", "report.json", "winding.png"), "old") | {FOREIGN: "mine"}
 NEW = dict.fromkeys(("bridges.vtp", "paths.vtp", "report.json"), "new")
-MOMENTS = 50
+MOMENTS = 24
 
 
 def seen(*arguments: str | Path) -> Any:
