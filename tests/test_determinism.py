@@ -17,7 +17,7 @@ DATA = Path(__file__).parents[1] / "data"
 RUNS: dict[str, dict[str, float | str | None]] = {
     "vase.stl": {"revolutions": 0.8},
     "elbow.obj": {"revolutions": 0.3, "friction": 0.2},
-    "cast.ply": {"particles": None},
+    "tank.ply": {"particles": None},
 }
 """Bridges; friction; particles that are chosen."""
 THREADS = 1, 4
@@ -29,7 +29,7 @@ def leave(folder: Path) -> None:
         numba.set_num_threads(threads)
         for name, options in RUNS.items():
             out = folder / f"{name}-{threads}"
-            mw.wind(DATA / name, out=out, render=False, paths=3, **{"particles": 101, **options})  # type: ignore[arg-type]
+            mw.wind(DATA / name, out=out, render=False, paths=2, **{"particles": 51, **options})  # type: ignore[arg-type]
     write_exports(
         folder / "vase.stl-1", tuple(TARGETS), folder / "exports", ExportOptions(thickness=0.01, formats=tuple(FORMATS))
     )
