@@ -1,5 +1,7 @@
 """Results in other formats: read back by meshio, with a note of what is lost."""
 
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -89,6 +91,19 @@ def test_pyvista_opens_the_xdmf(written: tuple[Path, list[str]], part: str) -> N
     assert set(read.point_data) == set(same.point_data) and set(read.cell_data) == set(same.cell_data)
     for name in same.point_data:
         assert np.array_equal(read.point_data[name], same.point_data[name], equal_nan=True), name
+
+
+@pytest.mark.parametrize("part", PARTS)
+@pytest.mark.parametrize("name", ["vtk", "ply"])
+def test_vtk_reads_what_meshio_wrote(written: tuple[Path, list[str]], name: str, part: str) -> None:
+    """Without a word to standard error, where VTK says what it leaves out, and with every field."""
+    file = written[0] / "formats" / f"{part}.{name}"
+    code = "import sys; import pyvista as pv; pv.vtk_verbosity('info'); print(*pv.read(sys.argv[1]).array_names)"
+    ran = subprocess.run([sys.executable, "-c", code, str(file)], capture_output=True, text=True, check=True)
+    assert ran.stderr == ""
+    if name == "vtk":
+        same: Any = pv.read(file.with_suffix(".vtu"))
+        assert set(ran.stdout.split()) == set(same.array_names)
 
 
 def test_ply_holds_vectors_by_component(written: tuple[Path, list[str]]) -> None:

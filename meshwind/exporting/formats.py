@@ -84,15 +84,22 @@ def _apart(data: Data, widest: int) -> dict[str, NDArray[Any]]:
     return out
 
 
-def _vtk(folder: Path, part: _Part, suffix: str = "vtk") -> list[str]:
+def _whole(data: Data, kind: type[np.signedinteger[Any]]) -> Data:
+    """The data with all whole numbers of one kind."""
+    return {name: values if values.dtype.kind == "f" else values.astype(kind) for name, values in data.items()}
+
+
+def _vtk(folder: Path, part: _Part) -> list[str]:
+    """Whole numbers of 64 bits: VTK knows meshio's name of no other kind, and leaves out all fields from there on."""
+    points, cells = (_whole(data, np.int64) for data in (part.point_data, part.cell_data))
+    return _vtu(folder, replace(part, point_data=points, cell_data=cells), "vtk")
+
+
+def _vtu(folder: Path, part: _Part, suffix: str = "vtu") -> list[str]:
     data = {name: [values] for name, values in part.cell_data.items()}
     file, points = folder / f"{part.name}.{suffix}", _apart(part.point_data, 3)
     write_meshio(file, part.points, part.cells, point_data=points, cell_data=data, units=part.units)
     return []
-
-
-def _vtu(folder: Path, part: _Part) -> list[str]:
-    return _vtk(folder, part, "vtu")
 
 
 def _xdmf(folder: Path, part: _Part) -> list[str]:
@@ -124,7 +131,7 @@ def _ply(folder: Path, part: _Part) -> list[str]:
         lost += ["ply: no lines; paths and bridges are written as their points"] if "line" in kinds else []
         part = replace(part, cells=())
     cells = [(kind, block.astype(np.int32)) for kind, block in part.cells]  # PLY has no wider integers
-    data = _apart(part.point_data, 1)
+    data = _apart(_whole(part.point_data, np.int32), 1)
     write_meshio(folder / f"{part.name}.ply", part.points, cells, point_data=data, units=part.units)
     return lost
 
