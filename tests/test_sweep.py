@@ -13,6 +13,7 @@ from collections import deque
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from pyarrow import parquet
 
@@ -54,6 +55,11 @@ def test_lists_are_combined_and_tables_stand_for_themselves(tmp_path: Path) -> N
     )
     plan = read_study(study(tmp_path, text))
     assert [(c.options.revolutions, c.options.paths) for c in plan.cases] == [(0.25, 3), (0.5, 4), (0.5, 5)]
+
+
+def test_arrays_and_ranges_are_lists_too() -> None:
+    plan = read_study({"mesh": "a.stl", "paths": range(2, 4), "revolutions": np.linspace(0.2, 0.4, 2)})
+    assert [(c.options.paths, c.options.revolutions) for c in plan.cases] == [(2, 0.2), (2, 0.4), (3, 0.2), (3, 0.4)]
 
 
 def test_cases_that_are_alike_are_one_and_share_a_part(tmp_path: Path) -> None:

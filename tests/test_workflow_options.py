@@ -24,7 +24,9 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"particles": 2}, "particles is 2; give a whole number from 3 up"),
     ({"revolutions": float("inf")}, "revolutions is inf; give a number from 0 up"),
     ({"revolutions": -1}, "revolutions is -1; give a number from 0 up"),
-    ({"revolutions": "0.5"}, "revolutions is '0.5'; give a number from 0 up"),
+    ({"revolutions": "0,5"}, "revolutions is '0,5'; give a number as in 0.5 or 5/12, or auto"),
+    ({"revolutions": [0.5, 0.8]}, "revolutions is [0.5, 0.8]; give a number from 0 up"),
+    ({"paths": "all"}, "paths is 'all'; give a whole number from 1 up"),
     ({"revolutions": 50.1}, "revolutions is 50.1; give a number from 0 to 50"),
     ({"friction": -0.2}, "friction is -0.2; give a number from 0 to 10"),
     ({"friction": float("nan")}, "friction is nan; give a number from 0 to 10"),
@@ -39,7 +41,7 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"tolerance": 0.0}, "tolerance is 0; give a number from 1e-12 to 1"),
     ({"worst_fit": 0.0}, "worst_fit is 0; give a number above 0"),
     ({"threshold": -0.1}, "threshold is -0.1; give a number from 0 up"),
-    ({"revolutions": "many"}, "revolutions is 'many'; give a number from 0 up"),
+    ({"revolutions": "many"}, "revolutions is 'many'; give a number as in 0.5 or 5/12, or auto"),
     ({"spacing": 0.0}, "spacing is 0; give a number above 0"),
     ({"band_width": float("nan")}, "band_width is nan; give a number above 0"),
     ({"tex": -1.0}, "tex is -1; give a number above 0"),
@@ -109,6 +111,14 @@ def test_numbers_of_any_kind_are_taken() -> None:
     assert [type(value) for value in (options.paths, options.revolutions, options.opening)] == [int, float, float]
     assert Options(revolutions=100, particles=801).revolutions == 100.0
     assert (Options().revolutions, Options().turns) == (None, 0.5)
+
+
+def test_the_library_takes_the_words_of_the_command() -> None:
+    assert Options(revolutions="5/8").revolutions == 0.625
+    assert WindingOptions("0.5,5/8").several == WindingOptions(np.array([0.5, 0.625])).several == (0.5, 0.625)  # type: ignore[arg-type]
+    assert WindingOptions("1/2").revolutions == 0.5
+    words = mw.wind("data/tank.ply", paths="auto", particles="auto", revolutions="1/5", band_width=40.0).options
+    assert words == Options(paths=None, particles=None, revolutions=0.2, band_width=40.0)
 
 
 def test_a_result_shows_itself_in_one_line() -> None:

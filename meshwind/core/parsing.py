@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Collection
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from meshwind.core.errors import BadInputError
 
@@ -48,6 +48,11 @@ def count(text: str, name: str = "particles") -> int | None:
         return int(text)
     except ValueError as error:
         raise BadInputError(f"{name} is {text!r}; give a whole number, or auto") from error
+
+
+def chosen(given: int | str | None) -> int | None:
+    """A whole number, or None where `AUTO` leaves it open; other words are left to the check of the number."""
+    return None if isinstance(given, str) and given.strip().lower() == AUTO else cast(int | None, given)
 
 
 def read_toml(file: Path, kind: str) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 """The options of a redesign: what it is to hold, and how it is edited."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from math import isfinite
 from numbers import Integral, Real
@@ -141,11 +141,15 @@ class WindingOptions:
     )
 
     def __post_init__(self) -> None:
-        if isinstance(self.revolutions, Sequence) and not isinstance(self.revolutions, str):
-            if not len(self.revolutions):
-                raise BadInputError("revolutions is empty; give one number or more")
+        if isinstance(self.revolutions, str):
+            object.__setattr__(self, "revolutions", several_turns(self.revolutions))
+        if isinstance(self.revolutions, Iterable) and not isinstance(self.revolutions, str):
             numbers = tuple(number(each, "revolutions", 0.0) for each in self.revolutions)
+            if not numbers:
+                raise BadInputError("revolutions is empty; give one number or more")
             object.__setattr__(self, "revolutions", numbers if len(numbers) > 1 else numbers[0])
+        elif self.revolutions != AUTO:
+            object.__setattr__(self, "revolutions", number(self.revolutions, "revolutions", 0.0))
         if self.layers is not None and self.revolutions != AUTO:
             raise BadInputError("revolutions and layers both say what is wound; give one of both")
 

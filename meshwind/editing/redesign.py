@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +14,7 @@ from meshwind.core.cast import Floats
 from meshwind.core.cast import frozen as immutable
 from meshwind.core.compile_ahead import compile_ahead
 from meshwind.core.defaults import PATHS
+from meshwind.core.parsing import chosen as number_or_auto
 from meshwind.core.progress import Progress
 from meshwind.editing.bound import bound_of
 from meshwind.editing.edited_mesh import displaced, turned_over, volume_change
@@ -90,7 +92,8 @@ class Redesign:
     left: tuple[Left, ...] = ()
 
     def __repr__(self) -> str:
-        return f"<meshwind Redesign: {self.mesh.name}, {len(self.rounds)} rounds, {self.outcome.advice}>"
+        rounds = "1 round" if len(self.rounds) == 1 else f"{len(self.rounds)} rounds"
+        return f"<meshwind Redesign: {self.mesh.name}, {rounds}, {self.outcome.advice}>"
 
     @property
     def rounds(self) -> tuple[Round, ...]:
@@ -129,7 +132,7 @@ def redesign(  # noqa: PLR0913
     revolutions: float | str | Sequence[float] = WindingOptions.revolutions,
     layers: str | PathLike[str] | None = WindingOptions.layers,
     paths: int = PATHS,
-    particles: int | None = Options.particles,
+    particles: int | str | None = Options.particles,
     rounds: int = EditOptions.rounds,
     frozen: Frozen | str = EditOptions.frozen,
     bound: float | str | ArrayLike | None = EditOptions.bound,
@@ -160,14 +163,15 @@ def redesign(  # noqa: PLR0913
     mesh : str, PathLike, Mesh, trimesh.Trimesh, pyvista.PolyData, meshio.Mesh or tuple of two arrays
         Mesh, or the path of its file; see `read` for those of other libraries.
     revolutions : float, str or sequence of float, default "auto"
-        Revolutions of the winding, or "auto" to have them chosen.  Several are windings that the part is to hold all.
+        Revolutions of the winding, also as "5/12", or "auto" to have them chosen.  Several, also as "0.5,0.8", are
+        windings that the part is to hold all.
     layers : str or PathLike, optional
         File of a laminate as for `wind`, instead of the revolutions: the part is to hold each of its layers, helical or
         hoops, as if it lay on the bare part.
     paths : int, default 12
         Number of paths per family.
-    particles : int, default 401
-        Number of particles per path.
+    particles : int or "auto", default 401
+        Number of particles per path; "auto" or None picks as many as an error of the lengths of 1e-5 needs.
     rounds : int, default 10
         Maximum number of rounds.
     frozen : str, ndarray of bool or callable, optional
@@ -237,9 +241,9 @@ def redesign(  # noqa: PLR0913
         fairness,
         pressing,
     )
-    asked = WindingOptions(revolutions if isinstance(revolutions, str | float | int) else tuple(revolutions), layers)
+    asked = WindingOptions(cast(float | str | tuple[float, ...], revolutions), layers)  # which makes a tuple of several
     winding = Options(
-        paths, asked.most, particles, component=component, ends=ends, opening=opening, side=side,
+        paths, asked.most, number_or_auto(particles), component=component, ends=ends, opening=opening, side=side,
         opening_by=opening_by, tolerance=tolerance,
     )  # fmt: skip
     Course.of(winding, 0.0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from os import PathLike, fspath
 
+from meshwind.core.parsing import chosen
 from meshwind.core.progress import Progress
 from meshwind.mesh import check_file
 from meshwind.mesh.io.read import MeshLike
@@ -22,7 +23,7 @@ from meshwind.workflow.winding import wind_part
 def wind(  # noqa: PLR0913
     mesh: MeshLike,
     *,
-    paths: int | None = Options.paths,
+    paths: int | str | None = Options.paths,
     revolutions: float | str | None = Options.revolutions,
     friction: float | str = Options.friction,
     component: int | None = Options.component,
@@ -34,7 +35,7 @@ def wind(  # noqa: PLR0913
     threshold: float | None = Options.threshold,
     worst_fit: float = Options.worst_fit,
     units: str | None = Options.units,
-    particles: int | None = Options.particles,
+    particles: int | str | None = Options.particles,
     spacing: float | None = Options.spacing,
     band_width: float | None = Options.band_width,
     band_thickness: float | None = Options.band_thickness,
@@ -65,12 +66,12 @@ def wind(  # noqa: PLR0913
     ----------
     mesh : str, PathLike, Mesh, trimesh.Trimesh, pyvista.PolyData, meshio.Mesh or tuple of two arrays
         Mesh, or the path of its file; see `read` for those of other libraries.
-    paths : int or None, default 12
-        Number of paths per family; the two families turn in opposite senses.  None takes as many as cover the part
-        with bands of `band_width`.
+    paths : int or "auto", default 12
+        Number of paths per family; the two families turn in opposite senses.  "auto" or None takes as many as cover the
+        part with bands of `band_width`.
     revolutions : float or str, optional
-        Turns of a path from end to end; "auto" picks the value with stable paths and least bridging.  By default 0.5,
-        or those of `angle`.
+        Turns of a path from end to end, also as "5/12"; "auto" picks the value with stable paths and least bridging.
+        By default 0.5, or those of `angle`.
     friction : float or str, default 0
         Coefficient of friction between fibre and part, or "field:NAME" for a scalar of the mesh file.
     component : int, optional
@@ -96,8 +97,8 @@ def wind(  # noqa: PLR0913
     units : str, optional
         Unit of the mesh: "mm", "cm", "m", "um", "in" or "ft"; "" if it is not known.  Nothing is converted.  By
         default that of the mesh: the one that its file names, or "mm" for a file that names none.
-    particles : int or None, default 401
-        Number of particles per path.  None picks as many as an error of the lengths of 1e-5 needs.
+    particles : int or "auto", default 401
+        Number of particles per path.  "auto" or None picks as many as an error of the lengths of 1e-5 needs.
     spacing : float, optional
         Largest distance between neighbouring paths, in the mesh's units: paths are added until it is kept.
     band_width : float, optional
@@ -164,7 +165,7 @@ def wind(  # noqa: PLR0913
     """
     pinned = fspath(pins) if isinstance(pins, PathLike) else pins
     options = Options(
-        paths, revolutions, particles, friction, component, ends, opening, side, opening_by,
+        chosen(paths), revolutions, chosen(particles), friction, component, ends, opening, side, opening_by,
         tolerance, threshold, worst_fit, units, spacing, band_width, band_thickness, tex, tows,
         fibre_density, resin_density, fibre_volume, pinned, angle, angle_at, continuous, turn_start, turn_end,
     )  # fmt: skip

@@ -120,7 +120,8 @@ def _combined(path: Path, given: Mapping[str, Any]) -> list[dict[str, Any]]:
     for key in given:
         if key not in (*_NAMES, "mesh", "render"):
             raise BadInputError(f"{path}: {key!r} is no option; {nearest(key, ('mesh', 'render', 'case', *_NAMES))}")
-    lists = [list(value) if isinstance(value, list | tuple) else [value] for value in given.values()]
+    plain = [value.tolist() if hasattr(value, "tolist") else value for value in given.values()]  # of NumPy and pandas
+    lists = [list(value) if isinstance(value, list | tuple | range) else [value] for value in plain]
     many = 1
     for values in lists:
         many *= len(values)

@@ -240,6 +240,8 @@ class Options:
             )
         if self.particles is not None:
             set_(self, "particles", whole(self.particles, "particles", 3))
+        if isinstance(self.revolutions, str):
+            set_(self, "revolutions", turns(self.revolutions))
         if self.revolutions is not None and self.revolutions != AUTO:
             set_(self, "revolutions", number(self.revolutions, "revolutions", 0.0))
         check_resolution(self.turns, self.particles or _MOST_CHOSEN)
