@@ -1,6 +1,7 @@
 """Options: bad ones are refused with one line before anything is read, and defaults are the same everywhere."""
 
 import inspect
+from collections.abc import Callable
 from dataclasses import fields
 from fractions import Fraction
 from pathlib import Path
@@ -26,6 +27,9 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"revolutions": -1}, "revolutions is -1; give a number from 0 up"),
     ({"revolutions": "0,5"}, "revolutions is '0,5'; give a number as in 0.5 or 5/12, or auto"),
     ({"revolutions": [0.5, 0.8]}, "revolutions is [0.5, 0.8]; give a number from 0 up"),
+    ({"paths": 3.0}, "paths is 3.0; give a whole number from 1 up"),
+    ({"continuous": "no"}, "continuous is 'no'; give true or false"),
+    ({"friction": [0.1, 0.2]}, "tables and functions are for solve(..., friction=...)"),
     ({"paths": "all"}, "paths is 'all'; give a whole number from 1 up"),
     ({"revolutions": 50.1}, "revolutions is 50.1; give a number from 0 to 50"),
     ({"friction": -0.2}, "friction is -0.2; give a number from 0 to 10"),
@@ -119,6 +123,27 @@ def test_the_library_takes_the_words_of_the_command() -> None:
     assert WindingOptions("1/2").revolutions == 0.5
     words = mw.wind("data/tank.ply", paths="auto", particles="auto", revolutions="1/5", band_width=40.0).options
     assert words == Options(paths=None, particles=None, revolutions=0.2, band_width=40.0)
+
+
+TUBE = mw.shapes.cylinder(radius=1.0, length=3.0)
+MISTAKES: list[tuple[Callable[[], object], str]] = [
+    (lambda: mw.Page("800", 600), "size is 800x600; give two numbers of pixels"),  # type: ignore[arg-type]
+    (lambda: mw.render("no", page=(800, 600)), "page is of type tuple; give a Page"),  # type: ignore[arg-type]
+    (lambda: mw.render("no", only="cover"), "picture 'cover' is not known"),
+    (lambda: mw.render("no", animate="avi"), "movie 'avi' is not known"),
+    (lambda: mw.render(TUBE), "folder is of type Surface; give a folder of results"),  # type: ignore[arg-type]
+    (lambda: mw.families(TUBE, paths="3", revolutions=0.5), "paths is '3'; give a whole number"),  # type: ignore[arg-type]
+    (lambda: mw.families(TUBE, paths=3, revolutions="5/8"), "revolutions is '5/8'; give a number"),  # type: ignore[arg-type]
+    (lambda: mw.solve((0, 0), (0, 1), (0, 1)), "solve takes a Surface, not tuple"),  # type: ignore[arg-type]
+    (lambda: mw.read(([[0, 0, 0]], [[0, 1, 2], [0, 1, 2, 3]])), "different numbers of corners"),
+]
+
+
+@pytest.mark.parametrize(("made", "says"), MISTAKES, ids=[says for _, says in MISTAKES])
+def test_mistakes_in_a_script_are_named(made: Callable[[], object], says: str) -> None:
+    with pytest.raises(mw.BadInputError) as caught:
+        made()
+    assert says in str(caught.value) and "--" not in str(caught.value)
 
 
 def test_a_result_shows_itself_in_one_line() -> None:

@@ -28,4 +28,7 @@ class Shipped:
             return Path(str(files(self.package).joinpath(self.folder, f"{name.lower()}.toml")))
         if name.lower().endswith(".toml"):
             return Path(name)
-        raise BadInputError(f"no {self.kind} {name!r}; {nearest(name, self.names)}, or give a file.toml")
+        advice = nearest(name, self.names)
+        raise BadInputError(
+            f"no {self.kind} {name!r}; {advice}{'' if advice.endswith('?') else ','} or give a file.toml"
+        )

@@ -93,7 +93,7 @@ class OnePath(Geometric):
 
     @property
     def length(self) -> float:
-        """Length of the fibre, in the surface's units."""
+        """Length of the fibre, in the surface's units: the field `fibre_length` of paths.vtp, not the polyline's."""
         return float(self.paths.length[self.number])
 
     @property

@@ -118,7 +118,7 @@ class Paths(Geometric):
     def __getitem__(self, chosen: slice | Bools | Ints) -> Paths: ...
     def __getitem__(self, chosen: int | slice | Bools | Ints) -> OnePath | Paths:
         if isinstance(chosen, int | np.integer):
-            return OnePath(self, range(len(self))[int(chosen)])
+            return OnePath(self, int(np.arange(len(self))[chosen]))
         return self.subset(np.arange(len(self))[chosen])
 
     @property

@@ -36,7 +36,7 @@ def check_extent(surface: Surface) -> None:
 def check_count(value: object, name: str, least: int) -> None:
     """Raise BadInputError where a value is no whole number from `least` up."""
     if not isinstance(value, int | np.integer) or value < least:
-        raise BadInputError(f"{name} is {value}; give a whole number, at least {least}")
+        raise BadInputError(f"{name} is {value!r}; give a whole number, at least {least}")
 
 
 def check_share(value: float, name: str) -> None:
@@ -147,6 +147,8 @@ def solve(  # noqa: PLR0913
     """
     if particles is not None:
         check_count(particles, "particles", 3)
+    if not isinstance(surface, Surface):
+        raise BadInputError(f"solve takes a Surface, not {type(surface).__name__}; make one with fit(chart)")
     check_extent(surface)
     check_count(iterations, "iterations", 1)
     check_share(tolerance, "tolerance")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from numbers import Integral
 
 from meshwind.core.errors import BadInputError
 
@@ -51,7 +52,8 @@ class Page:
     view: str = "auto"
 
     def __post_init__(self) -> None:
-        if not (LEAST <= self.width <= MOST and LEAST <= self.height <= MOST):
+        sides = self.width, self.height
+        if not all(isinstance(side, Integral) and LEAST <= side <= MOST for side in sides):
             raise BadInputError(f"size is {self.width}x{self.height}; give two numbers of pixels, {LEAST} to {MOST}")
 
     @property

@@ -40,9 +40,9 @@ class Rendered:
 
 def render(
     folder: str | PathLike[str],
-    only: Sequence[str] = (),
+    only: str | Sequence[str] = (),
     page: Page | None = None,
-    animate: Sequence[str] = (),
+    animate: str | Sequence[str] = (),
     seconds: float = 5.0,
     out: str | PathLike[str] | None = None,
     progress: PictureProgress | None = None,
@@ -55,14 +55,14 @@ def render(
     ----------
     folder : str or PathLike
         Folder of a run or a redesign.
-    only : sequence of str, optional
+    only : str or sequence of str, optional
         Pictures to draw: "winding", "crossings", "coverage", "layers", "windability", "slip", "fit", "unrolled",
         "quads", "angles", "filament", "bands", "laminate", "redesign" or "sheet".  By default all, or none
         where there is a movie to draw.
     page : Page, optional
         Size and style.  By default 1600 x 1200 pixels, and 960 x 720 for movies.
-    animate : sequence of str, optional
-        Movies to draw: "gif", "mp4".
+    animate : str or sequence of str, optional
+        Movies to draw: "gif", "mp4", or both.
     seconds : float, default 5
         How long the fibres take to be laid in a movie.
     out : str or PathLike, optional
@@ -88,7 +88,12 @@ def render(
     >>> [file.name for file in drawn.files]
     ['coverage.png']
     """
-    paper = page or usual_page(only, animate)
+    if not isinstance(folder, str | PathLike):
+        raise BadInputError(
+            f"folder is of type {type(folder).__name__}; give a folder of results, or use result.plot()"
+        )
+    only, animate = ((names,) if isinstance(names, str) else tuple(names) for names in (only, animate))
+    paper = usual_page(only, animate) if page is None else page
     _check(only, animate, paper)
     ffmpeg = encoder() if "mp4" in animate else ""
     source, target = Path(folder), Path(folder if out is None else out)
@@ -118,6 +123,8 @@ def usual_page(only: Sequence[str], animate: Sequence[str]) -> Page:
 
 
 def _check(only: Sequence[str], animate: Sequence[str], page: Page) -> None:
+    if not isinstance(page, Page):
+        raise BadInputError(f"page is of type {type(page).__name__}; give a Page, such as Page(800, 600)")
     views = "auto", *NAMED
     choices = ("picture", only, (*PICTURES, REDESIGN, SHEET)), ("movie", animate, MOVIES), ("view", [page.view], views)
     for what, names, known in choices:

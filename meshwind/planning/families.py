@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from numbers import Real
 
 import numpy as np
 
@@ -102,8 +103,8 @@ def families(
     if not surface.periodic:
         raise BadInputError("families need a surface that closes in u; give end points to `solve` instead")
     check_count(paths, "paths", 1)
-    if not (np.isfinite(revolutions) and revolutions >= 0):
-        raise BadInputError(f"revolutions is {revolutions}; give a number >= 0")
+    if not (isinstance(revolutions, Real) and np.isfinite(float(revolutions)) and revolutions >= 0):
+        raise BadInputError(f"revolutions is {revolutions!r}; give a number >= 0")
     low, high = between
     if not 0.0 <= low < high <= 1.0:
         raise BadInputError(f"between is {low:g} and {high:g}; give two values of v from 0 to 1, the smaller first")

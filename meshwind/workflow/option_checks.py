@@ -29,7 +29,8 @@ def check_resolution(revolutions: float | str, particles: int) -> None:
 def whole(value: object, name: str, least: int) -> int:
     """A whole number from `least` up."""
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
-        raise BadInputError(f"{name} is {text(value)}; give a whole number from {least} up")
+        shown = repr(value) if isinstance(value, float) else text(value)  # 3.0, which is no 3
+        raise BadInputError(f"{name} is {shown}; give a whole number from {least} up")
     return int(value)
 
 
@@ -50,6 +51,12 @@ def check_word(value: object, name: str, words: tuple[str, ...]) -> None:
     """Raise BadInputError unless the value is one of the words."""
     if value not in words:
         raise BadInputError(f"{name} is {text(value)}; give {', '.join(words[:-1])} or {words[-1]}")
+
+
+def check_switch(value: object, name: str) -> None:
+    """Raise BadInputError for what is neither true nor false: a text such as "no" would count as true."""
+    if value not in (True, False):
+        raise BadInputError(f"{name} is {text(value)}; give true or false")
 
 
 def text(value: object) -> str:
@@ -73,6 +80,11 @@ def check_memory(paths: int, particles: int, revolutions: float) -> None:
 def read_friction(value: object) -> float | str:
     """The coefficient, or the name of a field."""
     if not isinstance(value, str):
+        if not isinstance(value, Real):
+            raise BadInputError(
+                f"friction is {text(value)}; give a number, or {FIELD}NAME for a scalar of the mesh file; "
+                "tables and functions are for solve(..., friction=...)"
+            )
         return number(value, "friction", 0.0, 10.0)
     if value.startswith(FIELD) and value.removeprefix(FIELD).strip():
         return value

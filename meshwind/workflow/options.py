@@ -17,6 +17,7 @@ from meshwind.workflow.option_checks import (
     FIELD,
     check_memory,
     check_resolution,
+    check_switch,
     check_word,
     number,
     read_friction,
@@ -266,6 +267,7 @@ class Options:
             set_(self, "fibre_volume", number(self.fibre_volume, "fibre_volume", 0.0, 1.0, above=True))
         if self.pins is not None and not (isinstance(self.pins, str) and self.pins.strip()):
             raise BadInputError(f"pins is {text(self.pins)}; give the path of a CSV file of the paths' ends")
+        check_switch(self.continuous, "continuous")
         _check_turns(self)
         _check_angle(self)
         if self.pins is not None and self.spacing is not None:

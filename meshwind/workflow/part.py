@@ -31,6 +31,10 @@ class Source:
     file: Path | None = None
 
 
+_FROM_POINTS = "give its file, or lay the paths by solve(..., friction=friction_from(surface, points, values))"
+"""What to do where a mesh in memory is to have a field of friction."""
+
+
 @dataclass(frozen=True)
 class Part:
     """A source with its chart and its surface: what all windings of it share."""
@@ -54,7 +58,7 @@ def read_source(mesh: MeshLike, options: Options) -> Source:
     if not isinstance(options.friction, str):
         return Source(taken, None, file)
     name = options.friction.removeprefix(FIELD).strip()
-    return Source(taken, read_field(mesh, name, "solve(..., friction=...) takes a table"), file)
+    return Source(taken, read_field(mesh, name, _FROM_POINTS), file)
 
 
 def read_field(mesh: MeshLike, name: str, instead: str) -> Scalars:

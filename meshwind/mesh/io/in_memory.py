@@ -31,7 +31,10 @@ def _of_arrays(vertices: Any, faces: Any) -> FileMesh:
     try:
         points, cells = np.asarray(vertices, dtype=np.float64), np.asarray(faces)
     except (TypeError, ValueError) as error:
-        raise BadInputError("vertices and faces are not arrays of numbers; give (n, 3) and (m, 3)") from error
+        raise BadInputError(
+            "vertices and faces are not arrays of numbers; give (n, 3) and (m, 3) or (m, 4), or faces with different "
+            "numbers of corners as a mesh of PyVista or meshio"
+        ) from error
     if points.ndim != 2 or points.shape[1] != 3 or cells.ndim != 2 or cells.shape[1] not in (3, 4):
         raise BadInputError(f"vertices are {points.shape} and faces {cells.shape}; give (n, 3) and (m, 3) or (m, 4)")
     if cells.shape[1] == 3:

@@ -6,6 +6,7 @@ Which of the two, and how far off they are, is found from the mesh itself (`evid
 from __future__ import annotations
 
 from dataclasses import replace
+from numbers import Real
 
 import numpy as np
 from threadpoolctl import ThreadpoolController
@@ -64,8 +65,8 @@ def fit(chart: Chart, tolerance: float = FIT_TOLERANCE) -> Surface:
     """
     if not isinstance(chart, Chart):
         raise BadInputError(f"fit takes a Chart, not {type(chart).__name__}; make one with flatten(annulus)")
-    if not tolerance > 0:
-        raise BadInputError(f"tolerance is {tolerance}; give a share of the diagonal above 0, such as 1e-5")
+    if not (isinstance(tolerance, Real) and tolerance > 0):
+        raise BadInputError(f"tolerance is {tolerance!r}; give a share of the diagonal above 0, such as 1e-5")
     annulus = chart.annulus
     limit = tolerance * float(np.linalg.norm(np.ptp(annulus.vertices, axis=0)))
     samples, lengths = Samples.of(chart), _lengths(chart)
