@@ -5,11 +5,13 @@ import os
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from numba.core.dispatcher import Dispatcher
 
+from meshwind.cli import main
 from meshwind.core import compile_ahead
 from meshwind.core.compile_ahead import JOBS, table
 from meshwind.core.kernel_types import from_text, to_text
@@ -76,6 +78,46 @@ def test_processes_that_end_leave_their_kernels_to_the_run(monkeypatch: pytest.M
     told: list[str] = []
     compile_ahead._Pool([0, 1, 2], told.append).run(2)  # and does not wait for ever
     assert told[0] == "compiling kernels for this machine once, 0 of 3"
+
+
+def test_the_same_number_is_not_said_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+    def slowly(*_: object) -> bool:
+        time.sleep(0.1)
+        return True
+
+    told: list[str] = []
+    monkeypatch.setattr(compile_ahead, "EVERY", 0.01)
+    monkeypatch.setattr(compile_ahead._Worker, "compile", slowly)
+    compile_ahead._Pool([0, 1, 2], told.append).run(1)
+    assert len(told) == len(set(told)) > 1
+
+
+def _ended(monkeypatch: pytest.MonkeyPatch, found: Callable[..., int]) -> int:
+    """The exit status of `meshwind compile` that finds 3 kernels which could not be kept."""
+    monkeypatch.setattr(compile_ahead, "compile_ahead", found)
+    monkeypatch.setattr(compile_ahead, "left_out", lambda: 3)
+    monkeypatch.setattr(sys, "argv", ["meshwind", "compile", "--quiet"])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert isinstance(ended.value.code, int)
+    return ended.value.code
+
+
+def test_kernels_that_a_full_folder_does_not_take_are_an_error_of_compile(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert _ended(monkeypatch, lambda **_: 4) == 2
+    assert capsys.readouterr().err.startswith("meshwind: error: 3 kernels could not be compiled or kept")
+
+
+def test_too_little_memory_is_told_in_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def full(**_: object) -> int:
+        raise MemoryError("Unable to allocate 42 GiB")
+
+    assert _ended(monkeypatch, full) == 2
+    assert capsys.readouterr().err.startswith("meshwind: error: out of memory: Unable to allocate 42 GiB; give fewer")
 
 
 ENTRIES = """

@@ -71,7 +71,11 @@ def test_a_spacing_that_is_no_length_is_refused(spacing: float) -> None:
         space_out(helices(3, 1.0, 11, CYLINDER), 1.0, spacing)
 
 
-def test_a_spacing_that_takes_too_many_paths_is_refused() -> None:
+@pytest.mark.parametrize("spacing", [1e-3, 1e-8, 1e-300])
+def test_a_spacing_that_takes_too_many_paths_is_refused_before_they_are_laid(
+    spacing: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
     even = wound(shapes.cone(1.0, 0.5, 3.0, (64, 8)), 6, 0.3, 25)
+    monkeypatch.setattr("meshwind.planning.spacing.solve", None)
     with pytest.raises(BadInputError, match="give a larger one"):
-        space_out(even, 0.3, 1e-3)
+        space_out(even, 0.3, spacing)

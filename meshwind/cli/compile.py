@@ -7,6 +7,7 @@ from meshwind.cli.output import print_report, stages
 from meshwind.cli.signature import with_records
 from meshwind.core.errors import BadInputError
 
+NOT_KEPT = 2
 EXAMPLES = """
     # once after installing, so that no run waits for it
     meshwind compile
@@ -37,11 +38,15 @@ def compile(*, printed: Printed) -> int:
         missing = compile_ahead(progress=progress, worth=0.0)
     left = left_out()
     if left:
-        typer.echo(f"meshwind: warning: {left} kernels could not be compiled or kept", err=True)
+        typer.echo(
+            f"meshwind: error: {left} kernels could not be compiled or kept; give them a folder with room for "
+            "20 MB by NUMBA_CACHE_DIR, or run it again if its processes were ended",
+            err=True,
+        )
     lines = [
         f"kernels   {len(table())}: {missing - left} compiled, {len(table()) - missing} kept already",
         f"folder    {folder}",
     ]
     figures = {"kernels": len(table()), "compiled": missing - left, "left_out": left, "folder": str(folder)}
     print_report(lines, figures, printed)
-    return 0
+    return NOT_KEPT if left else 0

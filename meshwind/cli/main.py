@@ -102,6 +102,8 @@ def main() -> None:
         sys.exit(INTERRUPTED)
     except BadInputError as error:
         _fail(str(error))
+    except MemoryError as error:
+        _fail(f"out of memory: {error or 'no more could be had'}; give fewer paths or particles, or a coarser mesh")
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)
     except OSError as error:

@@ -154,15 +154,16 @@ class _Pool:
         workers = [_Worker() for _ in range(processes)]
         self.serving = processes
         self.progress(f"{SAY}, 0 of {self.total}")
-        told = monotonic()
+        told, said = monotonic(), 0
         try:
             for worker in workers:
                 Thread(target=self._serve, args=(worker,), daemon=True).start()
             with self.change:
                 while self.serving:
-                    if monotonic() - told >= EVERY:
-                        told = monotonic()
-                        self.progress(f"{SAY}, {self.total - len(self.undone)} of {self.total}")
+                    done = self.total - len(self.undone)
+                    if done > said and monotonic() - told >= EVERY:
+                        told, said = monotonic(), done
+                        self.progress(f"{SAY}, {done} of {self.total}")
                     self.change.wait(EVERY)
         finally:
             for worker in workers:

@@ -169,8 +169,6 @@ def space_out(paths: Paths, revolutions: float, spacing: float, friction: float 
         ring, done = _fill(ring, spacing, winding)
         if done:
             break
-        if len(ring.paths) > _MAX_PATHS:
-            raise BadInputError(f"spacing {spacing:g} would take more than {_MAX_PATHS} paths; give a larger one")
     ring = _thinned(ring, spacing)
     pairs = ring.pairs()
     parted = ring.parted(pairs.first, pairs.step)
@@ -196,7 +194,10 @@ def _fill(ring: _Ring, spacing: float, winding: _Winding) -> tuple[_Ring, bool]:
     if not wide.any():
         return ring, True
     jump = usual > _JUMP
-    count = np.where(jump, 1, np.ceil(gap / spacing).astype(np.int64) - 1)[wide]
+    needed = np.where(jump, 1.0, np.ceil(gap / spacing) - 1.0)[wide]
+    if not len(ring.paths) + needed.sum() <= _MAX_PATHS:  # before they are solved, for which memory may not do
+        raise BadInputError(f"spacing {spacing:g} would take more than {_MAX_PATHS} paths; give a larger one")
+    count = needed.astype(np.int64)
     which = np.repeat(np.flatnonzero(wide), count)
     number = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count) + 1
     weight = number / (np.repeat(count, count) + 1.0)
