@@ -1,6 +1,7 @@
 """The whole of a run with revolutions, spacing, band, its material and pins, in its files and its report."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import meshio
@@ -92,6 +93,15 @@ def test_partings_are_reported() -> None:
 def test_the_picture_of_the_choice_is_drawn(tmp_path: Path) -> None:
     barrel = shapes.revolution(lambda z: 1.0 - 0.3 * (z - 1.0) ** 2, 0.0, 2.0, (64, 48))
     draw_revolutions(tmp_path / "revolutions.png", choose_revolutions(barrel, paths=6, further=False), "barrel")
+    assert (tmp_path / "revolutions.png").stat().st_size > 20000
+
+
+def test_a_choice_of_which_no_number_holds_is_told_and_drawn(tmp_path: Path) -> None:
+    barrel = shapes.revolution(lambda z: 1.0 - 0.3 * (z - 1.0) ** 2, 0.0, 2.0, (64, 48))
+    chosen = choose_revolutions(barrel, paths=6, further=False)
+    none = replace(chosen, feasible=replace(chosen.feasible, low=0.0, high=0.0, by="trials"))
+    assert "none that was tried keeps every fibre on the part" in none.why
+    draw_revolutions(tmp_path / "revolutions.png", none, "barrel")
     assert (tmp_path / "revolutions.png").stat().st_size > 20000
 
 

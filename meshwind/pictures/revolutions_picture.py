@@ -50,6 +50,8 @@ def _histogram(axes: Any, chosen: Revolutions, last: float) -> None:
     edges = np.linspace(0.0, last, _BARS + 1)
     share = chosen.pressing.share(0.5 * (edges[1:] + edges[:-1]))
     axes.stairs(share, edges, fill=True, color=_PRESSES, label="share of the surface on which both families press")
+    if not chosen.feasible.any:  # there is no interval in which it could be common
+        return
     for k, (low, high) in enumerate(chosen.common):
         words = f"most common interval ({100.0 * chosen.common_share:.3g} % of the surface)" if k == 0 else None
         axes.plot([low, min(high, last)], [chosen.common_share] * 2, color=_COMMON, linewidth=4, label=words)
@@ -59,11 +61,10 @@ def _bound(axes: Any, chosen: Revolutions, last: float) -> None:
     found = chosen.feasible
     if found.any and not np.isfinite(found.high):
         return
-    how = "Clairaut's bound" if found.by == "Clairaut" else "bound, by trials"
+    how = f"Clairaut's bound {found.high:.3g}" if found.by == "Clairaut" else f"bound, by trials, {found.high:.3g}"
+    how = how if found.any else "no number was found that holds all"
     where = {"both": "both ends", "start": "the start", "end": "the end"}.get(found.slides, "a rim")
-    axes.axvspan(
-        found.high, last, color=_SLIDES, alpha=0.8, zorder=0, label=f"may slide off {where} ({how} {found.high:.3g})"
-    )
+    axes.axvspan(found.high, last, color=_SLIDES, alpha=0.8, zorder=0, label=f"may slide off {where} ({how})")
     axes.axvline(found.high, color=_INK, linewidth=1.2)
     gains = (
         (f"friction {FRICTION:g}", chosen.with_friction),

@@ -83,14 +83,14 @@ class Revolutions:
     @property
     def why(self) -> str:
         """The reason for the choice, in a line."""
+        if not self.feasible.any:
+            return f"{self.choice:.3g} revolutions: none that was tried keeps every fibre on the part; here most hold"
         low, high = self.feasible.low, self.feasible.high
         ends = f"from {_UP.rounded(low):.3g} " if low > 0.0 else ""
         if np.isfinite(high):
             bound = f"{ends}up to {_DOWN.rounded(high):.3g} no fibres slide off"
         else:
             bound = f"{ends}up to {self.trials[-1].revolutions:.3g} no number was found to slide off"
-        if not self.feasible.any:
-            return f"{self.choice:.3g} revolutions: none keeps every fibre on the part; most fibres hold at this number"
         share = self.chosen.bridged_share
         bridged = "no fibre bridges" if share == 0.0 else f"{100.0 * share:.2g} % of the fibre bridges, the least"
         return f"{self.choice:.3g} revolutions: {bridged}; {bound}"

@@ -180,7 +180,7 @@ def about_choice(chosen: Revolutions | None) -> tuple[Note, ...]:
 
     more = []
     if chosen.with_friction > 0.0:
-        more.append(f"friction {FRICTION:g} would allow {_number(chosen.with_friction)}")
+        more.append(f"friction {FRICTION:g} may allow {_number(chosen.with_friction)}")
     if chosen.with_opening > 0.0:
         more.append("wider openings may allow more")
     allowed = f"; {', '.join(more)}" if more else ""
@@ -190,7 +190,7 @@ def about_choice(chosen: Revolutions | None) -> tuple[Note, ...]:
 
 
 def _number(turns: float) -> str:
-    return f"{turns:.3g}" if np.isfinite(turns) else "any number"
+    return f"about {turns:.3g}" if np.isfinite(turns) else "any number"
 
 
 def about_spacing(spaced: Spaced | None, units: str = "") -> tuple[Note, ...]:
