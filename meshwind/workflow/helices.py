@@ -109,6 +109,11 @@ class Turned:
             "or another angle"
         )
 
+    def taken(self, place: str | None = None) -> str:
+        """The revolutions that an angle takes which is met; place: where it was asked for, None for the widest."""
+        where = f"v={self.v:.3g}, {'the widest place' if place is None else place},"
+        return f"{np.degrees(self.asked):g} degrees at {where} take {self.revolutions:.6g} revolutions"
+
     def moved(self, paths: Paths) -> tuple[Note, ...]:
         """Note on the angle that paths have at the place, where it is another one as a filament closes with it."""
         now = wound_angle(paths, self.v)
@@ -125,12 +130,26 @@ class Turned:
 
 
 class Settled(NamedTuple):
-    """Paths a family, their revolutions, what is wound instead of an angle out of reach, or "", and the angle."""
+    """Paths a family, their revolutions, and those of an angle if one was asked for."""
 
     paths: int
     revolutions: float
-    shortfall: str
-    wish: Wish | None
+    turned: Turned | None
+
+    @property
+    def shortfall(self) -> str:
+        """What is wound instead of an angle out of reach, or ""."""
+        return "" if self.turned is None else self.turned.shortfall
+
+    @property
+    def wish(self) -> Wish | None:
+        """The angle that a filament is to have."""
+        return None if self.turned is None else self.turned.wish
+
+    @property
+    def taken(self) -> str:
+        """The revolutions that an angle takes which is met, or ""."""
+        return self.turned.taken() if self.turned is not None and self.turned.met else ""
 
 
 @dataclass(frozen=True)
@@ -185,7 +204,7 @@ class Helices:
         number = revolutions if turned is None else turned.revolutions
         assert isinstance(number, float)
         count = self.circuits(number, width, turns) if isinstance(paths, str) else paths
-        return Settled(count, number, *(("", None) if turned is None else (turned.shortfall, turned.wish)))
+        return Settled(count, number, turned)
 
     def circuits(self, revolutions: float, width: float, turns: tuple[str, str] = (AUTO, AUTO)) -> int:
         """Paths a family that cover the part with a band of this width; over caps they have an angle of their own."""

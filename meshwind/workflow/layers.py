@@ -68,6 +68,8 @@ def lay_layers(
                 layer, last = _lay(_Below.of(layers, surface), plan, ply, options, partial(_say_of, say, now))
             first = first if layers else last
             layers.append(layer)
+            if last is not None and last.taken:
+                notes.append((len(layers), Note(last.taken)))
             notes += [(len(layers), Note(line, warning=True)) for line in _faults(layer)]
     return Layered(Laminate(tuple(layers)), asked.file, options, first), of_layers(notes)
 

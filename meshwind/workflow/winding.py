@@ -204,9 +204,8 @@ def _planned(
     if options.angle is not None:
         turned = helices.turned_to(np.radians(options.angle), options.angle_at)
         revolutions = turned.revolutions
-        where = f"v={turned.v:.3g}, {'the widest place' if options.angle_at is None else options.angle_at},"
-        taken = f"{options.angle:g} degrees at {where} take {revolutions:.6g} revolutions"
-        notes.append(Note(turned.shortfall.removeprefix("its ") or taken, warning=not turned.met))
+        words = turned.shortfall.removeprefix("its ") or turned.taken(options.angle_at)
+        notes.append(Note(words, warning=not turned.met))
     paths = options.paths
     if paths is None:
         assert options.band_width is not None
