@@ -147,7 +147,7 @@ def test_the_command_line(folder: Path, capsys: pytest.CaptureFixture[str]) -> N
     assert [line.split(None, 1)[0] for line in lines if line[0] != " "] == [
         "part",
         "moved",
-        "index",
+        "exposure",
         "load",
         "file",
         "file",

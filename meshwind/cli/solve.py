@@ -40,8 +40,9 @@ def solve(
 ) -> int:
     """Solve the shell deck of a run with CalculiX, and hold its stresses against the strengths of the plies.
 
-    solved.vtu: displacements, and for each ply stresses and strains in the axes of its fibres, with the index of Tsai
-    and Wu of the worst ply of each element.  solved.json, solved.png: the same in figures and as a picture.
+    solved.vtu: displacements, and for each ply stresses and strains in the axes of its fibres, with the exposure of the
+    worst ply of each element: the load over that which makes it fail, by Tsai and Wu.  solved.json, solved.png: the
+    same in figures and as a picture.
     """
     from meshwind.run.solve import solve_deck
 

@@ -13,6 +13,7 @@ from typing import TextIO
 
 import numpy as np
 
+from meshwind.appearance.words import quantity
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.vectors import TINY
 from meshwind.exporting.elements import Elements
@@ -108,7 +109,7 @@ def write_decks(folder: Path, deck: Deck) -> list[str]:
 
 def _of_families(deck: Deck) -> list[str]:
     """Notes on a run without layers."""
-    notes = [f"{len(deck.elements)} elements, one layer of band {deck.plies.layer:.4g} thick"]
+    notes = [f"{len(deck.elements)} elements, one layer of band {quantity(deck.plies.layer, deck.units, 4)} thick"]
     thin = int(sum((ply.layers < LEAST).sum() for ply in deck.plies.families))
     if thin:
         notes.append(f"{thin} plies of elements have less than {LEAST:g} of a layer and count as that")
@@ -118,7 +119,7 @@ def _of_families(deck: Deck) -> list[str]:
 def _of_layers(deck: Deck) -> list[str]:
     """Notes on a laminate."""
     total = deck.plies.thickness
-    thick = f"{total.min():.4g} to {total.max():.4g} thick"
+    thick = f"{total.min():.4g} to {quantity(total.max(), deck.units, 4)} thick"
     notes = [f"{len(deck.elements)} elements, {len(deck.plies.stacks)} layers, {thick} in all"]
     thin = int((total < LEAST * deck.plies.layer).sum())
     if thin:

@@ -31,7 +31,7 @@ def solved_scene(done: Solved, made: SolvedFigures) -> MapScene:
         title, subtitle = "displacement", f"{moved}; no strengths are known of {made['material']}"
     else:
         values, look = np.repeat(done.worst.exposure, 4), EXPOSURE
-        title, subtitle = "Tsai-Wu index of the worst ply", f"{loaded(made)}  ·  {moved}"
+        title, subtitle = "exposure of the worst ply, by Tsai and Wu", f"{loaded(made)}  ·  {moved}"
     scale = look.scale(values, units)
     frame = Frame(f"{made['part']}: {title}", subtitle, units, _view(deck, values))
     return MapScene(frame, _part(deck), scale, scale.shares(values), worst=_ring(done, made, frame.view))

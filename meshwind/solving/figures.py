@@ -165,10 +165,10 @@ def _notes(done: Solved, about: ReadAbout, deck: str) -> list[str]:
 def lines(made: SolvedFigures) -> list[str]:
     """The figures in words, one line each."""
     units, moved = made["units"], made["moved"]
-    head = f"{made['part']}: {made['elements']} elements, {made['plies']} plies of {made['material']}"
+    head = f"{made['part']}: {made['elements']} elements, {made['plies']} directions of fibres, {made['material']}"
     out = [f"part      {head}", f"moved     up to {quantity(moved['length'], units)}, at {_at(moved['at'])}"]
     if (largest := made.get("largest")) is not None:
-        out += [f"index     {_words(largest, units)}", f"          {_stressed(largest, made['interaction'])}"]
+        out += [f"exposure  {_words(largest, units)}", f"          {_stressed(largest, made['interaction'])}"]
         inside = made.get("inside")
         if inside is not None and inside["number"] != largest["number"]:
             edge = quantity(made["edge"], units, 2)
