@@ -264,7 +264,7 @@ def passes_over_a_cap(
         raise BadInputError(
             f"a fibre that touches the opening at the {cap} at u={touch[np.argmax(lost)] % 1.0:.3f} does not reach the"
             f" rim across from it: it turns back before; give an {argument('opening')} that is, with half a band's "
-            "width, as narrow as the part at its narrowest"
+            "width, as narrow as the part at its narrowest, or another turnaround there, as at a rim that is open"
         )
     fibres = (Stretch(there.marched.with_more(back.marched), end.half, at_end),)
     paths, angle = _as_paths(surface, (end,), fibres, particles, friction)

@@ -84,7 +84,7 @@ class Revolutions:
     def why(self) -> str:
         """The reason for the choice, in a line."""
         if not self.feasible.any:
-            return f"{self.choice:.3g} revolutions: none that was tried keeps every fibre on the part; here most hold"
+            return f"{self.choice:.3g} revolutions: no number was found that keeps every fibre; here most hold"
         low, high = self.feasible.low, self.feasible.high
         ends = f"from {_UP.rounded(low):.3g} " if low > 0.0 else ""
         if np.isfinite(high):

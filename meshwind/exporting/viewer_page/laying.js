@@ -116,7 +116,7 @@ if (program) {
   byId("facts").append(Object.assign(document.createElement("li"), { textContent: program.machine }));
   for (const id of ["pace", "keys"]) byId(id).hidden = false;
   const paces = [1, 4, 16, 64, 256].filter((pace, n) => n < 2 || program.time.at(-1) / pace > 4);
-  byId("speed").append(...paces.map(pace => new Option(pace === 1 ? "as the machine" : `${pace} times as fast`, pace)));
+  byId("speed").append(...paces.map(pace => new Option(pace === 1 ? "as the machine" : `${pace} × as fast`, pace)));
   byId("speed").value = paces.find(pace => program.time.at(-1) / pace < 2.5 * SECONDS) || paces.at(-1);
   byId("next").hidden = !program.faulty.length;
   byId("next").textContent = "next at fault";
