@@ -75,8 +75,9 @@ def test_a_program_that_is_wrong_is_told(capsys: pytest.CaptureFixture[str]) -> 
     assert not found.good.all()
     bad = found.stretches.first[~found.good]
     assert set(b.passed[bad]) == {2}
-    (fault, *_) = found.faults(b)
+    (fault, *_) = found.faults(b, "mm")
     assert fault.kind == LIES and "in layer 1, circuit 2, pass out" in fault.words
+    assert f"lies {found.distance[~found.good][0]:,.3g} mm from where" in fault.words
     assert b.passed[fault.index] == 2
     backwards = rewind(replace(made, blocks=replace(b, eye_x=b.eye_x + 40.0)), ground)
     assert not backwards.good.any()

@@ -189,7 +189,8 @@ def program(work: Work, machine: Machine, tension: float = 0.0) -> Program:
         left = sum(fault.kind == wanted for fault in another.faults)
         better = len(another.faults) < len(best.faults) and another.nearest >= lowest
         better &= not other.shorter or smooth(another.blocks, _steps(work), _SMALL * work.diagonal)
-        tried.append(f"{words}: {left} of {hits} blocks still meet the part; {'taken' if better else 'not taken'}")
+        still = f"{left} of {hits} blocks still meet" if left <= hits else f"{left} blocks meet, not {hits},"
+        tried.append(f"{words}: {still} the part; {'taken' if better else 'not taken'}")
         best, way = (another, other) if better else (best, way)
     blocks = replace(best.blocks, tension=frozen(np.where(best.blocks.kind == TRAVEL, 0.0, tension)))
     return replace(best, blocks=blocks, remedies=tuple(tried))

@@ -89,7 +89,7 @@ def write_program(
         say("wind again")
     rewound = rewind(made, Ground.of(results)) if again else None
     if rewound is not None:
-        made = replace(made, faults=tuple(sorted([*made.faults, *rewound.faults(made.blocks)])))
+        made = replace(made, faults=tuple(sorted([*made.faults, *rewound.faults(made.blocks, work.units)])))
     target = Path(folder if out is None else out)
     notes: list[str] = []
     with beside(target) as staging:

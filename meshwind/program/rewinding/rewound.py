@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from meshwind.appearance.words import quantity
 from meshwind.core.cast import Bools, Floats, Ints
 from meshwind.program.blocks import Blocks
 from meshwind.program.faults import LIES, Fault, place
@@ -54,15 +55,16 @@ class Rewound:
         """Whether the fibre of each stretch comes to lie where it was planned, within half of its band's width."""
         return np.asarray(self.followed & (self.distance <= self.allowed))
 
-    def faults(self, blocks: Blocks) -> list[Fault]:
-        """The stretches that are not good."""
-        return [Fault(int(self.block[k]), LIES, self._words(int(k), blocks)) for k in np.flatnonzero(~self.good)]
+    def faults(self, blocks: Blocks, units: str = "") -> list[Fault]:
+        """The stretches that are not good; units: of the mesh."""
+        return [Fault(int(self.block[k]), LIES, self._words(int(k), blocks, units)) for k in np.flatnonzero(~self.good)]
 
-    def _words(self, k: int, blocks: Blocks) -> str:
+    def _words(self, k: int, blocks: Blocks, units: str) -> str:
         where = place(blocks, int(self.block[k]))
         if self.followed[k]:
             slid = f", sliding where it needs a friction of {self.slip[k]:.2g}" if self.slid[k] else ""
-            return f"wound again, the fibre lies {self.distance[k]:.3g} from where it was planned{slid}, {where}"
+            away = quantity(float(self.distance[k]), units, 3)
+            return f"wound again, the fibre lies {away} from where it was planned{slid}, {where}"
         if self.slid[k]:
             return f"wound again, the fibre slides off where it needs a friction of {self.slip[k]:.2g}, {where}"
         return f"wound again, the fibre cannot be followed {where}"
