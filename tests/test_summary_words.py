@@ -1,6 +1,7 @@
 """Words of the summary on paths that are not at rest, and on coarse meshes and flat ends."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from meshwind.mesh.geometry.topology import loops
 from meshwind.mesh.opening.flat_ends import has_flat_ends
 from meshwind.results.report_types import Failure
 from meshwind.run.layer_table import _covered
-from meshwind.run.summary import _not_converged
+from meshwind.run.summary import _edit, _not_converged
 from meshwind.surface import FitError
 from meshwind.workflow.notes import about_fit
 
@@ -43,6 +44,18 @@ def test_paths_that_are_not_at_rest_are_told_in_one_line_for_each_kind() -> None
         "warning   1 path not at rest, 5: stopped",
         "advice    0.3 revolutions hold all 24 paths",
     ]
+
+
+def test_a_gap_that_counts_as_none_is_not_called_less_than_what_does() -> None:
+    """The limit follows the surface's uncertainty from place to place; the report has a usual one."""
+
+    def told(after: float, bridged: float) -> str:
+        both: Any = {"bridged": {"before": 0.04, "after": bridged}, "max_gap": {"before": 2.0, "after": after}}
+        rest: Any = {"displacement": {"max": 1.0, "mean": 0.1}, "volume": {"relative": None}, "threshold": 0.0051}
+        return _edit(both | rest, "mm")[0]
+
+    assert "(gaps below 0.0051 mm are ignored)" in told(0.004, 0.0) and "below" in told(0.0068, 0.01)
+    assert "(gaps within the surface's uncertainty, usually 0.0051 mm, are ignored)" in told(0.0068, 0.0)
 
 
 def test_a_cover_beyond_all_bounds_is_told_as_such() -> None:

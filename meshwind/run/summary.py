@@ -207,10 +207,14 @@ def _round(figures: RoundFigures, units: str) -> str:
 def _edit(figures: RedesignFigures, units: str) -> list[str]:
     """What the edit came to, on the mesh that was fitted and wound again."""
     bridged, gap, moved, volume = figures["bridged"], figures["max_gap"], figures["displacement"], figures["volume"]
+    usual = quantity(figures["threshold"], units, 2)
+    ignored = f"below {usual}"
+    if bridged["after"] == 0.0 and gap["after"] > figures["threshold"]:  # which is more in some places
+        ignored = f"within the surface's uncertainty, usually {usual},"
     return [
         f"wound     from the edited mesh: bridged {100 * bridged['before']:.3g} % before, "
         f"{100 * bridged['after']:.3g} % after; largest gap {quantity(gap['before'], units, 3)} before, "
-        f"{quantity(gap['after'], units, 3)} after (gaps below {quantity(figures['threshold'], units, 2)} are ignored)",
+        f"{quantity(gap['after'], units, 3)} after (gaps {ignored} are ignored)",
         f"moved     up to {quantity(moved['max'], units, 3)}, {quantity(moved['mean'], units, 3)} on average; "
         + (f"volume {100 * volume['relative']:+.2g} %" if volume["relative"] is not None else "volume unknown"),
     ]
