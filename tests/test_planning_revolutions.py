@@ -11,10 +11,10 @@ from meshwind.path import solve
 from meshwind.planning.alternatives import with_wider_openings
 from meshwind.planning.clairaut import profile
 from meshwind.planning.families import families, hoop_revolutions, square_revolutions
-from meshwind.planning.feasible import feasible_revolutions
+from meshwind.planning.feasible import Feasible, feasible_revolutions
 from meshwind.planning.pressing import intervals, pressing
 from meshwind.planning.revolutions import choose_revolutions
-from meshwind.planning.trials import trial
+from meshwind.planning.trials import holding_revolutions, trial
 from meshwind.surface import Surface, shapes
 from meshwind.surface.forms import fundamental_forms
 
@@ -213,3 +213,19 @@ def test_trials_measure_what_bridges() -> None:
     flask = revolved(lambda v: 1.0 - 0.35 * np.exp(-(((v - 0.5) / 0.16) ** 2)), 32, 32)
     assert trial(flask, 0.1).bridged_share > 0.2
     assert trial(flask, 0.1).feasible
+
+
+def test_where_no_number_holds_all_starts_one_is_taken_that_holds_those_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """No small shape is known of which that is so: of a scanned femur it is. The barrel's numbers are kept back."""
+    part = barrel((32, 16))
+    bound = feasible_revolutions(part, 0.0, None, 4, 101).high
+    beyond = trial(part, 1.2 * bound, 0.0, 3)
+    assert not beyond.feasible
+    none = Feasible(0.0, 0.0, "trials", "both", (beyond,))
+    monkeypatch.setattr("meshwind.planning.revolutions.feasible_revolutions", lambda *_: none)
+    found = choose_revolutions(part, paths=4, particles=101, further=False)
+    assert 0.5 * bound < found.choice < bound and found.chosen.feasible
+    assert "these fibres hold, others between them may not" in found.why
+    assert holding_revolutions(part, found.choice, 0.0, 4, 101) == 0.0

@@ -19,7 +19,7 @@ from meshwind.planning.alternatives import alternatives
 from meshwind.planning.families import hoop_revolutions, square_revolutions
 from meshwind.planning.feasible import Feasible, feasible_revolutions
 from meshwind.planning.pressing import Intervals, Pressing, pressing
-from meshwind.planning.trials import PATHS, Trial, full_trial, trial
+from meshwind.planning.trials import PATHS, Trial, full_trial, holding_revolutions, trial
 from meshwind.planning.windings import spread
 from meshwind.surface.surface import Surface
 
@@ -84,7 +84,8 @@ class Revolutions:
     def why(self) -> str:
         """The reason for the choice, in a line."""
         if not self.feasible.any:
-            return f"{self.choice:.3g} revolutions: no number was found that keeps every fibre; here most hold"
+            here = "these fibres hold, others between them may not" if self.chosen.feasible else "here most hold"
+            return f"{self.choice:.3g} revolutions: no number was found that keeps every fibre; {here}"
         low, high = self.feasible.low, self.feasible.high
         ends = f"from {_UP.rounded(low):.3g} " if low > 0.0 else ""
         if np.isfinite(high):
@@ -176,6 +177,13 @@ def choose_revolutions(
     checked = choice.wind_best()
     trials = [*feasible.trials, *choice.tried, *checked]
     chosen = _least_bridging(checked or [each for each in trials if each.revolutions > 0.0])
+    if not feasible.any:  # with any starts; those asked for may hold all the same
+        say("fewer, which hold")
+        fewer = holding_revolutions(surface, chosen.revolutions, friction, paths, particles)
+        held = full_trial(surface, fewer or chosen.revolutions, friction, paths, particles)
+        if held.feasible:
+            chosen = held
+            trials.append(held)
     gains = 0.0, 0.0
     if further and feasible.any and np.isfinite(feasible.high):
         say("what more friction and wider openings allow")

@@ -150,10 +150,21 @@ def full_trial(
     surface: Surface, revolutions: float, friction: float | Friction, paths: int, particles: int | None
 ) -> Trial:
     """Wind both families at full resolution, as `solve` does."""
-    rims = families(surface, paths, revolutions)
-    laid = solve(surface, rims.start, rims.end, particles=particles, family=rims.family, friction=friction)
+    laid = _laid(surface, revolutions, friction, paths, particles)
     bridged = bridged_share((lengths(laid), converged_or_all(laid.status)))
     return Trial(float(revolutions), float((laid.status == Status.CONVERGED).mean()), bridged, slid_off(laid.status))
+
+
+def holding_revolutions(
+    surface: Surface, revolutions: float, friction: float | Friction, paths: int, particles: int | None
+) -> float:
+    """Fewer revolutions that hold all paths, 0 where none are known or the number itself does."""
+    return _laid(surface, revolutions, friction, paths, particles).holding.revolutions
+
+
+def _laid(surface: Surface, revolutions: float, friction: float | Friction, paths: int, particles: int | None) -> Paths:
+    rims = families(surface, paths, revolutions)
+    return solve(surface, rims.start, rims.end, particles=particles, family=rims.family, friction=friction)
 
 
 def slid_off(status: Ints) -> tuple[int, int]:
