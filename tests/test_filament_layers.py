@@ -129,7 +129,7 @@ def test_a_laminate_of_three_layers(tmp_path: Path) -> None:
     layers = result.report()["laminate"]
     assert [each["kind"] for each in layers] == ["helical", "hoop", "helical"]
     told = [note for note in result.report()["notes"] if "degrees at" in note]  # of the layer that has an angle
-    assert len(told) == 1 and told[0].startswith("layer 1: 30 degrees at v=0.5, the widest place, take ")
+    assert len(told) == 1 and told[0].startswith("layer 1: 20 degrees at v=0.5, the widest place, take ")
     for each, thickness in zip(layers, (2.4 / 1.8 / 0.6 / 12.0, 0.3, 0.3), strict=True):
         assert each["band_thickness"] == pytest.approx(thickness, rel=1e-12)
         assert each["volume"] == pytest.approx(12.0 * thickness * each["fibre_length"], rel=1e-9)
