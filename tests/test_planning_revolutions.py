@@ -14,7 +14,7 @@ from meshwind.planning.families import families, hoop_revolutions, square_revolu
 from meshwind.planning.feasible import Feasible, feasible_revolutions
 from meshwind.planning.pressing import intervals, pressing
 from meshwind.planning.revolutions import choose_revolutions
-from meshwind.planning.trials import holding_revolutions, trial
+from meshwind.planning.trials import holding_trial, trial
 from meshwind.surface import Surface, shapes
 from meshwind.surface.forms import fundamental_forms
 
@@ -228,4 +228,4 @@ def test_where_no_number_holds_all_starts_one_is_taken_that_holds_those_asked_fo
     found = choose_revolutions(part, paths=4, particles=101, further=False)
     assert 0.5 * bound < found.choice < bound and found.chosen.feasible
     assert "these fibres hold, others between them may not" in found.why
-    assert holding_revolutions(part, found.choice, 0.0, 4, 101) == 0.0
+    assert holding_trial(part, found.choice, 0.0, 4, 101) == found.chosen  # a number that holds stays

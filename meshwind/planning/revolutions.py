@@ -19,7 +19,7 @@ from meshwind.planning.alternatives import alternatives
 from meshwind.planning.families import hoop_revolutions, square_revolutions
 from meshwind.planning.feasible import Feasible, feasible_revolutions
 from meshwind.planning.pressing import Intervals, Pressing, pressing
-from meshwind.planning.trials import PATHS, Trial, full_trial, holding_revolutions, trial
+from meshwind.planning.trials import PATHS, Trial, full_trial, holding_trial, trial
 from meshwind.planning.windings import spread
 from meshwind.surface.surface import Surface
 
@@ -179,8 +179,7 @@ def choose_revolutions(
     chosen = _least_bridging(checked or [each for each in trials if each.revolutions > 0.0])
     if not feasible.any:  # with any starts; those asked for may hold all the same
         say("fewer, which hold")
-        fewer = holding_revolutions(surface, chosen.revolutions, friction, paths, particles)
-        held = full_trial(surface, fewer or chosen.revolutions, friction, paths, particles)
+        held = holding_trial(surface, chosen.revolutions, friction, paths, particles)
         if held.feasible:
             chosen = held
             trials.append(held)

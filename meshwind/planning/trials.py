@@ -150,16 +150,21 @@ def full_trial(
     surface: Surface, revolutions: float, friction: float | Friction, paths: int, particles: int | None
 ) -> Trial:
     """Wind both families at full resolution, as `solve` does."""
+    return _judged(revolutions, _laid(surface, revolutions, friction, paths, particles))
+
+
+def holding_trial(
+    surface: Surface, revolutions: float, friction: float | Friction, paths: int, particles: int | None
+) -> Trial:
+    """The same by fewer revolutions that hold all paths; by the number itself where it does, or none are known."""
     laid = _laid(surface, revolutions, friction, paths, particles)
+    fewer = laid.holding.revolutions
+    return full_trial(surface, fewer, friction, paths, particles) if fewer > 0.0 else _judged(revolutions, laid)
+
+
+def _judged(revolutions: float, laid: Paths) -> Trial:
     bridged = bridged_share((lengths(laid), converged_or_all(laid.status)))
     return Trial(float(revolutions), float((laid.status == Status.CONVERGED).mean()), bridged, slid_off(laid.status))
-
-
-def holding_revolutions(
-    surface: Surface, revolutions: float, friction: float | Friction, paths: int, particles: int | None
-) -> float:
-    """Fewer revolutions that hold all paths, 0 where none are known or the number itself does."""
-    return _laid(surface, revolutions, friction, paths, particles).holding.revolutions
 
 
 def _laid(surface: Surface, revolutions: float, friction: float | Friction, paths: int, particles: int | None) -> Paths:
