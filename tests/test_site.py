@@ -14,13 +14,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from command import meshwind
 from needs import STRICT
 from readme.documents import README, ROOT, SITE, documents
 from typer.main import get_command
 
 import meshwind as mw
 from meshwind.cli.main import app
-from meshwind.core.spoken import as_command
 
 PAGES = documents()
 FENCE = re.compile(r"^```(sh|python|text|toml)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -157,11 +157,10 @@ def run(line: str, folder: Path, made: dict[str, Made]) -> str:
 
 
 def output(words: list[str]) -> str:
-    """What a command prints that ends well; in this process, as starting one takes a second."""
-    with as_command(), contextlib.redirect_stdout(io.StringIO()) as printed:
-        status = app(words[1:], standalone_mode=False)
-    assert not status, f"{shlex.join(words)}\n{printed.getvalue()}"
-    return printed.getvalue()
+    """What a command prints that ends well."""
+    done = meshwind(*words[1:])
+    assert done.returncode == 0, f"{shlex.join(words)}\n{done.stdout}{done.stderr}"
+    return done.stdout
 
 
 def _says(said: str, quoted: str) -> bool:
