@@ -52,11 +52,6 @@ class Material:
         """Shear modulus of the isotropic plane across the fibres, e2 / (2 (1 + nu23))."""
         return self.e2 / (2.0 * (1.0 + self.nu23))
 
-    @staticmethod
-    def stress(value: float, units: str) -> float:
-        """A stress in MPa in N over the unit of length squared."""
-        return value * millimetres(units) ** 2
-
     def moduli(self, units: str) -> tuple[float, ...]:
         """E1, E2, E3, nu12, nu13, nu23, G12, G13, G23; moduli in N over the unit of length squared."""
         scale = millimetres(units) ** 2

@@ -15,13 +15,14 @@ import numpy as np
 
 from meshwind.appearance.words import quantity
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.units import millimetres
 from meshwind.core.vectors import TINY
 from meshwind.exporting.elements import Elements
 from meshwind.exporting.material import STRENGTHS, Material
 from meshwind.exporting.plies import Plies
 from meshwind.exporting.shell_about import About, fingerprint, write_about
 from meshwind.exporting.shell_groups import SHARES, TOLERANCE, Groups, Laid, grouped
-from meshwind.exporting.shell_loads import FORCE, Loads, Pressing, step
+from meshwind.exporting.shell_loads import FORCE, Loads, step
 from meshwind.exporting.shell_nodes import nodes_of
 from meshwind.exporting.shell_sections import Sections, listed
 from meshwind.path.winding_angle import axes
@@ -199,16 +200,16 @@ def _write(file: TextIO, deck: Deck, quadratic: bool) -> None:
         file.writelines(f"{line}\n" for line in _strengths(deck))
     lines = deck.fixed.fixed() if quadratic else deck.sections.distributed()
     file.writelines(f"{line}\n" for line in lines)
-    file.writelines(f"{line}\n" for line in step(nodes, deck.loads, deck.units, _pressing(deck, quadratic)))
+    file.writelines(f"{line}\n" for line in step(nodes, deck.loads, deck.units, _pressed(deck, quadratic), quadratic))
 
 
-def _pressing(deck: Deck, quadratic: bool) -> Pressing:
-    """How pressure acts: CalculiX makes shells solid, and presses on their inner faces."""
+def _pressed(deck: Deck, quadratic: bool) -> Floats:
+    """Area (k,) of each element's inside over that which is pressed on: in CalculiX the inner face of a solid."""
     elements = deck.elements
     if not quadratic:
-        return Pressing(elements.pressed, False)
+        return elements.pressed
     inner = elements.offset(0.5 * thicknesses(deck).sum(axis=0))
-    return Pressing(elements.pressed / np.maximum(inner, _LEAST_FACE), True)
+    return np.asarray(elements.pressed / np.maximum(inner, _LEAST_FACE))
 
 
 def _head(deck: Deck, quadratic: bool) -> Iterator[str]:
@@ -275,7 +276,8 @@ def _material(deck: Deck) -> Iterator[str]:
 
 def _strengths(deck: Deck) -> Iterator[str]:
     """For the criterion of Tsai and Wu of Abaqus, where strengths in compression are below 0."""
-    xt, xc, yt, yc, s = (deck.material.stress(deck.material.strengths[name], deck.units) for name in STRENGTHS)
+    scale = millimetres(deck.units) ** 2
+    xt, xc, yt, yc, s = (scale * deck.material.strengths[name] for name in STRENGTHS)
     yield "*FAIL STRESS"
     yield ", ".join(f"{value:.9g}" for value in (xt, -xc, yt, -yc, s, deck.material.interaction))
 

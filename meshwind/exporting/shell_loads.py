@@ -60,19 +60,12 @@ class Loads:
         return replace(self, pressure=pressure * mm * mm, axial=axial, torque=torque * 1000.0 / mm)
 
 
-@dataclass(frozen=True)
-class Pressing:
-    """How a deck has pressure: the area (k,) of each element's inside over that which the solver presses on.
+def step(nodes: Nodes, asked: Loads, units: str, shares: Floats, calculix: bool) -> Iterator[str]:
+    """Lines of the load step.
 
-    calculix: whether the deck is for CalculiX, which has output of its own kinds.
+    shares (k,): area of each element's inside over that which the solver presses on; calculix: whether the deck is for
+    CalculiX, which has output of its own kinds.
     """
-
-    shares: Floats
-    calculix: bool
-
-
-def step(nodes: Nodes, asked: Loads, units: str, pressing: Pressing) -> Iterator[str]:
-    """Lines of the load step."""
     loads = asked.scaled(units)
     pressure, axial, torque = loads.pressure or 0.0, loads.axial or 0.0, loads.torque or 0.0
     start, end = nodes.rims
@@ -93,8 +86,8 @@ def step(nodes: Nodes, asked: Loads, units: str, pressing: Pressing) -> Iterator
         yield "*CLOAD"
         yield from on_rims
     if pressure:
-        yield from _inside(pressing.shares, pressure)
-    yield from _output_of_calculix() if pressing.calculix else _output_of_abaqus()
+        yield from _inside(shares, pressure)
+    yield from _output_of_calculix() if calculix else _output_of_abaqus()
     yield "*END STEP"
 
 

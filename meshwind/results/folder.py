@@ -10,11 +10,9 @@ from meshwind.core.spoken import argument
 from meshwind.results.schema import (
     EXPORT_FOLDERS,
     EXPORTS,
+    OF_SOLVED,
     RESULTS,
     SHELL,
-    SOLVED,
-    SOLVED_FIGURES,
-    SOLVED_PICTURE,
 )
 from meshwind.results.staging import staged
 
@@ -105,7 +103,7 @@ def _held(out: Path, overwrite: bool) -> list[str]:
 def _outdated(out: Path, fresh: list[Path]) -> Iterator[Path]:
     """Files of an earlier export: numbered ones of kinds that this one writes into a folder, and those of a deck."""
     if Path(SHELL) in fresh:
-        yield from (Path(name) for name in (SOLVED, SOLVED_FIGURES, SOLVED_PICTURE) if (out / name).is_file())
+        yield from (Path(name) for name in OF_SOLVED if (out / name).is_file())
     for top in {name.parts[0] for name in fresh if len(name.parts) > 1}:
         kinds = {name.name.rsplit("_", 1)[0] for name in fresh if name.parts[0] == top and "_" in name.name}
         for old in (out / top).iterdir() if (out / top).is_dir() else ():

@@ -210,6 +210,8 @@ WORST_PLY, WORST_LAYER, WORST_FAMILY = (Field(f"worst_{name}", dtype="int64") fo
 SOLVED = File("solved.vtu", (DISPLACEMENT,), (EXPOSURE, TSAI_WU, WORST_PLY, WORST_LAYER, WORST_FAMILY, NORMAL))
 """What CalculiX makes of the deck, beside thickness and the fields of each ply."""
 SOLVED_FIGURES, SOLVED_PICTURE = File("solved.json"), picture("solved")
+OF_SOLVED = SOLVED, SOLVED_FIGURES, SOLVED_PICTURE
+OF_SHELL = SHELL, SHELL_S4R, SHELL_ABOUT, *OF_SOLVED
 STEP = File("surface.step")
 PROGRAM_CSV, PROGRAM_JSON, POSES = File("program.csv"), File("program.json"), File("poses.csv")
 PROGRAM_LEGEND = File("program_columns.csv")
@@ -314,13 +316,7 @@ SUFFIXES = {
 
 EXPORT_FOLDERS = FRAMES_FOLDER, FORMATS_FOLDER
 EXPORTS = re.compile(
-    "|".join(
-        re.escape(name)
-        for name in (
-            (SHELL, SHELL_S4R, SHELL_ABOUT, SOLVED, SOLVED_FIGURES, SOLVED_PICTURE, FIBERS, FIBERS_LEGACY, STEP, POSES)
-            + (AXES_PICTURE, HITS_PICTURE)
-        )
-    )
+    "|".join(re.escape(name) for name in (*OF_SHELL, FIBERS, FIBERS_LEGACY, STEP, POSES, AXES_PICTURE, HITS_PICTURE))
     + rf"|{PROGRAM_CSV.stem}(_\w+)?\.\w+"
     + rf"|{FRAMES_FOLDER}/(path_\d{{3,}}\.csv|layer_\d{{3,}}\.csv|{re.escape(ALL_FRAMES)}|{re.escape(FILAMENT_FRAMES)}"
     + rf"|{re.escape(FRAMES_LEGEND)})"

@@ -106,14 +106,12 @@ def _plies(deck: ReadDeck, tables: Tables, stress: Floats, strain: Floats) -> di
     for ply in deck.plies:
         mine = np.array([(layer.layer, layer.family) == ply for layer in layers])
         total = np.bincount(element[mine], weight[mine], len(deck))
+        total[total == 0.0] = np.nan  # where the ply is not
         direction = np.full((len(deck), 3), np.nan)
         direction[element[mine]] = [deck.direction(layers[k].axes) for k in np.flatnonzero(mine)]
-        with np.errstate(invalid="ignore"):
-            each = [
-                np.stack(
-                    [np.bincount(element[mine], (weight * part)[mine], len(deck)) / total for part in mean.T], axis=1
-                )
-                for mean in means
-            ]
+        each = [
+            np.stack([np.bincount(element[mine], (weight * part)[mine], len(deck)) / total for part in mean.T], axis=1)
+            for mean in means
+        ]
         found[ply] = PlyFields(direction, *each)
     return found
