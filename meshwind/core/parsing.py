@@ -50,7 +50,7 @@ def count(text: str, name: str = "particles") -> int | None:
         raise BadInputError(f"{name} is {text!r}; give a whole number, or auto") from error
 
 
-def chosen(given: int | str | None) -> int | None:
+def number_or_auto(given: int | str | None) -> int | None:
     """A whole number, or None where `AUTO` leaves it open; other words are left to the check of the number."""
     return None if isinstance(given, str) and given.strip().lower() == AUTO else cast(int | None, given)
 

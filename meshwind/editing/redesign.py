@@ -14,7 +14,7 @@ from meshwind.core.cast import Floats
 from meshwind.core.cast import frozen as immutable
 from meshwind.core.compile_ahead import compile_ahead
 from meshwind.core.defaults import PATHS
-from meshwind.core.parsing import chosen as number_or_auto
+from meshwind.core.parsing import number_or_auto
 from meshwind.core.progress import Progress
 from meshwind.editing.bound import bound_of
 from meshwind.editing.edited_mesh import displaced, turned_over, volume_change

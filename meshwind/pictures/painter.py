@@ -137,14 +137,16 @@ class Painter:
 
         It would take as long to load what draws these as to draw all of a usual part.
         """
-        for picture, drawing in self._flat:
-            from meshwind.pictures.flat import draw
+        flat, self._flat = self._flat, []
+        if not flat:
+            return
+        from meshwind.pictures.flat import draw
 
+        for picture, drawing in flat:
             draw(picture, drawing)
             words.append(picture.name)
             if drawn is not None:
                 drawn(picture.name)
-        self._flat = []
 
     def _work(self, drawn: Drawn | None) -> tuple[list[str], bool]:
         """Wait for the end of a batch or of the process: its output, and whether it was too slow and killed."""

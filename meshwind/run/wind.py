@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from os import PathLike, fspath
 
-from meshwind.core.parsing import chosen
+from meshwind.core.parsing import number_or_auto
 from meshwind.core.progress import Progress
 from meshwind.mesh import check_file
 from meshwind.mesh.io.read import MeshLike
@@ -165,8 +165,8 @@ def wind(  # noqa: PLR0913
     """
     pinned = fspath(pins) if isinstance(pins, PathLike) else pins
     options = Options(
-        chosen(paths), revolutions, chosen(particles), friction, component, ends, opening, side, opening_by,
-        tolerance, threshold, worst_fit, units, spacing, band_width, band_thickness, tex, tows,
+        number_or_auto(paths), revolutions, number_or_auto(particles), friction, component, ends, opening, side,
+        opening_by, tolerance, threshold, worst_fit, units, spacing, band_width, band_thickness, tex, tows,
         fibre_density, resin_density, fibre_volume, pinned, angle, angle_at, continuous, turn_start, turn_end,
     )  # fmt: skip
     if layers is None:
