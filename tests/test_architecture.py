@@ -154,6 +154,7 @@ def test_heavy_libraries_load_late(code: str) -> None:
         "matplotlib",
         "PIL",
         "clarabel",
+        "h5py",
     ]
     code += f"\nimport sys\nprint([m for m in {heavy} if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -32,7 +32,7 @@ def test_all_that_an_export_writes_is_known(tmp_path: Path) -> None:
     exported(tmp_path)
     assert everything(tmp_path) - RESULTS == set(exports_in(tmp_path))
     assert "viewer.html" in RESULTS
-    assert {"shell.inp", "fibers.vtu", "surface.step", "frames/all.csv", "formats/paths.raw"} <= set(
+    assert {"shell.inp", "fibers.vtu", "surface.step", "frames/all.csv", "formats/paths.h5"} <= set(
         exports_in(tmp_path)
     )
 

@@ -14,7 +14,7 @@ OTHERS = (
     "meshwind.march", "meshwind.mesh.io.deck", "meshwind.mesh.io.gltf", "meshwind.mesh.io.msh", "meshwind.mesh.io.stl",
     "meshwind.mesh.io.vtk", "meshwind.planning.alternatives", "meshwind.planning.revolutions", "meshwind.program",
     "meshwind.workflow.helices", "meshwind.workflow.layers", "scipy.integrate", "scipy.ndimage",
-    "clarabel", "meshio", "pandas", "trimesh",
+    "clarabel", "h5py", "meshio", "pandas", "trimesh",
 )  # fmt: skip
 """What a plain winding of a PLY file never needs."""
 DRAWING = "meshwind.pictures.gallery", "meshwind.pictures.render", "meshwind.pictures.subject", "meshwind.run.drawing"

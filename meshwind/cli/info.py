@@ -38,6 +38,7 @@ _LIBRARIES = (
     "matplotlib",
     "pillow",
     "clarabel",
+    "h5py",
 )
 _EXTRAS = {"cad": ("OCP", "STEP"), "pandas": ("pandas", "tables in Python")}
 """Module that shows whether an optional part is installed, and what the part is for."""

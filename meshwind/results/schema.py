@@ -310,17 +310,18 @@ FORMATS_FOLDER = "formats"
 """A folder, with the files CONVERTED in other mesh formats."""
 CONVERTED = SURFACE, QUADS, PATHS, BRIDGES, CROSSINGS
 SUFFIXES = {
-    "vtu": ("vtu",), "vtk": ("vtk",), "xdmf": ("xdmf", "raw"), "ply": ("ply",), "obj": ("obj",), "gmsh": ("msh",),
+    "vtu": ("vtu",), "vtk": ("vtk",), "xdmf": ("xdmf", "h5"), "ply": ("ply",), "obj": ("obj",), "gmsh": ("msh",),
 }  # fmt: skip
 """Endings of a mesh format's files, by its name."""
 
 EXPORT_FOLDERS = FRAMES_FOLDER, FORMATS_FOLDER
+_ENDINGS = "|".join(sum(SUFFIXES.values(), ("raw",)))  # XDMF of 0.2.0 had its numbers in a file of that name
 EXPORTS = re.compile(
     "|".join(re.escape(name) for name in (*OF_SHELL, FIBERS, FIBERS_LEGACY, STEP, POSES, AXES_PICTURE, HITS_PICTURE))
     + rf"|{PROGRAM_CSV.stem}(_\w+)?\.\w+"
     + rf"|{FRAMES_FOLDER}/(path_\d{{3,}}\.csv|layer_\d{{3,}}\.csv|{re.escape(ALL_FRAMES)}|{re.escape(FILAMENT_FRAMES)}"
     + rf"|{re.escape(FRAMES_LEGEND)})"
-    + rf"|{FORMATS_FOLDER}/({'|'.join(file.stem for file in CONVERTED)})\.({'|'.join(sum(SUFFIXES.values(), ()))})"
+    + rf"|{FORMATS_FOLDER}/({'|'.join(file.stem for file in CONVERTED)})\.({_ENDINGS})"
 )
 """Names of exported files except VIEWER; they are removed when the run is replaced."""
 
