@@ -96,10 +96,22 @@ def test_the_layers_have_their_own_width_and_colour(of: Subject) -> None:
     assert groups is not None and scene.scale is None
     assert groups.names == ("layer 1 helical", "layer 2 hoop")
     across = np.linalg.norm(np.diff(ribbons.points, axis=1), axis=2).sum(axis=1)
+    last = np.cumsum(ribbons.sizes) - 1
+    ends = np.isin(np.arange(len(across)), [last, last + 1 - ribbons.sizes])
     for layer, width in enumerate(of.widths):
-        mine = ribbons.layer == layer
+        mine = (ribbons.layer == layer) & ~ends  # a band that ends at a rim is cut along it, aslant
         assert across[mine].max() <= width * (1.0 + 1e-9)
         assert np.median(across[mine]) == pytest.approx(width, rel=0.01)
+
+
+def test_bands_end_as_the_part_does(of: Subject) -> None:
+    """The rims are circles about z: bands 18 wide would go up to 6 beyond them, on the inside."""
+    surface, points = of.paths.surface, bands_scene(of).ribbons.points
+    u = np.arange(360) / 360
+    radius = [np.hypot(*surface.points(np.stack([u, np.full(360, v)], axis=1)).T[:2]) for v in (0.0, 1.0)]
+    for sign, rim in zip((-1.0, 1.0), radius, strict=True):
+        inside = rim.min() - np.hypot(points[..., 0], points[..., 1])[sign * points[..., 2] > 0.0]
+        assert inside.max() < 0.01 * rim.min()
 
 
 def test_the_viewer_has_the_thickness(wound: tuple[mw.Result, Path]) -> None:

@@ -14,8 +14,9 @@ from meshwind.core.vectors import TINY, unit
 from meshwind.filament.course import Kind
 from meshwind.filament.filament import Filament
 from meshwind.results.pattern_types import PatternFigures
+from meshwind.surface.evaluate import SU, SV
 from meshwind.surface.forms import components, fundamental_forms
-from meshwind.surface.grid import grid
+from meshwind.surface.grid import MOST, grid, rings
 from meshwind.surface.surface import Surface
 
 ACROSS = 7
@@ -30,6 +31,8 @@ _TIGHTEST = 0.5 * np.pi
 """Largest angle that a band bends through from its middle to its edge."""
 _ROUND = 64
 """Points round a rim of which the middle is taken."""
+_ALONG_RIM = 0.1
+"""Sine of the angle between fibre and rim below which a band is cut as if it were so large."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,7 @@ def ribbons(
     what turns them at the start and at the end; pins gather a band to their radius.
     """
     fine = fineness or Fineness()
-    body = _Body(surface)
+    body, rims = _Body(surface), _Rims(surface)
     pins = [(surface.points(_rim(v)).mean(axis=0), one.pin) for v, one in zip((0.0, 1.0), turned, strict=False)]
     step = -(-sum(len(each.course) for each in filaments) // fine.rows)
     lines = [drawn(each, body, step) for each in filaments]
@@ -74,7 +77,7 @@ def ribbons(
         before += float(arc[-1])
         lift = surface.size * (_LIFT[0] + (_LIFT[1] - _LIFT[0]) * laid[-1] / max(total, TINY))
         width = np.asarray(widths, dtype=np.float64)[np.minimum(line.filament.layer[line.kept], len(widths) - 1)]
-        strips.append(strip(line, gathered(line, width, pins), lift, fine.across))
+        strips.append(rims.cut(strip(line, gathered(line, width, pins), lift, fine.across), line, width))
 
     def of_courses(name: str) -> NDArray[Any]:
         return np.concatenate([getattr(line.filament.course, name)[line.kept] for line in lines])
@@ -200,6 +203,42 @@ class _Body:
         two, (du, dv) = forms.second, components(frames, aside).T
         bent = two.uu * du**2 + 2.0 * two.uv * du * dv + two.vv * dv**2
         return np.asarray(bent / np.maximum((aside**2).sum(axis=1), TINY))
+
+
+class _Rims:
+    """The part's rims, along which bands that end there are cut, as the part is."""
+
+    def __init__(self, surface: Surface) -> None:
+        frames = rings(surface, np.array([0.0, 1.0]), MOST)
+        normal = np.cross(frames[:, :, SU], frames[:, :, SV])
+        self._outwards = unit(np.cross(frames[:, :, SU], normal) * [[[1.0]], [[-1.0]]]).reshape(-1, 3)
+        self._tree = cKDTree(frames[:, :, 0].reshape(-1, 3))
+        self._near = float(np.linalg.norm(frames[:, :, SU], axis=2).max()) / MOST
+
+    def beyond(self, points: Floats) -> tuple[Floats, Floats]:
+        """How far points (..., 3) lie beyond the rim that is nearest, negative on the part; the way there (..., 3)."""
+        at = self._tree.query(points)[1]
+        out = self._outwards[at]
+        return np.asarray(((points - self._tree.data[at]) * out).sum(axis=-1)), out
+
+    def cut(self, rows: Floats, line: Line, width: Floats) -> Floats:
+        """Rows (k, m, 3) of a band of width (k,) that ends along the rims on which its fibre ends, if it does."""
+        course = line.filament.course
+        middle, arc = course.points[line.kept], course.arc_length[line.kept]
+        out = np.array(rows)
+        for end, inner in ((0, 1), (-1, -2)):
+            if course.kind[line.kept[end]] != Kind.LAID or self._tree.query(middle[end])[0] > self._near:
+                continue
+            ahead = unit(middle[end] - middle[inner])
+            way = self.beyond(middle[end])[1]
+            steep = max(float(way @ ahead), _ALONG_RIM)
+            # the last row goes on to the rim on the side on which it falls short of it
+            short = np.clip((middle[end] - rows[end]) @ way / steep, 0.0, 0.5 * width[end])
+            out[end] += short[:, None] * ahead
+            near = np.abs(arc - arc[end]) <= 0.5 * width / steep
+            over, away = self.beyond(out[near])
+            out[near] -= np.maximum(over, 0.0)[..., None] * away
+        return out
 
 
 def curvature_across(filament: Filament, body: _Body) -> Floats:
