@@ -48,6 +48,14 @@ def test_discs_lie_on_the_part(scene: CrossingsScene) -> None:
     assert np.linalg.norm(off[:, 1:], axis=2) == pytest.approx(np.repeat(size[:, None], off.shape[1] - 1, axis=1))
 
 
+def test_rings_leave_the_colours_free_from_both_sides(scene: CrossingsScene) -> None:
+    near = replace(scene, room=np.full(len(scene.points), 8.0))
+    cores, rings = dots(near, 1.0, 1.0, 0.1)
+    core, ring = (each.points.reshape(len(scene.points), -1, 3) for each in (cores, rings))
+    assert np.allclose(core[:, 1:], ring[:, : core.shape[1] - 1])  # where a disc ends its ring begins
+    assert np.linalg.norm(ring[:, -1] - core[:, 0], axis=1) == pytest.approx(8.0)
+
+
 @pytest.mark.parametrize(("pixels", "sides"), [(1.0, 6), (5.0, 20)])
 def test_small_discs_have_few_sides(scene: CrossingsScene, pixels: float, sides: int) -> None:
     """There are hundreds of thousands of them: at 20 sides they would take more memory than all else of a run."""

@@ -6,7 +6,7 @@ import numpy as np
 import pyvista as pv
 
 from meshwind.appearance.looks import colour_map
-from meshwind.core.cast import Floats
+from meshwind.core.cast import Floats, Ints
 from meshwind.core.vectors import unit as unit_of
 from meshwind.pictures import bodies, camera, canvas
 from meshwind.pictures.page import Page
@@ -47,9 +47,12 @@ def add_dots(window: Any, scene: CrossingsScene, scale: float, unit: float, thic
         return
     cores, rings = dots(scene, scale, unit, thick)
     look = bodies.coloured("share", colour_map(scene.scale.colours), 1.0)
-    added = [window.add_mesh(cores, lighting=False, render=False, **look)]
-    added += [window.add_mesh(rings, color=canvas.INK, lighting=False, render=False)] if rings.n_cells else []
-    for actor in added:
+    for mesh, colours in ((cores, look), (rings, {"color": canvas.INK})):
+        if not mesh.n_cells:
+            continue
+        # from behind, as through an opening, the part is to hide them
+        window.add_mesh(mesh, lighting=False, render=False, culling="front", **colours)
+        actor = window.add_mesh(mesh, lighting=False, render=False, culling="back", **colours)
         actor.mapper.resolve = "polygon_offset"
         actor.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(_NEARER, _NEARER)
 
@@ -60,14 +63,13 @@ def dots(scene: CrossingsScene, scale: float, unit: float, thick: float) -> tupl
     Discs lie on the part and keep within their room, so that they do not meet in any view.
     """
     size = radii(scene, scale, unit)
-    lift = 2.4 * thick * scene.normals
     ringed = size > _RINGED * unit * scale
     inner = np.where(ringed, size - _RING * unit * scale, size)
     sides = _SIDES if size.max() > _SMALL * unit * scale else _FEW_SIDES
-    rings = discs(scene.points[ringed] + lift[ringed], scene.normals[ringed], size[ringed], sides)
-    cores = discs(scene.points + lift + 0.3 * thick * scene.normals, scene.normals, inner, sides)
+    centres = scene.points + 2.4 * thick * scene.normals
+    cores = discs(centres, scene.normals, inner, sides)
     cores.cell_data["share"] = np.repeat(scene.shares, sides)
-    return cores, rings
+    return cores, annuli(centres[ringed], scene.normals[ringed], inner[ringed], size[ringed], sides)
 
 
 def radii(scene: CrossingsScene, scale: float, unit: float) -> Floats:
@@ -77,14 +79,31 @@ def radii(scene: CrossingsScene, scale: float, unit: float) -> Floats:
 
 def discs(centres: Floats, normals: Floats, size: Floats, sides: int = _SIDES) -> Any:
     """Discs of radius size (c,) round centres (c, 3), square to normals (c, 3); a fan of triangles each."""
+    points = np.concatenate([centres[:, None], _circles(centres, normals, size, sides)], axis=1)
+    k = np.arange(sides)
+    return _faces(points, np.stack([0 * k, 1 + k, 1 + (k + 1) % sides], axis=1))
+
+
+def annuli(centres: Floats, normals: Floats, inner: Floats, outer: Floats, sides: int = _SIDES) -> Any:
+    """Rings between radii inner and outer (c,), which leave what is within them free from both sides."""
+    points = np.concatenate([_circles(centres, normals, size, sides) for size in (inner, outer)], axis=1)
+    k = np.arange(sides)
+    after = (k + 1) % sides
+    return _faces(points, np.stack([k, sides + k, sides + after, after], axis=1))
+
+
+def _circles(centres: Floats, normals: Floats, size: Floats, sides: int) -> Floats:
+    """Points (c, sides, 3) on circles of radius size (c,)."""
     up = unit_of(normals)
     least = np.eye(3)[np.abs(up).argmin(axis=1)] if len(up) else up
     right = unit_of(np.cross(up, least))
     turn = 2.0 * np.pi * np.arange(sides) / sides
     arc = np.cos(turn)[:, None] * right[:, None] + np.sin(turn)[:, None] * np.cross(up, right)[:, None]
-    rim = centres[:, None] + size[:, None, None] * arc
-    points = np.concatenate([centres[:, None], rim], axis=1)
-    k = np.arange(sides)
-    fan = np.stack([0 * k, 1 + k, 1 + (k + 1) % sides], axis=1)
-    faces = (fan[None] + np.arange(len(centres))[:, None, None] * (sides + 1)).reshape(-1, 3)
-    return pv.PolyData.from_regular_faces(points.reshape(-1, 3), faces)
+    return np.asarray(centres[:, None] + size[:, None, None] * arc)
+
+
+def _faces(points: Floats, faces: Ints) -> Any:
+    """The same faces (f, m) between the points of each body, which are (c, k, 3)."""
+    count, many = points.shape[:2]
+    whole = (faces[None] + np.arange(count)[:, None, None] * many).reshape(-1, faces.shape[1])
+    return pv.PolyData.from_regular_faces(points.reshape(-1, 3), whole)
