@@ -65,7 +65,7 @@ def windability_scene(of: Subject) -> MapScene:
         normals=of.normals[chosen],
         directions=of.maps[PRESS_DIRECTION][chosen],
         reach=np.radians(of.maps[PRESS_REACH][chosen]),
-        size=0.36 * apart,
+        size=0.26 * apart,
     )
     return replace(seen, fans=fans)
 
