@@ -6,6 +6,7 @@ import meshio
 import numpy as np
 import pytest
 import pyvista
+import trimesh
 
 import meshwind as mw
 from meshwind.core.cast import Floats, Ints
@@ -83,6 +84,44 @@ def test_scalars_are_read_with_their_points(kind: str, on_cells: bool, tmp_path:
     assert not scalars.points.flags.writeable
 
 
+def in_memory(library: str, on_cells: bool) -> object:
+    points, faces = tube()
+    positions = points[faces].mean(axis=1) if on_cells else points
+    if library == "trimesh":
+        made = trimesh.Trimesh(points, faces, process=False)
+        (made.face_attributes if on_cells else made.vertex_attributes)["mu"] = rough(positions)
+        return made
+    cells = [("vertex", np.array([[0]])), ("triangle", faces)]  # a cell that is no face has a value, too
+    data = {"cell_data": {"mu": [[9.0], rough(positions)]}} if on_cells else {"point_data": {"mu": rough(positions)}}
+    mesh = meshio.Mesh(points, cells, **data)
+    return mesh if library == "meshio" else pyvista.from_meshio(mesh)
+
+
+@pytest.mark.parametrize("on_cells", [False, True], ids=["points", "cells"])
+@pytest.mark.parametrize("library", ["pyvista", "meshio", "trimesh"])
+def test_meshes_in_memory_have_them_as_well(library: str, on_cells: bool) -> None:
+    mesh = in_memory(library, on_cells)
+    scalars = read_scalars(mesh, "mu")
+    points, faces = tube()
+    positions = points[faces].mean(axis=1) if on_cells else points
+    assert scalars.points == pytest.approx(positions)
+    assert scalars.values == pytest.approx(rough(positions))
+    with pytest.raises(BadInputError, match="the mesh in memory: has no scalar 'nu'; it holds: mu"):
+        read_scalars(mesh, "nu")
+
+
+def test_a_run_takes_the_friction_of_a_mesh_in_memory() -> None:
+    mesh = in_memory("pyvista", False)
+    found = mw.wind(mesh, friction="field:mu", paths=2, particles=41, render=False)
+    held = found.paths.slip[np.isfinite(found.paths.slip)]
+    assert held.max() <= rough(tube()[0]).max() + 1e-6
+    for bare in (tube(), mw.read(mesh)):
+        with pytest.raises(
+            BadInputError, match=r"a mesh of type \w+ holds no scalar 'mu'; give its file"
+        ):
+            mw.wind(bare, friction="field:mu")
+
+
 @pytest.mark.parametrize("kind", FORMATS)
 def test_a_missing_scalar_is_refused_with_what_there_is(kind: str, tmp_path: Path) -> None:
     file = save(tmp_path, kind, False)
@@ -140,10 +179,3 @@ def test_a_field_of_the_file_winds(kind: str, tmp_path: Path) -> None:
     assert result.settled
     table = result.paths.friction
     assert table == pytest.approx(float(rough(tube()[0]).max()), rel=2e-2)
-
-
-def test_a_mesh_in_memory_has_no_field(tmp_path: Path) -> None:
-    mesh = mw.read(save(tmp_path, "ply", False))
-    with pytest.raises(BadInputError, match="friction") as refusal:
-        mw.wind(mesh, friction="field:mu")
-    assert "\n" not in str(refusal.value)

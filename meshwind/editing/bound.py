@@ -69,7 +69,7 @@ def bound_of(given: float | str | ArrayLike | None, mesh: MeshLike, read: Mesh, 
     if given is None or isinstance(given, int | float):
         return Bound(None if given is None else float(given))
     if isinstance(given, str):
-        scalars = on_wound_skin(read_field(mesh, given.removeprefix(FIELD).strip(), "give an array"), annulus)
+        scalars = on_wound_skin(read_field(mesh, given.removeprefix(FIELD).strip()), annulus)
         values = scalars.values[cKDTree(scalars.points).query(read.vertices)[1]]
     else:
         values = np.asarray(given, dtype=np.float64)

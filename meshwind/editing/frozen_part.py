@@ -113,7 +113,7 @@ def frozen_part(frozen: Frozen | str, mesh: MeshLike, read: Mesh) -> FrozenPart:
         _check_faces(region.faces, read)
     if not region.field:
         return FrozenPart(None, region)
-    return FrozenPart(None, region, read_field(mesh, region.field, "give a mask of control points"))
+    return FrozenPart(None, region, read_field(mesh, region.field))
 
 
 def _check_faces(faces: Ints, mesh: Mesh) -> None:

@@ -73,7 +73,7 @@ def wind(  # noqa: PLR0913
         Turns of a path from end to end, also as "5/12"; "auto" picks the value with stable paths and least bridging.
         By default 0.5, or those of `angle`.
     friction : float or str, default 0
-        Coefficient of friction between fibre and part, or "field:NAME" for a scalar of the mesh file.
+        Coefficient of friction between fibre and part, or "field:NAME" for a scalar of the mesh or its file.
     component : int, optional
         Piece of the mesh file to take, by decreasing area; 0 is the largest.  By default the largest, with a warning
         if another one is large.

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from meshwind.chart import Chart, flatten
-from meshwind.core.errors import BadInputError
 from meshwind.core.units import ASSUMED, Unit
 from meshwind.mesh import Annulus, Mesh, annulus, read
 from meshwind.mesh.geometry.facet_tree import FacetTree
@@ -29,10 +28,6 @@ class Source:
     mesh: Mesh
     scalars: Scalars | None = None
     file: Path | None = None
-
-
-_FROM_POINTS = "give its file, or lay the paths by solve(..., friction=friction_from(surface, points, values))"
-"""What to do where a mesh in memory is to have a field of friction."""
 
 
 @dataclass(frozen=True)
@@ -58,16 +53,14 @@ def read_source(mesh: MeshLike, options: Options) -> Source:
     if not isinstance(options.friction, str):
         return Source(taken, None, file)
     name = options.friction.removeprefix(FIELD).strip()
-    return Source(taken, read_field(mesh, name, _FROM_POINTS), file)
+    return Source(taken, read_field(mesh, name), file)
 
 
-def read_field(mesh: MeshLike, name: str, instead: str) -> Scalars:
-    """Read a scalar of the mesh's file; raises BadInputError where there is none, with what to give instead."""
-    if not isinstance(mesh, str | PathLike):
-        raise BadInputError(f"{FIELD}{name} is a scalar of a mesh file, but the mesh is no file; {instead}")
+def read_field(mesh: MeshLike, name: str) -> Scalars:
+    """Take a scalar of the mesh or of its file; raises BadInputError where there is none."""
     from meshwind.mesh.io.scalars import read_scalars  # late: few runs have a field of friction
 
-    return read_scalars(path_of(mesh), name)
+    return read_scalars(mesh, name)
 
 
 def on_wound_skin(scalars: Scalars, annulus: Annulus) -> Scalars:

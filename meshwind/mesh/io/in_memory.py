@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from meshwind.core.cast import Ints
+from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.io.cells.surface import SIDES_OF_POLYHEDRA, CellBlock, surface_mesh
 from meshwind.mesh.io.file_mesh import FileMesh
@@ -65,12 +65,15 @@ def _of_trimesh(mesh: Any) -> FileMesh | None:
 def _of_meshio(mesh: object) -> FileMesh | None:
     import meshio
 
-    if not isinstance(mesh, meshio.Mesh):
-        return None
+    return surface_mesh(*blocks_of(mesh)) if isinstance(mesh, meshio.Mesh) else None
+
+
+def blocks_of(mesh: Any) -> tuple[Floats, list[CellBlock]]:
+    """Points (n, 3) and blocks of cells of a mesh of meshio."""
     points = np.asarray(mesh.points, dtype=np.float64)
     if points.shape[1] == 2:
         points = np.column_stack([points, np.zeros(len(points))])
-    return surface_mesh(points, [_block(block.type, block.data) for block in mesh.cells])
+    return points, [_block(block.type, block.data) for block in mesh.cells]
 
 
 def _block(kind: str, data: Any) -> CellBlock:

@@ -1,9 +1,11 @@
-"""Reading of scalar fields from mesh files, with the points that they belong to.
+"""Reading of scalar fields from meshes in files and in memory, with the points that they belong to.
 
-The points are the file's vertices or the centroids of its cells: repair and trimming renumber vertices.
+The points are the mesh's vertices or the centroids of its cells: repair and trimming renumber vertices.
 """
 
+import sys
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +15,14 @@ from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.io.face_lists import Lists, whole
 from meshwind.mesh.io.fields import Field, Fields, add_scalar, centroids, has_surface, means, packed, used_points
+from meshwind.mesh.io.in_memory import blocks_of
 from meshwind.mesh.io.in_subprocess import Arrays, in_subprocess
 from meshwind.mesh.io.msh.data import msh_fields
 from meshwind.mesh.io.msh.msh import mesh_of
 from meshwind.mesh.io.msh.sections import sections_of
 from meshwind.mesh.io.ply.ply import read_tables
 from meshwind.mesh.io.ply.rows import Columns
+from meshwind.mesh.io.read import path_of
 from meshwind.mesh.io.vtk.cells import GHOSTS
 from meshwind.mesh.io.vtk.vtk import cells_of, vtk_output
 
@@ -34,29 +38,81 @@ class Scalars:
     values: Floats
 
 
-def read_scalars(path: str | Path, name: str) -> Scalars:
-    """Read the scalar `name` from a VTK, VTP, VTU, PLY or MSH file, of its points or else of its cells.
+def read_scalars(mesh: str | PathLike[str] | Any, name: str) -> Scalars:
+    """Take the scalar `name` of a VTK, VTP, VTU, PLY or MSH file, or of a mesh of PyVista, meshio or trimesh in memory.
 
-    Raises BadInputError if the format cannot hold scalars, or the file cannot be read or has none of that name.
+    It is one of its points or else of its cells.  Raises BadInputError if the format cannot hold scalars, or the file
+    cannot be read or has none of that name.
     """
-    path = Path(path)
+    if not isinstance(mesh, str | PathLike):
+        return _chosen(_in_memory(mesh, name), name, "the mesh in memory")
+    path = path_of(mesh)
     kind = path.suffix.lower()
     if kind not in _HOLD_SCALARS:
         known = ", ".join(end[1:].upper() for end in _HOLD_SCALARS)
         raise BadInputError(f"{path.name}: this format holds no scalars; save the part with {name!r} as {known}")
-    arrays = _read(path)
+    return _chosen(_read(path), name, path.name)
+
+
+def _in_memory(mesh: object, name: str) -> Arrays:
+    for library, of in (("trimesh", _of_trimesh), ("meshio", _of_meshio), ("pyvista", _of_pyvista)):
+        found = of(mesh) if library in sys.modules else None  # what is not imported cannot have made it
+        if found is not None:
+            return found
+    raise BadInputError(
+        f"a mesh of type {type(mesh).__name__} holds no scalar {name!r}; give its file, or a mesh of PyVista, meshio "
+        "or trimesh that has it"
+    )
+
+
+def _of_trimesh(mesh: Any) -> Arrays | None:
+    import trimesh
+
+    if not isinstance(mesh, trimesh.Trimesh):
+        return None
+    fields: Fields = {}
+    for name, values in mesh.face_attributes.items():
+        add_scalar(fields, name, values, np.asarray(mesh.triangles_center))
+    for name, values in mesh.vertex_attributes.items():
+        add_scalar(fields, name, values, None)
+    return packed(np.asarray(mesh.vertices, dtype=np.float64), fields)
+
+
+def _of_meshio(mesh: Any) -> Arrays | None:
+    import meshio
+
+    if not isinstance(mesh, meshio.Mesh):
+        return None
+    points, blocks = blocks_of(mesh)
+    of_surface = [number for number, block in enumerate(blocks) if has_surface(block[0])]
+    fields: Fields = {}
+    if of_surface:
+        middles = np.concatenate([centroids(points, blocks[number]) for number in of_surface])
+        for name, held in mesh.cell_data.items():
+            add_scalar(fields, name, np.concatenate([held[number] for number in of_surface]), middles)
+    used = used_points(len(points), blocks)
+    for name, values in mesh.point_data.items():
+        add_scalar(fields, name, np.asarray(values)[used], None)
+    return packed(points[used], fields)
+
+
+def _of_pyvista(mesh: Any) -> Arrays | None:
+    import pyvista as pv
+
+    return of_vtk(mesh, "the mesh in memory") if isinstance(mesh, pv.DataSet) else None
+
+
+def _chosen(arrays: Arrays, name: str, of: str) -> Scalars:
     names = arrays["names"].tolist()
     if name not in names:
         available = ", ".join(sorted(names)) or "none"
-        raise BadInputError(f"{path.name}: has no scalar {name!r}; it holds: {available}")
+        raise BadInputError(f"{of}: has no scalar {name!r}; it holds: {available}")
     number = names.index(name)
     if problem := str(arrays["problems"][number]):
-        raise BadInputError(f"{path.name}: scalar {name!r} {problem}")
+        raise BadInputError(f"{of}: scalar {name!r} {problem}")
     values, points = arrays[f"values {number}"], arrays.get(f"points {number}", arrays["points"])
     if len(values) != len(points) or not np.isfinite(values).all() or not np.isfinite(points).all():
-        raise BadInputError(
-            f"{path.name}: scalar {name!r} is not one finite number per vertex or cell; correct it first"
-        )
+        raise BadInputError(f"{of}: scalar {name!r} is not one finite number per vertex or cell; correct it first")
     return Scalars(frozen(points), frozen(values))
 
 
@@ -89,8 +145,12 @@ def _read(path: Path) -> Arrays:
 def by_vtk(path: Path) -> Arrays:
     """Points and scalars of a file, for `in_subprocess`; the cells are those that are read as a mesh."""
     path.stat()  # VTK does not report a missing file
-    data = vtk_output(path)
-    cells = cells_of(data, path.name)
+    return of_vtk(vtk_output(path), path.name)
+
+
+def of_vtk(data: Any, name: str) -> Arrays:
+    """Points and scalars of VTK's data, which messages call by a name."""
+    cells = cells_of(data, name)
     of_cells = [(block, places) for block, places in zip(cells.blocks, cells.places, strict=True)
                 if has_surface(block[0])]  # fmt: skip
     fields: Fields = {}
