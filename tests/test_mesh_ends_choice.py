@@ -1,14 +1,18 @@
 """The choice of the two ends and of their order does not depend on scale, pose or the order in the file."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from mesh_shapes import Part, moved, rotation, shuffled, tube
 
+import meshwind as mw
 from meshwind.core.cast import Floats
+from meshwind.core.errors import BadInputError
 from meshwind.mesh import annulus, mesh_from, read
 from meshwind.mesh.geometry.axis import forward
+from meshwind.workflow.options import Options
 
 SCALES = [1.0, 1e-3, 1.0 / 3.0, 1.0 / 25.4, 0.1, 0.7, 12.0, 25.4, 1e3, 1e6]
 
@@ -122,3 +126,18 @@ def test_the_elbow_of_the_samples_starts_alike_at_any_scale() -> None:
         turn = rotation(k)
         again = starts(shuffled(moved((mesh.vertices, mesh.faces), turn, np.zeros(3), scale), k))
         assert again @ turn / scale == pytest.approx(first, abs=1e-5)
+
+
+@pytest.mark.parametrize("given", [[(0, 0, -120), (0, 0, 120)], np.array([[0.0, 0.0, -120.0], [0.0, 0.0, 120.0]])])
+def test_two_points_may_be_an_array(given: Any) -> None:
+    tank, written = mw.read("data/tank.ply"), "0.0,0.0,-120.0 0.0,0.0,120.0"
+    assert (mw.annulus(tank, given).vertices == mw.annulus(tank, written).vertices).all()
+    options = Options(ends=given)
+    assert options.ends == written and Options(ends=options.ends) == options
+
+
+@pytest.mark.parametrize("given", [[(0, 0)], [(0, 0, 1), (0, np.nan, 2)], 3, None, {"a": 1}, np.eye(3)])
+def test_what_is_no_two_points_is_refused_in_one_line(given: Any) -> None:
+    with pytest.raises(BadInputError, match="give auto, x, y, z or two points") as refusal:
+        Options(ends=given)
+    assert "\n" not in str(refusal.value)

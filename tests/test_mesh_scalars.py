@@ -116,9 +116,7 @@ def test_a_run_takes_the_friction_of_a_mesh_in_memory() -> None:
     held = found.paths.slip[np.isfinite(found.paths.slip)]
     assert held.max() <= rough(tube()[0]).max() + 1e-6
     for bare in (tube(), mw.read(mesh)):
-        with pytest.raises(
-            BadInputError, match=r"a mesh of type \w+ holds no scalar 'mu'; give its file"
-        ):
+        with pytest.raises(BadInputError, match=r"a mesh of type \w+ holds no scalar 'mu'; give its file"):
             mw.wind(bare, friction="field:mu")
 
 

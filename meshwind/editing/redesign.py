@@ -146,7 +146,7 @@ def redesign(  # noqa: PLR0913
     only_outward: bool = EditOptions.only_outward,
     only_inward: bool = EditOptions.only_inward,
     component: int | None = Options.component,
-    ends: str = Options.ends,
+    ends: str | ArrayLike = Options.ends,
     opening: float | None = Options.opening,
     side: str = Options.side,
     opening_by: str = Options.opening_by,
@@ -243,8 +243,8 @@ def redesign(  # noqa: PLR0913
     )
     asked = WindingOptions(cast(float | str | tuple[float, ...], revolutions), layers)  # which makes a tuple of several
     winding = Options(
-        paths, asked.most, number_or_auto(particles), component=component, ends=ends, opening=opening, side=side,
-        opening_by=opening_by, tolerance=tolerance,
+        paths, asked.most, number_or_auto(particles), component=component, ends=cast(str, ends), opening=opening,
+        side=side, opening_by=opening_by, tolerance=tolerance,
     )  # fmt: skip
     Course.of(winding, 0.0)
     report = progress or _ignore

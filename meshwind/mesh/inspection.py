@@ -7,6 +7,7 @@ from os import PathLike
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints
@@ -154,7 +155,7 @@ def check(
     mesh: MeshLike,
     *,
     component: int | None = None,
-    ends: str = "auto",
+    ends: str | ArrayLike = "auto",
     opening: float | None = None,
     side: str = "outer",
     opening_by: str = "auto",
@@ -168,9 +169,9 @@ def check(
         Mesh, or the path of its file; see `read` for those of other libraries.
     component : int, optional
         Piece of the mesh file to take, by decreasing area; 0 is the largest.  By default the largest.
-    ends : str, default "auto"
-        Where the ends are: "auto", "x", "y", "z", two points "x,y,z x,y,z", or two open rims "loops 0 1"; see
-        `annulus`.
+    ends : str or array_like of float, shape (2, 3), default "auto"
+        Where the ends are: "auto", "x", "y", "z", two points, also as "x,y,z x,y,z", or two open rims "loops 0 1";
+        see `annulus`.
     opening : float, optional
         Radius of the opening at a closed end, in the mesh's units.  By default it follows from the part.
     side : {"outer", "inner"}, default "outer"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from os import PathLike, fspath
+from typing import TYPE_CHECKING, cast
 
 from meshwind.core.parsing import number_or_auto
 from meshwind.core.progress import Progress
@@ -19,6 +20,9 @@ from meshwind.workflow.options import Options
 from meshwind.workflow.part import fit_part, read_source
 from meshwind.workflow.winding import wind_part
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
 
 def wind(  # noqa: PLR0913
     mesh: MeshLike,
@@ -27,7 +31,7 @@ def wind(  # noqa: PLR0913
     revolutions: float | str | None = Options.revolutions,
     friction: float | str = Options.friction,
     component: int | None = Options.component,
-    ends: str = Options.ends,
+    ends: str | ArrayLike = Options.ends,
     opening: float | None = Options.opening,
     side: str = Options.side,
     opening_by: str = Options.opening_by,
@@ -77,9 +81,9 @@ def wind(  # noqa: PLR0913
     component : int, optional
         Piece of the mesh file to take, by decreasing area; 0 is the largest.  By default the largest, with a warning
         if another one is large.
-    ends : str, default "auto"
-        Where the ends are: "auto", "x", "y", "z", two points "x,y,z x,y,z", or two open rims "loops 0 1"; see
-        `annulus`.
+    ends : str or array_like of float, shape (2, 3), default "auto"
+        Where the ends are: "auto", "x", "y", "z", two points, also as "x,y,z x,y,z", or two open rims "loops 0 1";
+        see `annulus`.
     opening : float, optional
         Radius of the opening at a closed end, in the mesh's units.  By default it follows from the part.
     side : {"outer", "inner"}, default "outer"
@@ -165,8 +169,8 @@ def wind(  # noqa: PLR0913
     """
     pinned = fspath(pins) if isinstance(pins, PathLike) else pins
     options = Options(
-        number_or_auto(paths), revolutions, number_or_auto(particles), friction, component, ends, opening, side,
-        opening_by, tolerance, threshold, worst_fit, units, spacing, band_width, band_thickness, tex, tows,
+        number_or_auto(paths), revolutions, number_or_auto(particles), friction, component, cast(str, ends), opening,
+        side, opening_by, tolerance, threshold, worst_fit, units, spacing, band_width, band_thickness, tex, tows,
         fibre_density, resin_density, fibre_volume, pinned, angle, angle_at, continuous, turn_start, turn_end,
     )  # fmt: skip
     if layers is None:

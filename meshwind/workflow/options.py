@@ -249,7 +249,7 @@ class Options:
         set_(self, "friction", read_friction(self.friction))
         if self.component is not None:
             set_(self, "component", whole(self.component, "component", 0))
-        parse_ends(self.ends)
+        set_(self, "ends", parse_ends(self.ends).text)  # scripts may give two points
         check_word(self.side, "side", SIDES)
         check_word(self.opening_by, "opening_by", OPENED_BY)
         set_(self, "tolerance", number(self.tolerance, "tolerance", 1e-12, 1.0))

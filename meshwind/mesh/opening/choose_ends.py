@@ -4,6 +4,7 @@ import re
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats, Ints, floats
 from meshwind.core.errors import BadInputError
@@ -62,9 +63,13 @@ class EndsRequest:
     text: str = "auto"
 
 
-def parse_ends(text: str) -> EndsRequest:
-    """Read 'auto', 'x', 'y', 'z', 'x,y,z x,y,z' or 'loops i j'.  Raises BadInputError for any other text."""
-    word = text.strip().lower() if isinstance(text, str) else ""
+def parse_ends(given: str | ArrayLike) -> EndsRequest:
+    """Read 'auto', 'x', 'y', 'z', 'x,y,z x,y,z' or 'loops i j', or take two points (2, 3).
+
+    Raises BadInputError for anything else.
+    """
+    word = given.strip().lower() if isinstance(given, str) else ""
+    shown = " ".join(repr(given).split())
     if word == "auto":
         return EndsRequest()
     if word in _AXES:
@@ -72,17 +77,18 @@ def parse_ends(text: str) -> EndsRequest:
     numbers = re.fullmatch(r"loops\s+(\d{1,9})[\s,]+(\d{1,9})", word)
     if numbers is not None:
         if int(numbers[1]) == int(numbers[2]):
-            raise BadInputError(f"ends {text!r}: both are the same rim; give two numbers that {called('check')} lists")
+            raise BadInputError(f"ends {shown}: both are the same rim; give two numbers that {called('check')} lists")
         return EndsRequest(loops=(int(numbers[1]), int(numbers[2])), text=word)
     try:
-        points = floats([[float(x) for x in part.split(",")] for part in word.split()], "ends", 2, 3)
-    except ValueError as error:
+        two = [[float(x) for x in part.split(",")] for part in word.split()] if isinstance(given, str) else given
+        points = floats(two, "ends", 2, 3)
+    except (TypeError, ValueError) as error:
         raise BadInputError(
-            f"ends {text!r}: give auto, x, y, z or two points as in '0,0,0 0,0,100', or two open rims as in 'loops 0 1'"
+            f"ends {shown}: give auto, x, y, z or two points as in '0,0,0 0,0,100', or two open rims as in 'loops 0 1'"
         ) from error
     if (points[0] == points[1]).all():
-        raise BadInputError(f"ends {text!r}: the two points are the same; give one at each end of the part")
-    return EndsRequest(points=points, text=word)
+        raise BadInputError(f"ends {shown}: the two points are the same; give one at each end of the part")
+    return EndsRequest(points=points, text=word or " ".join(",".join(map(repr, point)) for point in points.tolist()))
 
 
 def rims_by_number(vertices: Floats, rims: list[Ints]) -> list[Ints]:

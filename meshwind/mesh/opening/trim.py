@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.defaults import OPENED_BY
@@ -27,7 +28,11 @@ _FLAT = 1e-6
 
 
 def annulus(
-    mesh: Mesh, ends: str = "auto", opening: float | None = None, side: str = "outer", opening_by: str = "auto"
+    mesh: Mesh,
+    ends: str | ArrayLike = "auto",
+    opening: float | None = None,
+    side: str = "outer",
+    opening_by: str = "auto",
 ) -> Annulus:
     """Open a mesh at its two ends.
 
@@ -44,9 +49,9 @@ def annulus(
     ----------
     mesh : Mesh
         Repaired mesh of a part like a tube or a closed body.
-    ends : str, default "auto"
-        Where the ends are: "auto", a model axis "x", "y" or "z", two points "x,y,z x,y,z" in the mesh's units, or two
-        open rims "loops i j" by their numbers, 0 being the longest.
+    ends : str or array_like of float, shape (2, 3), default "auto"
+        Where the ends are: "auto", a model axis "x", "y" or "z", two points in the mesh's units, as an array or as
+        "x,y,z x,y,z", or two open rims "loops i j" by their numbers, 0 being the longest.
     opening : float, optional
         Radius of the hole that is cut about each pole, in the mesh's units.  By default 0.4 of the part's mean radius.
         Open rims are ends as they are.
