@@ -82,4 +82,4 @@ def _bridged(axes: Any, chosen: Revolutions, last: float) -> None:
         words = "share of the fibre that bridges, by trial" if feasible else "the same, where some fibres slide off"
         if tried:
             points = [(each.revolutions, each.bridged_share) for each in tried]
-            axes.plot(*np.transpose(points), look, color=_BRIDGED, markersize=4, label=words)
+            axes.plot(*np.transpose(points), look, color=_BRIDGED, markersize=4, label=words, clip_on=False, zorder=5)
