@@ -12,6 +12,8 @@ import meshwind
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from readme.documents import as_markdown
+from readme.drawn import add_figures
+from readme.formulas import typeset
 
 project = "meshwind"
 author = "The meshwind authors"
@@ -57,7 +59,9 @@ NUMBER = 62
 
 
 def setup(app: Any) -> None:
-    """Have docstrings changed as they are read, and notebooks shown."""
+    """Have docstrings changed as they are read, notebooks shown, formulas typeset, and figures known."""
+    typeset(app)
+    add_figures(app)
     app.add_source_parser(Notebook)
     app.connect("autodoc-process-docstring", nearer)
 
