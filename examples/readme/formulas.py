@@ -40,12 +40,10 @@ def inline(page: Any, node: nodes.math) -> None:
 
 def displayed(page: Any, node: nodes.math_block) -> None:
     """Write one that has a line of its own, its number at the end of the line."""
-    page.body.append(page.starttag(node, "div", CLASS="equation", ROLE="group"))
+    page.body.append(page.starttag(node, "div", CLASS="equation"))
     page.body.append(f'<div class="formula">{markup(node, block=True)}</div>')
     if node["number"]:
-        page.body.append(f'<span class="eqno">({node["number"]})')
-        page.add_permalink_ref(node, "Link to this equation")
-        page.body.append("</span>")
+        page.body.append(f'<a class="eqno" href="#{node["ids"][0]}">({node["number"]})</a>')
     page.body.append("</div>\n")
     raise nodes.SkipNode
 

@@ -67,9 +67,13 @@ def setup(app: Any) -> None:
 
 
 def nearer(app: Any, what: str, name: str, thing: object, options: Any, lines: list[str]) -> None:
-    """Move the numbers of equations, which end at column 118 in the code, onto the page."""
-    del app, what, name, thing, options
+    """Move the numbers of equations, which end at column 118 in the code, onto the page; take bars as they stand."""
+    del app, name, thing, options
+    plain = what == "function" and not any(line.endswith("::") for line in lines)
     for number, line in enumerate(lines):
         if found := NUMBERED.fullmatch(line):
             equation, rest = found.groups()
             lines[number] = equation + " " * max(2, NUMBER - len(equation)) + rest
+        elif plain and "|" in line:  # norms, which are no names of substitutions
+            parts = line.split("``")
+            lines[number] = "``".join(part.replace("|", "\\|") if k % 2 == 0 else part for k, part in enumerate(parts))
