@@ -57,5 +57,5 @@ def lifting() -> Figure:
     axes.plot(taken, rest, "o", ms=9, color=RED, label="meshwind, at rest: the energy fell in every step")
     print(f"  lifting: at rest after {taken} iterations, {rest:.1e}")
     axes.set(xscale="symlog", yscale="log", xlabel="steps", ylabel="largest unbalanced force over the tension")
-    axes.legend(loc="center right")
+    figure.legend(loc="outside lower center", ncol=2)
     return figure
