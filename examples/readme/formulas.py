@@ -4,6 +4,8 @@ Nothing is loaded from elsewhere and no LaTeX is needed: docutils translates.  A
 that ``:eq:`4.16``` is a link that reads (4.16) from whatever page.
 """
 
+import re
+from itertools import cycle
 from typing import Any
 
 from docutils import nodes
@@ -26,10 +28,16 @@ class Numbered(MathDomain):
 def markup(formula: nodes.Element, block: bool) -> str:
     """The MathML of a formula; one that docutils cannot read is a warning, and stands as it is written."""
     try:
-        return str(tex2mathml(formula.astext(), as_block=block))
+        return norms(str(tex2mathml(formula.astext(), as_block=block)))
     except Exception as error:  # noqa: BLE001 its MathError is no public name
         logger.warning("cannot typeset %s: %s", formula.astext(), error, location=formula)
         return f"<code>{nodes.unescape(formula.astext())}</code>"
+
+
+def norms(written: str) -> str:
+    """Its bars as pairs, which without this have the room of operators around them."""
+    forms = cycle(("prefix", "postfix"))
+    return re.sub(r"<mo[^>]*>\|</mo>", lambda _: f'<mo form="{next(forms)}" stretchy="false">|</mo>', written)
 
 
 def inline(page: Any, node: nodes.math) -> None:

@@ -69,6 +69,7 @@ def setup(app: Any) -> None:
 def nearer(app: Any, what: str, name: str, thing: object, options: Any, lines: list[str]) -> None:
     """Move the numbers of equations, which end at column 118 in the code, onto the page; take bars as they stand."""
     del app, name, thing, options
+    whole(what, lines)
     plain = what == "function" and not any(line.endswith("::") for line in lines)
     for number, line in enumerate(lines):
         if found := NUMBERED.fullmatch(line):
@@ -77,3 +78,12 @@ def nearer(app: Any, what: str, name: str, thing: object, options: Any, lines: l
         elif plain and "|" in line:  # norms, which are no names of substitutions
             parts = line.split("``")
             lines[number] = "``".join(part.replace("|", "\\|") if k % 2 == 0 else part for k, part in enumerate(parts))
+
+
+def whole(what: str, lines: list[str]) -> None:
+    """Put together the sentence of a property that was taken for "type: what it is" at its colon."""
+    for number, line in enumerate(lines):
+        if what == "property" and line.startswith(":type: "):
+            del lines[number]
+            lines[0] = f"{line.removeprefix(':type: ')}: {lines[0]}"
+            return
