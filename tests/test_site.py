@@ -17,6 +17,7 @@ import pytest
 from command import meshwind
 from needs import STRICT
 from readme.documents import README, ROOT, SITE, documents
+from readme.drawn import FIGURES, code_of
 from typer.main import get_command
 
 import meshwind as mw
@@ -47,6 +48,31 @@ def test_all_theory_is_on_the_pages() -> None:
     for name in modules:
         page = (SITE / "theory" / f"{name}.rst").read_text(encoding="utf-8")
         assert f".. automodule:: meshwind.theory.{name}\n" in page
+
+
+def test_typeset_equations_have_their_plain_text() -> None:
+    """Under the same number, and each page links to the functions that hold its equations."""
+    labels = {}
+    for file in (SITE / "theory").glob("*.rst"):
+        text = file.read_text(encoding="utf-8")
+        labels[file.stem] = re.findall(r"^\.\. math::\n   :label: (.*)$", text, re.MULTILINE)
+        if labels[file.stem]:
+            plain = (ROOT / "meshwind" / "theory" / f"{file.stem}.py").read_text(encoding="utf-8")
+            assert [number for number in labels[file.stem] if f"({number})" not in plain] == []
+            linked = text.partition("In the code\n")[2]
+            assert all(f":eq:`{number}`" in linked for number in labels[file.stem]), file.stem
+    assert sum(map(len, labels.values())) >= 12
+
+
+def test_figures_of_the_theory_are_drawn_and_small() -> None:
+    drawn = {}
+    for file in (SITE / "theory").glob("*.rst"):
+        for name in re.findall(r"^\.\. drawn:: (\w+)$", file.read_text(encoding="utf-8"), re.MULTILINE):
+            drawn[f"{file.stem}_{name}.png"] = code_of(file.stem, name)
+    pictures = {file.name: file.stat().st_size for file in FIGURES.glob("*.png")}
+    assert set(drawn) == set(pictures) and len(drawn) >= 12
+    assert max(pictures.values()) < 150_000
+    assert all(code.startswith("def ") and "-> Figure" in code for code in drawn.values())
 
 
 def test_every_page_is_listed() -> None:
@@ -215,7 +241,12 @@ def test_it_is_built_without_a_warning(tmp_path: Path) -> None:
         for target in re.findall(r'(?:href|src)="([^"#?:]+)[^":]*"', text):
             assert (file.parent / target).exists(), f"{target} in {file.name}"
             pictures += target.endswith(".png")
+        for loaded in re.findall(r'<(?:script|link|img)[^>]* (?:src|href)="([^"]+)"', text):
+            assert "://" not in loaded, f"{loaded} is loaded from elsewhere by {file.name}"
     assert pictures >= 10
+    for page in ("equilibrium", "geodesics", "bridging", "layups", "comparisons"):
+        text = pages[tmp_path / "theory" / f"{page}.html"]
+        assert text.count("<math ") >= 10 and 'class="eqno"' in text and "<details>" in text
     for name in mw.__all__:
         assert any(re.search(rf'id="meshwind\.(?:surface\.)?{name}"|id="module-meshwind.surface.{name}"', text)
                    for text in pages.values()), name  # fmt: skip

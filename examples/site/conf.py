@@ -33,6 +33,7 @@ autodoc_typehints = "none"  # the docstrings have the types, in words
 napoleon_google_docstring = False
 napoleon_custom_sections = [("Attributes", "params_style")]  # names that share a line are no single target
 napoleon_use_rtype = False
+maximum_signature_line_length = 88
 
 html_theme = "furo"
 html_title = f"meshwind {version}"
@@ -56,6 +57,8 @@ NUMBERED = re.compile(r"(\s+\S.*?)\s{2,}(\(\d+\.\d[^)]*\).*)")
 """A line of an equation, and its number with what is said of it."""
 NUMBER = 62
 """Column of these numbers, with which also what is said of them has room on a page of usual width."""
+RETURNED = re.compile(rf"^(:returns: )\*({'|'.join(meshwind.__all__)})\*")
+"""The type that a function returns, where it is a public one, to which a reader goes on."""
 
 
 def setup(app: Any) -> None:
@@ -70,6 +73,7 @@ def nearer(app: Any, what: str, name: str, thing: object, options: Any, lines: l
     """Move the numbers of equations, which end at column 118 in the code, onto the page; take bars as they stand."""
     del app, name, thing, options
     whole(what, lines)
+    lines[:] = [RETURNED.sub(r"\1`\2`", line) for line in lines]
     plain = what == "function" and not any(line.endswith("::") for line in lines)
     for number, line in enumerate(lines):
         if found := NUMBERED.fullmatch(line):

@@ -173,7 +173,7 @@ class Paths(Geometric):
         """What each length (p,) may be off by, in the surface's units: for the particles, not for the fit.
 
         Under friction a fibre is not the shortest, so that its length takes over what its place of rest is off by for
-        the increments of its slide: `SLID` of itself is added for that.
+        the increments of its slide: 2e-4 of itself is added for that.
         """
         error = self._measured.error
         return frozen(error + SLID * self.length) if self.friction > 0.0 else error
