@@ -57,8 +57,10 @@ NUMBERED = re.compile(r"(\s+\S.*?)\s{2,}(\(\d+\.\d[^)]*\).*)")
 """A line of an equation, and its number with what is said of it."""
 NUMBER = 62
 """Column of these numbers, with which also what is said of them has room on a page of usual width."""
-RETURNED = re.compile(rf"^(:returns: )\*({'|'.join(meshwind.__all__)})\*")
-"""The type that a function returns, where it is a public one, to which a reader goes on."""
+PAGES = "".join(file.read_text(encoding="utf-8") for file in Path(__file__).with_name("api").glob("*.rst"))
+LISTED = {name.rpartition(".")[2]: name for name in re.findall(r"^\.\. autoclass:: ([\w.]+)$", PAGES, re.MULTILINE)}
+"""Classes of the library's pages, to which a reader goes on from what a function returns, by their names."""
+RETURNED = re.compile(rf"^(:returns: )\*({'|'.join(LISTED)})\*")
 
 
 def setup(app: Any) -> None:
@@ -73,7 +75,7 @@ def nearer(app: Any, what: str, name: str, thing: object, options: Any, lines: l
     """Move the numbers of equations, which end at column 118 in the code, onto the page; take bars as they stand."""
     del app, name, thing, options
     whole(what, lines)
-    lines[:] = [RETURNED.sub(r"\1`\2`", line) for line in lines]
+    lines[:] = [RETURNED.sub(lambda found: f"{found[1]}`~{LISTED[found[2]]}`", line) for line in lines]
     plain = what == "function" and not any(line.endswith("::") for line in lines)
     for number, line in enumerate(lines):
         if found := NUMBERED.fullmatch(line):
