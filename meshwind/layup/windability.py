@@ -28,12 +28,22 @@ _CELLS_PER_SPAN, _FEWEST_CELLS, _MOST_CELLS = 2, 16, 200
 class Windability:
     """The directions in which a fibre presses, at k points.  All arrays are read-only.
 
-    normal (k, 3) outward; largest, smallest (k,) principal curvature, positive where the surface bulges outward; kind
-    (k,): CONVEX (every direction presses), SADDLE (some do) or CONCAVE (none does); direction (k, 3): the unit
-    tangent in which a fibre presses hardest; reach (k,): a fibre presses up to this angle, in radians, to both sides
-    of it: pi/2 where convex, 0 where concave; share (k,): of all directions, reach over pi/2; angle (k,): winding angle
-    of `direction` from s_v, -pi/2 to pi/2, positive towards s_u; weight (k,): area of the surface that a point stands
-    for, over the whole.
+    Attributes
+    ----------
+    normal : ndarray of float, shape (k, 3)
+        Outward unit normals.
+    largest, smallest : ndarray of float, shape (k,)
+        Principal curvatures, positive where the surface bulges outward.
+    kind : ndarray of int, shape (k,)
+        1 where every direction presses (convex), 0 where some do (saddle), -1 where none does (concave).
+    direction : ndarray of float, shape (k, 3)
+        Unit tangents in which a fibre presses hardest.
+    reach : ndarray of float, shape (k,)
+        Angle, in radians, up to which a fibre presses to both sides of it: pi/2 where convex, 0 where concave.
+    angle : ndarray of float, shape (k,)
+        Winding angle of `direction` from s_v, -pi/2 to pi/2, positive towards s_u.
+    weight : ndarray of float, shape (k,)
+        Area of the surface that a point stands for, over the whole.
     """
 
     normal: Floats

@@ -55,12 +55,25 @@ Wind = Callable[[float], Trial]
 class Revolutions:
     """The choice of the number of revolutions, and what it rests on.
 
-    chosen: the winding at full resolution by the number chosen; pressing: the intervals in which points of the surface
-    press; common: the feasible interval(s) in which most of the surface presses; common_share: that share; feasible:
-    the feasible revolutions; trials: all windings that were tried, by growing revolutions; square: revolutions whose
-    families cross at right angles on average; with_friction, with_opening: largest feasible revolutions with friction
-    `FRICTION` or openings `WIDER` times as wide (alternatives.py), 0 where not looked for or none, infinity where no
-    number slides off.
+    Attributes
+    ----------
+    chosen : Trial
+        The winding at full resolution by the number chosen.
+    pressing : Pressing
+        The intervals in which points of the surface press.
+    common : tuple of tuple of float
+        The feasible interval or intervals in which most of the surface presses.
+    common_share : float
+        That share of the surface.
+    feasible : Feasible
+        The feasible revolutions.
+    trials : tuple of Trial
+        All windings that were tried, by growing revolutions.
+    square : float
+        Revolutions whose families cross at right angles on average.
+    with_friction, with_opening : float
+        Largest feasible revolutions with a friction of 0.2 or openings 1.5 times as wide (alternatives.py), 0 where
+        not looked for or none, infinity where no number slides off.
     """
 
     chosen: Trial

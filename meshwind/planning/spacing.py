@@ -40,9 +40,22 @@ _SEAM = 1e-12
 class Spaced:
     """Paths no two neighbours of which lie further apart than `spacing`, but at the partings.
 
-    paths: family +1, then -1, each by growing share; share (p,): where each starts, of the start rim's length; even:
-    number of paths per family that were there before; partings (k, 2): pairs of paths that no fibre rests between;
-    gap: largest distance between all other neighbours; widest: that at the partings, 0 without one.
+    Attributes
+    ----------
+    paths : Paths
+        Family +1, then -1, each by growing share.
+    share : ndarray of float, shape (p,)
+        Where each path starts, of the start rim's length.
+    spacing : float
+        Largest distance that was asked for, in the surface's units.
+    even : int
+        Number of paths per family that were there before.
+    partings : ndarray of int, shape (k, 2)
+        Pairs of paths that no fibre rests between.
+    gap : float
+        Largest distance between all other neighbours, in the surface's units.
+    widest : float
+        That at the partings, 0 without one.
     """
 
     paths: Paths
