@@ -1,5 +1,8 @@
 """Coulomb friction against exact curves on a cylinder, and against the law itself everywhere else."""
 
+import pickle
+from typing import Any
+
 import numpy as np
 import pytest
 from comparison.problem import TURN
@@ -217,6 +220,19 @@ def test_a_field_of_one_vertex_is_a_number() -> None:
     assert field.table == pytest.approx(np.full((256, 256), 0.25))
     assert Friction(np.zeros((1, 1))).none
     assert not field.none
+
+
+@pytest.mark.parametrize("table", [[[0.1, -0.1]], [[np.nan, 0.1]], [0.1, 0.2], np.zeros((0, 2))], ids=str)
+def test_a_table_of_ones_own_is_checked(table: Any) -> None:
+    with pytest.raises(BadInputError, match="friction"):
+        Friction(table)
+
+
+def test_no_table_can_be_written_to() -> None:
+    """Kernels are compiled for such tables: for others all of friction's would be compiled again, for a minute."""
+    made = Friction(np.full((2, 2), 0.1))
+    for each in (made, pickle.loads(pickle.dumps(made)), friction_of(barrel(), np.full((2, 2), 0.1))):
+        assert not each.table.flags.writeable
 
 
 def test_more_friction_holds_what_slides_off() -> None:

@@ -9,7 +9,7 @@ from functools import cache, cached_property
 import numpy as np
 
 from meshwind.core.brief import brief
-from meshwind.core.cast import Floats, floats, frozen
+from meshwind.core.cast import Floats, PicklableRecord, floats, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.surface.surface import Surface
 
@@ -20,7 +20,7 @@ LARGEST = 10.0
 
 
 @dataclass(frozen=True)
-class Friction:
+class Friction(PicklableRecord):
     """Coefficients of friction over a surface.
 
     Parameters
@@ -29,6 +29,11 @@ class Friction:
         Coefficients on an even grid over u (rows) and v (columns), bilinear in between; (1, 1) where the coefficient
         is the same everywhere.  Rows run once around a surface that closes in u, without repeating the first one, and
         otherwise from edge to edge.
+
+    Raises
+    ------
+    BadInputError
+        If the table is no table of finite numbers from 0 up.
 
     See Also
     --------
@@ -46,6 +51,12 @@ class Friction:
     table: Floats
 
     __repr__ = brief
+
+    def __post_init__(self) -> None:
+        table = floats(self.table, "friction", -1, -1)
+        if not table.size or table.min() < 0.0:
+            raise BadInputError("friction is negative or empty; give coefficients from 0 to 10")
+        object.__setattr__(self, "table", frozen(table))  # the kernels are compiled for what cannot be written to
 
     @cached_property
     def none(self) -> bool:
@@ -143,4 +154,4 @@ def uniform(coefficient: float) -> Friction:
 def _checked(table: Floats) -> Friction:
     if not np.isfinite(table).all() or table.min() < 0.0 or table.max() > LARGEST:
         raise BadInputError(f"friction goes from {table.min():g} to {table.max():g}; give coefficients from 0 to 10")
-    return Friction(frozen(table))
+    return Friction(table)

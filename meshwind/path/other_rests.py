@@ -223,7 +223,7 @@ class _Slides:
 
     def friction(self, change: float) -> Friction:
         """The friction with a change."""
-        return Friction(frozen(self.asked.options.friction.table * (1.0 + LOOSER * change)))
+        return Friction(self.asked.options.friction.table * (1.0 + LOOSER * change))
 
     def note(self, path: int, change: _Change, ends: tuple[_State, _State], found: OtherRests) -> bool:
         """Write what a path does with a change, which moves it from one state to another, if it leaps; True if so."""
