@@ -11,7 +11,7 @@ from PIL import Image
 from scipy.spatial import cKDTree
 
 import meshwind as mw
-from meshwind.appearance.ribbons import ribbons
+from meshwind.appearance.ribbons import Line, evened, ribbons
 from meshwind.core.cast import Floats, Ints
 from meshwind.filament.course import Course, Kind
 from meshwind.filament.filament import Filament, filaments_of
@@ -204,3 +204,19 @@ def test_a_continuous_run_draws_its_filament(tmp_path: Path) -> None:
     mw.wind("data/elbow.obj", paths=3, particles=51, continuous=True, out=tmp_path / "out")
     for name in OF_FILAMENT:
         assert (tmp_path / "out" / f"{name}.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(("wave", "least", "most"), [(np.inf, 1.0, 1.0), (200.0, 0.95, 1.0), (4.0, 0.0, 0.07)])
+def test_a_band_bends_as_the_part_does_on_its_own_scale(wave: float, least: float, most: float) -> None:
+    """Ribs narrower than a band are levelled, what is wider stays; a turnaround keeps its own bend."""
+    z = np.linspace(0.0, 100.0, 1001)
+    points = np.stack([0.0 * z, 0.0 * z, z], axis=1)
+    kind = np.where(z > 90.0, int(Kind.TURN), int(Kind.LAID))
+    none, zero = np.full(len(z), np.nan), np.zeros(len(z), dtype=np.int64)
+    course = Course(points, np.tile([1.0, 0.0, 0.0], (len(z), 1)), none, none, kind, zero, zero, zero)
+    across = np.where(z > 90.0, 3.0, 0.1 * np.cos(2.0 * np.pi * z / wave))
+    line = Line(Filament(course, zero, none), np.arange(len(z)), across)
+    found = evened(line, np.full(len(z), 20.0))
+    inner = (z > 10.0) & (z < 80.0)
+    assert least - 1e-9 <= np.abs(found[inner]).max() / np.abs(across[inner]).max() <= most + 1e-9
+    assert (found[z > 90.0] == 3.0).all()

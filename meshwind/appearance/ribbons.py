@@ -162,7 +162,7 @@ def strip(line: Line, width: Floats, lift: Floats, across: int = ACROSS) -> Floa
     up = np.cross(ahead, aside)
     off = width[:, None] * np.linspace(-0.5, 0.5, across)
     tightest = 2.0 * _TIGHTEST / np.maximum(width, TINY)
-    bend = np.clip(line.across, -tightest, tightest)[:, None]
+    bend = np.clip(evened(line, width), -tightest, tightest)[:, None]
     angle = bend * off
     flat = np.abs(angle) < 1e-6
     safe = np.where(flat, 1.0, bend)
@@ -171,6 +171,23 @@ def strip(line: Line, width: Floats, lift: Floats, across: int = ACROSS) -> Floa
     centre = middle + lift[:, None] * normal
     rows = centre[:, None] + out[..., None] * aside[:, None] + down[..., None] * up[:, None]
     return _ruled(rows, course.arc_length[line.kept], course.kind[line.kept] == Kind.BRIDGE)
+
+
+def evened(line: Line, width: Floats) -> Floats:
+    """Curvature (k,) across a fibre on the part, its mean over a length as long as its band is wide (k,).
+
+    A band lies over ribs and dents that are narrower than itself.
+    """
+    course = line.filament.course
+    arc, kind = course.arc_length[line.kept], course.kind[line.kept]
+    on = (kind == Kind.LAID) | (kind == Kind.BRIDGE)
+    if not on.any():
+        return line.across
+    across = np.interp(arc, arc[on], line.across[on])
+    whole = np.concatenate([[0.0], np.cumsum(0.5 * (across[1:] + across[:-1]) * np.diff(arc))])
+    ends = np.clip([arc - 0.5 * width, arc + 0.5 * width], arc[0], arc[-1])
+    length = np.maximum(ends[1] - ends[0], TINY)
+    return np.where(on, (np.interp(ends[1], arc, whole) - np.interp(ends[0], arc, whole)) / length, line.across)
 
 
 def _ruled(rows: Floats, arc: Floats, air: Bools) -> Floats:
