@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -32,10 +32,14 @@ from meshwind.mesh.geometry.areas_and_volumes import volume
 from meshwind.mesh.io.read import MeshLike
 from meshwind.path import Paths, Status
 from meshwind.planning.revolutions import Revolutions
+from meshwind.results.schema import DISPLACEMENT
 from meshwind.workflow.clock import Clock
 from meshwind.workflow.options import Options
 from meshwind.workflow.part import fit_part, read_source
 from meshwind.workflow.winding import chosen_revolutions
+
+if TYPE_CHECKING:
+    import pyvista
 
 
 @dataclass(frozen=True, repr=False)
@@ -124,6 +128,32 @@ class Redesign:
     def bridged(self) -> float:
         """Share of the particles of all windings that lie off the surface by more than counts as none."""
         return self.after.bridged
+
+    def to_pyvista(self) -> pyvista.MultiBlock:
+        """Give the part before and after to PyVista.
+
+        Returns
+        -------
+        pyvista.MultiBlock
+            Blocks "before" and "after", the meshes, whose points have the field "displacement", in the mesh's units,
+            and "fibres_before" and "fibres_after", the paths of the first winding.
+
+        Examples
+        --------
+        >>> import meshwind as mw
+        >>> seen = mw.redesign("data/tank.ply", revolutions=0.3, paths=3, particles=51).to_pyvista()
+        >>> seen.keys(), seen["after"]["displacement"].shape == seen["after"].points.shape
+        (['before', 'after', 'fibres_before', 'fibres_after'], True)
+        """
+        import pyvista  # late: a redesign needs none
+
+        before, after = self.part.to_pyvista(), self.mesh.to_pyvista()
+        for each in (before, after):
+            each.point_data[DISPLACEMENT] = self.displacement
+        fibres = [proof.paths.to_pyvista() for proof in (self.before, self.after)]
+        return pyvista.MultiBlock({
+            "before": before, "after": after, "fibres_before": fibres[0], "fibres_after": fibres[1],
+        })  # fmt: skip
 
 
 def redesign(  # noqa: PLR0913
