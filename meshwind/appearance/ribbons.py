@@ -25,7 +25,7 @@ MOST_ROWS = 30_000
 """Rows of all ribbons together, about: more are not visible, and take 170 bytes each."""
 _SHORT = 24
 """Points of a run of one kind that are all kept."""
-_LIFT = 1e-3, 5e-3
+LIFT = 1e-3, 5e-3
 """Height of the first and the last fibre over the part, over its diagonal: what is wound later lies above."""
 _TIGHTEST = 0.5 * np.pi
 """Largest angle that a band bends through from its middle to its edge."""
@@ -75,7 +75,7 @@ def ribbons(
         arc = line.filament.course.arc_length
         laid.append(before + arc[line.kept])
         before += float(arc[-1])
-        lift = surface.size * (_LIFT[0] + (_LIFT[1] - _LIFT[0]) * laid[-1] / max(total, TINY))
+        lift = surface.size * (LIFT[0] + (LIFT[1] - LIFT[0]) * laid[-1] / max(total, TINY))
         width = np.asarray(widths, dtype=np.float64)[np.minimum(line.filament.layer[line.kept], len(widths) - 1)]
         strips.append(rims.cut(strip(line, gathered(line, width, pins), lift, fine.across), line, width))
 

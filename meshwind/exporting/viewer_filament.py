@@ -4,19 +4,24 @@ from collections.abc import Sequence
 from typing import TypedDict
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from meshwind.appearance.gear import gear
 from meshwind.appearance.looks import SEQUENTIAL
-from meshwind.appearance.ribbons import Fineness, ribbons, turned_by
-from meshwind.appearance.strips import WORDS, Gear
-from meshwind.core.cast import Ints
+from meshwind.appearance.ribbons import LIFT, Fineness, ribbons, turned_by
+from meshwind.appearance.strips import WORDS, Gear, Ribbons
+from meshwind.core.cast import Bools, Ints
 from meshwind.exporting.packing import Packed, Stops, packed, stops
 from meshwind.filament.course import Kind
 from meshwind.filament.filament import Filament
 from meshwind.results.reading import Results
+from meshwind.surface.grid import grid
+from meshwind.surface.surface import Surface
 
 _FINE = Fineness(across=3, rows=9000)
 """Points across the band, and rows along it, that a browser draws smoothly without a graphics card."""
+_WITHIN = 0.03
+"""Distance from turnarounds, over the part's size, within which bands lie on pins or shafts rather than on the part."""
 
 
 class GearData(TypedDict):
@@ -31,7 +36,9 @@ class FilamentData(TypedDict):
     """The band of a filament in the order of laying, and what it does at each row of `across` points.
 
     sizes: rows of each strip, one strip after the other; laid: length of fibre laid before each row; total: of all
-    fibre; words: what the fibre does, by kind; layers: their number.
+    fibre; words: what the fibre does, by kind; layers: their number.  over: whether the whole row lies over the part,
+    not on a turnaround or near one; highest: its largest distance from the part where it does; lifts: what the first
+    and the last row are drawn above the part.
     """
 
     points: Packed
@@ -47,6 +54,9 @@ class FilamentData(TypedDict):
     angle: Packed
     slip: Packed
     thickness: Packed
+    over: Packed
+    highest: float
+    lifts: list[float]
     words: list[str]
     layers: int
     colours: Stops
@@ -63,7 +73,9 @@ def filament_data(results: Results, stands: Gear, filaments: Sequence[Filament])
     if not filaments:
         return None
     turned = turned_by(results.patterns)
-    made = ribbons(filaments, results.surface, results.band_widths, turned, _FINE)
+    surface = results.surface
+    made = ribbons(filaments, surface, results.band_widths, turned, _FINE)
+    over = np.asarray(~np.isin(made.kind, (Kind.TURN, Kind.DWELL)))
     return {
         "points": packed(made.points.reshape(-1, 3).T),
         "across": made.points.shape[1],
@@ -78,6 +90,9 @@ def filament_data(results: Results, stands: Gear, filaments: Sequence[Filament])
         "angle": packed(made.angle),
         "slip": packed(made.slip),
         "thickness": packed(made.thickness),
+        "over": packed(over.astype(np.int64)),
+        "highest": _highest(made, over, surface),
+        "lifts": [surface.size * lift for lift in LIFT],
         "words": [WORDS[kind] for kind in Kind],
         "layers": int(made.layer.max()) + 1,
         "colours": stops(SEQUENTIAL),
@@ -89,6 +104,12 @@ def filament_data(results: Results, stands: Gear, filaments: Sequence[Filament])
             "held": packed(_triangles(stands.held)),
         },
     }
+
+
+def _highest(made: Ribbons, over: Bools, surface: Surface) -> float:
+    """Largest distance of rows of bands from the points of the part's grid."""
+    off = cKDTree(grid(surface).points).query(made.points[over, made.points.shape[1] // 2])[0]
+    return float(off.max(initial=0.0))
 
 
 def _triangles(quads: Ints) -> Ints:

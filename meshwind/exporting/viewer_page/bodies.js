@@ -51,7 +51,13 @@ const mesh = scene.quads && (() => {
 const strips = wound && stripTriangles(wound.sizes, wound.across);
 const band = wound && bodyOf(wound.points, strips.triangles, Float32Array.from(
   { length: wound.points.length / 3 * 2 },
-  (_, n) => n % 2 ? 1 : wound.laid[Math.floor(n / 2 / wound.across)] / wound.total));
+  (_, n) => {
+    const row = Math.floor(n / 2 / wound.across);
+    return n % 2 ? wound.over[row] : wound.laid[row] / wound.total;
+  }));
+/** How bands lie over the part: so far that facets may hide them, so far above it, and what their order lifts them. */
+const over = wound && { sunk: SUNK, tolerance: SUNK + scene.surface.off, reach: SUNK + 4 * wound.highest,
+  lifts: wound.lifts };
 const gear = [];
 if (wound && wound.gear) {
   const points = interleaved(wound.gear.points, 3, middle);
@@ -127,12 +133,15 @@ function showKinds() {
 function piecesBefore(pieces, end) {
   return pieces.length && pieces[0] < end ? lastUpTo(pieces, end - 1) + 1 : 0;
 }
+/** Draw what the drawing needs to know: the part's depth, by which bands are drawn. */
+function drawBefore(wide, high) {
+  if (band && on("band")) drawSheet(part, wide, high, SUNK, clip.fibres);
+}
 function drawAll(finely) {
   const lines = finely ? fibreLines : coarseLines;
   const solid = look.opacity >= 1, surfaceLook = { ...look, sunk: SUNK, opacity: look.opacity };
   if (on("part") && solid) drawBody(part, surfaceLook);
-  if (band && on("band")) drawBody(band, { coloured: 1, shades: look.bandShades, count: laid.triangles,
-    cut: clip.fibres });
+  if (band && on("band")) drawBand(band, { ...over, shades: look.bandShades, count: laid.triangles, cut: clip.fibres });
   if (on("gear")) for (const { body, colour, sunk } of gear) drawBody(body, { colour, sunk, cut: clip.fibres });
   drawLine(lines, { widths: WIDTHS, count: piecesBefore(lines.pieces, laid.pieces), cut: clip.fibres });
   if (chosen >= 0) {

@@ -40,7 +40,7 @@ function compiled([vertex, fragment], names, cut) {
   }
   return { made, at };
 }
-const INPUTS = { body: ["point", "normal", "share"], line: ["before", "here", "after", "look"] }, programs = {};
+const INPUTS = { body: ["point", "normal", "share"], band: ["point", "normal", "share"], line: ["before", "here", "after", "look"] }, programs = {};
 /** The program for bodies or lines, with or without the cut, compiled when it is first wanted. */
 function shader(name, cut) { return programs[name + cut] ??= compiled(SHADERS[name], INPUTS[name], cut); }
 
@@ -128,9 +128,13 @@ function texture(colours) {
   const made = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, made);
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, colours.length / 4, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, colours);
+  plainTexture();
+  return made;
+}
+/** Have the pixels of the texture at hand neither blended nor repeated. */
+function plainTexture() {
   for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
   for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, name, gl.CLAMP_TO_EDGE);
-  return made;
 }
 const fraction = colour => [1, 3, 5].map(k => parseInt(colour.slice(k, k + 2), 16) / 255);
 
@@ -165,6 +169,37 @@ function drawBody(body, { colour = PART, opacity = 1, coloured = 0, shades = nul
   gl.disable(gl.CULL_FACE);
   gl.depthMask(true);
   gl.disable(gl.BLEND);
+}
+/** The part's depth, as large as the drawing, by which bands are drawn. */
+const sheet = gl && { frame: gl.createFramebuffer(), depth: gl.createTexture(), size: "" };
+function drawSheet(body, wide, high, sunk, cut) {
+  gl.activeTexture(gl.TEXTURE1);
+  gl.bindTexture(gl.TEXTURE_2D, sheet.depth);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, sheet.frame);
+  if (sheet.size !== `${wide} ${high}`) {
+    sheet.size = `${wide} ${high}`;
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.DEPTH_COMPONENT24, wide, high, 0, gl.DEPTH_COMPONENT, gl.UNSIGNED_INT, null);
+    plainTexture();
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, sheet.depth, 0);
+  }
+  gl.activeTexture(gl.TEXTURE0);
+  gl.clear(gl.DEPTH_BUFFER_BIT);
+  drawBody(body, { sunk, cut });
+}
+/** Draw so many triangles of the band, in the colours of their order, before the part that is in the sheet. */
+function drawBand(body, { shades, count, sunk, tolerance, reach, lifts, cut }) {
+  if (!count) return;
+  const at = withView("band", cut);
+
+  gl.uniform1f(at.sunk, 0);
+  gl.uniform1f(at.below, sunk);
+  gl.uniform1f(at.tolerance, tolerance);
+  gl.uniform1f(at.reach, reach);
+  gl.uniform1fv(at.lifts, lifts);
+  gl.uniform1i(at.sheet, 1);
+  gl.bindTexture(gl.TEXTURE_2D, shades);
+  gl.bindVertexArray(body.array);
+  gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 0);
 }
 /** Draw so many of a line's pieces; colour: one for all; more: pixels added to their widths. */
 function drawLine(line, { widths, count = line.pieces.length, colour = "", more = 0, sunk = 0, cut = true }) {
@@ -235,15 +270,17 @@ function draw(smoothly) {
   if (canvas.width !== wide || canvas.height !== high) [canvas.width, canvas.height] = [wide, high];
   if (gl && wide && high && !gl.isContextLost()) {
     const start = performance.now();
+    gl.viewport(0, 0, wide, high);
+    gl.clearColor(1, 1, 1, 1);
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LEQUAL);
+    drawBefore(wide, high);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     if (smoothly) {
       makeRoom(wide, high);
       gl.bindFramebuffer(gl.FRAMEBUFFER, smooth.many);
     }
-    gl.viewport(0, 0, wide, high);
-    gl.clearColor(1, 1, 1, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    gl.enable(gl.DEPTH_TEST);
-    gl.depthFunc(gl.LEQUAL);
     drawAll(smoothly);
     if (smoothly) resolve(wide, high, start);
     drawOver();

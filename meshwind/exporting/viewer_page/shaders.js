@@ -19,6 +19,13 @@ const CUT = `uniform vec4 plane;
 #define CUT_AT(point)
 #endif`;
 
+// the light is the eye's, from above its left shoulder
+const LIGHT = `vec3 lit(vec3 colour, vec3 n) {
+  float inside = n.z < 0. ? .82 : 1.;
+  return colour * inside * (.6 + .44 * max(dot(n * sign(n.z + 1e-9), normalize(vec3(-.45, .5, .9))), 0.));
+}`;
+const LEAST_FACING = .2;  // cosine: bands in the air seen aslant are before what lies farther along the part
+
 const SHADERS = {
   body: [`${COMMON}
 in vec3 point, normal;
@@ -33,6 +40,7 @@ void main() {
 }`, `#version 300 es
 precision highp float;
 ${CUT}
+${LIGHT}
 uniform vec4 colour;
 uniform vec3 unknown;
 uniform sampler2D shades;
@@ -45,9 +53,46 @@ void main() {
   CUT_AT(place)
   vec2 share = coloured == 2 ? whole : part;
   vec3 base = coloured == 0 ? colour.rgb : share.y < .999 ? unknown : texture(shades, vec2(share.x, .5)).rgb;
+  shown = vec4(lit(base, normalize(facing)), colour.a);
+}`],
+  /* Bands of fibre are computed one by one: where they cross in the air a later one would lie on an earlier one, and
+     coarse facets of neighbours cut into each other.  So what lies over the part that is seen, or in the air before it,
+     is brought to it in depth, the later the nearer; "sheet" is the part's depth.  Turnarounds and what lies before
+     nothing keep their own. */
+  band: [`${COMMON}
+in vec3 point, normal;
+in vec2 share;  // of all fibre laid before, and whether what is laid here lies over the part
+out vec3 place, facing, spot;
+out vec2 part;
+void main() {
+  place = point; part = share;
+  facing = mat3(view) * normal;
+  spot = (view * vec4(point, 1.)).xyz;
+  gl_Position = seen(point);
+}`, `#version 300 es
+precision highp float;
+${CUT}
+${LIGHT}
+uniform mat4 lens;
+uniform bool perspective;
+uniform float below, tolerance, reach, lifts[2];  // how far bands may lie under the part and over it; that of order
+uniform sampler2D shades;
+uniform highp sampler2D sheet;
+in vec3 place, facing, spot;
+in vec2 part;
+out vec4 shown;
+void main() {
+  CUT_AT(place)
   vec3 n = normalize(facing);
-  float inside = n.z < 0. ? .82 : 1.;  // the light is the eye's, from above its left shoulder
-  shown = vec4(base * inside * (.6 + .44 * max(dot(n * sign(n.z + 1e-9), normalize(vec3(-.45, .5, .9))), 0.)), colour.a);
+  shown = vec4(lit(texture(shades, vec2(part.x, .5)).rgb, n), 1.);
+  gl_FragDepth = gl_FragCoord.z;
+  float depth = texelFetch(sheet, ivec2(gl_FragCoord.xy), 0).r, on = 2. * depth - 1.;
+  float under = (lens[3][2] - lens[3][3] * on) / (lens[2][3] * on - lens[2][2]) + below;
+  float above = (spot.z - under) * max(dot(n, perspective ? -normalize(spot) : vec3(0., 0., 1.)), ${LEAST_FACING});
+  if (depth < 1. && n.z > 0. && part.y > .999 && above > -tolerance && above < reach) {
+    float z = under + mix(lifts[0], lifts[1], part.x);
+    gl_FragDepth = .5 + .5 * (lens[2][2] * z + lens[3][2]) / (lens[2][3] * z + lens[3][3]);
+  }
 }`],
   // each particle is two points, to either side of it; "before" and "after" are the particles next to it
   line: [`${COMMON}
