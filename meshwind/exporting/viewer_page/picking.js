@@ -2,11 +2,9 @@ const NEAR = 8, EXACT = 3;  // pixels of the page that a fibre may be from the p
 /** Whether the clip plane takes a point away. */
 function clipped(p) { const [a, b, c, d] = clipPlane(); return a * p[0] + b * p[1] + c * p[2] > d; }
 
-/** The first of a body's triangles before `count` that a line of sight meets: how far along it, the nearest corner,
-   and the place. */
-function hitBody(body, [from, along], count = body.count, cut = true) {
+/** Visit all of a body's triangles before `count` that a line of sight meets: how far along it, and which. */
+function eachMet(body, [from, along], count, cut, visit) {
   const { points: p, triangles } = body, [a, b, c, d] = cut ? clipPlane() : EVERYWHERE;
-  let [best, found] = [Infinity, -1];
   for (let k = 0; k < count; k += 3) {
     const i = 3 * triangles[k], j = 3 * triangles[k + 1], l = 3 * triangles[k + 2];
     const ex = p[j] - p[i], ey = p[j + 1] - p[i + 1], ez = p[j + 2] - p[i + 2];
@@ -21,16 +19,39 @@ function hitBody(body, [from, along], count = body.count, cut = true) {
     const v = (along[0] * qx + along[1] * qy + along[2] * qz) / det;
     if (v < 0 || u + v > 1) continue;
     const t = (fx * qx + fy * qy + fz * qz) / det;
-    if (t <= 0 || t >= best) continue;
+    if (t <= 0) continue;
     if (a * (from[0] + t * along[0]) + b * (from[1] + t * along[1]) + c * (from[2] + t * along[2]) > d) continue;
-    [best, found] = [t, k];
+    visit(t, k);
   }
-  if (found < 0) return null;
-  const place = plus(from, along, best);
-  const distance = n => Math.hypot(...plus(at(p, n), place, -1));
-  const corners = [triangles[found], triangles[found + 1], triangles[found + 2]].sort((m, n) =>
-    distance(m) - distance(n));
-  return { t: best, n: corners[0], place };
+}
+/** What is met at a place of a body: how far along the line of sight, the nearest corner, and the place. */
+function metAt({ points, triangles }, [from, along], t, k) {
+  const place = plus(from, along, t), distance = n => Math.hypot(...plus(at(points, n), place, -1));
+  const corners = [...triangles.subarray(k, k + 3)].sort((m, n) => distance(m) - distance(n));
+  return { t, n: corners[0], place };
+}
+/** The first place of a body that a line of sight meets; null where it meets none. */
+function hitBody(body, ray, count = body.count, cut = true) {
+  let [best, found] = [Infinity, -1];
+  eachMet(body, ray, count, cut, (t, k) => { if (t < best) [best, found] = [t, k]; });
+  return found < 0 ? null : metAt(body, ray, best, found);
+}
+/** The place of the band that is seen on a line of sight, by the rules by which it is drawn; null where there is
+   none. */
+function hitBand(ray) {
+  const under = hitBody(part, ray, part.count, clip.fibres), [low, high] = over.lifts;
+  let best = null;
+  eachMet(band, ray, laid.triangles, clip.fibres, (t, k) => {
+    const met = metAt(band, ray, t, k), row = Math.floor(met.n / wound.across);
+    const facing = -dot(at(band.normals, met.n), ray[1]);
+    const above = under ? (under.t - t) * Math.max(facing, LEAST_FACING) : Infinity;
+    if (facing < 0) met.t += 2 * SUNK;
+    else if (wound.over[row] && above > -over.tolerance && above < over.reach) {
+      met.t = under.t - low - (high - low) * wound.laid[row] / wound.total;
+    }
+    if (!best || met.t < best.t) best = met;
+  });
+  return best;
 }
 
 /** The fibre in sight nearest to a place of the view, if one is near: its nearest particle, and the place on it. */
@@ -71,7 +92,8 @@ function hit(x, y) {
   const ray = camera.ray(x, y), found = [];
   const add = (what, one) => { if (one) found.push({ what, ...one }); };
   if (on("part")) add("part", hitBody(part, ray));
-  if (band && on("band")) add("band", hitBody(band, ray, laid.triangles, clip.fibres));
+  if (band && on("band")) add("band", hitBand(ray));
+  if (on("gear")) for (const { body } of gear) add("turnaround", hitBody(body, ray, body.count, clip.fibres));
   return found.sort((one, other) => one.t - other.t)[0] || null;
 }
 
@@ -84,6 +106,7 @@ function saidOf(found) {
     const values = surface.maps.map(map => [map.title, valueWords(map, map.values[found.n])]);
     return ["part", [position, ["u, v", `${rounded(surface.u[i])}, ${rounded(surface.v[j])}`], ...values]];
   }
+  if (found.what === "turnaround") return ["what turns it", [position]];
   if (found.what === "band") return ["band", [position, ...atRow(Math.floor(found.n / wound.across))]];
   const { n, path } = found, figures = fibres.figures[path];
   const undefinedSlip = fibres.gap[n] > 0 ? "none off the surface" : "not defined at an end";

@@ -58,7 +58,7 @@ void main() {
   /* Bands of fibre are computed one by one: where they cross in the air a later one would lie on an earlier one, and
      coarse facets of neighbours cut into each other.  So what lies over the part that is seen, or in the air before it,
      is brought to it in depth, the later the nearer; "sheet" is the part's depth.  Turnarounds and what lies before
-     nothing keep their own. */
+     nothing keep their own.  From the inside of the part bands lie behind it, which is sunk itself. */
   band: [`${COMMON}
 in vec3 point, normal;
 in vec2 share;  // of all fibre laid before, and whether what is laid here lies over the part
@@ -81,6 +81,8 @@ uniform highp sampler2D sheet;
 in vec3 place, facing, spot;
 in vec2 part;
 out vec4 shown;
+/** The depth of a distance towards the eye. */
+float to(float z) { return .5 + .5 * (lens[2][2] * z + lens[3][2]) / (lens[2][3] * z + lens[3][3]); }
 void main() {
   CUT_AT(place)
   vec3 n = normalize(facing);
@@ -89,9 +91,9 @@ void main() {
   float depth = texelFetch(sheet, ivec2(gl_FragCoord.xy), 0).r, on = 2. * depth - 1.;
   float under = (lens[3][2] - lens[3][3] * on) / (lens[2][3] * on - lens[2][2]) + below;
   float above = (spot.z - under) * max(dot(n, perspective ? -normalize(spot) : vec3(0., 0., 1.)), ${LEAST_FACING});
-  if (depth < 1. && n.z > 0. && part.y > .999 && above > -tolerance && above < reach) {
-    float z = under + mix(lifts[0], lifts[1], part.x);
-    gl_FragDepth = .5 + .5 * (lens[2][2] * z + lens[3][2]) / (lens[2][3] * z + lens[3][3]);
+  if (n.z < 0.) gl_FragDepth = to(spot.z - 2. * below);
+  else if (depth < 1. && part.y > .999 && above > -tolerance && above < reach) {
+    gl_FragDepth = to(under + mix(lifts[0], lifts[1], part.x));
   }
 }`],
   // each particle is two points, to either side of it; "before" and "after" are the particles next to it
