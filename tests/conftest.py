@@ -36,7 +36,7 @@ def browser(
     page: Path, tmp_path_factory: pytest.TempPathFactory, chromium: tuple[str, str]
 ) -> "Iterator[webdriver.Chrome]":
     """For tests of a page, which a module has as the fixture of this name: a browser that shows it."""
-    from viewer_browser import opened
+    from benchmarks.browser import opened
 
     with opened(page, tmp_path_factory.mktemp("chromium"), chromium) as driver:
         yield driver

@@ -4,13 +4,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmarks.browser import first_picture, opened
 from export_results import leave
 from layup_shapes import bridged
 from selenium import webdriver
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
-from selenium.webdriver.support.ui import Select
-from viewer_browser import opened, pointed, rows, settled, severe
+from selenium.webdriver.support.ui import Select, WebDriverWait
+from viewer_browser import pointed, rows, settled, severe
 
 import meshwind as mw
 from meshwind.core.cast import Floats
@@ -21,8 +22,8 @@ from meshwind.results.reading import Results, read_results, read_surface_grid
 from meshwind.results.schema import NORMAL
 
 MOST = 4_000_000
-SOON = 3000
-"""Bytes of a page, and milliseconds to its first picture."""
+SOON = 3.0
+"""Bytes of a page, and seconds to its first picture."""
 
 
 @pytest.fixture(scope="module")
@@ -322,10 +323,11 @@ def test_two_hundred_fibres_are_small_and_soon_there(tmp_path: Path, chromium: t
     (file,) = write_exports(out, ["viewer"]).files
     assert file.stat().st_size < MOST
     with opened(file, tmp_path / "profile", chromium) as browser:
-        took = [float(browser.execute_script("return document.body.dataset.after"))]
+        took = [first_picture(browser)]
         if took[0] > SOON:  # a machine with much else to do
             browser.refresh()
-            took.append(float(browser.execute_script("return document.body.dataset.after")))
+            WebDriverWait(browser, 60).until(lambda seen: seen.find_elements(By.CSS_SELECTOR, "body[data-ready=yes]"))
+            took.append(first_picture(browser))
         assert min(took) < SOON
         assert browser.execute_script("return fibres.count") == 200
         # what moves is drawn from far fewer pieces

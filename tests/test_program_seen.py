@@ -15,7 +15,8 @@ from program_parts import filament, write_run
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
-from viewer_browser import opened, severe
+from benchmarks.browser import opened
+from viewer_browser import severe
 
 from meshwind.core.cast import Floats
 from meshwind.core.errors import BadInputError

@@ -55,6 +55,17 @@ const band = wound && bodyOf(wound.points, strips.triangles, Float32Array.from(
     const row = Math.floor(n / 2 / wound.across);
     return n % 2 ? wound.over[row] : wound.laid[row] / wound.total;
   }));
+/* As of the fibres, fewer triangles of the band while the view moves. */
+const coarseStrips = wound && (() => {
+  const needed = new Uint8Array(wound.laid.length);
+  for (let n = 1; n < needed.length; n++) {
+    if (wound.over[n] !== wound.over[n - 1] || wound.kind[n] !== wound.kind[n - 1]) needed[n - 1] = needed[n] = 1;
+  }
+  let end = 0;
+  for (const count of wound.sizes) { needed[end] = 1; end += count; needed[end - 1] = 1; }
+  return stripTriangles(wound.sizes, wound.across, bentRows(wound.points, wound.across, needed, STRAIGHT));
+})();
+const coarseBand = wound && bodyOf(wound.points, coarseStrips.triangles, null, band);
 /** How bands lie over the part: so far that facets may hide them, so far above it, and what their order lifts them. */
 const over = wound && { sunk: SUNK, tolerance: SUNK + scene.surface.off, reach: SUNK + 4 * wound.highest,
   lifts: wound.lifts };
@@ -101,9 +112,9 @@ camera.reach = [surface.points, ...beside].reduce((most, points) => {
   return most;
 }, 0) * 1.05;
 
-/** What is to be seen of the fibres and the band: pieces before one, triangles before one; all as long as nothing is
-   wound back. */
-const laid = { pieces: fibres.kind.length, triangles: band ? band.count : 0, head: null, eye: null, wrong: "" };
+/** What is to be seen of the fibres and the band: pieces before one, and rows up to one; all as long as nothing is wound
+   back. */
+const laid = { pieces: fibres.kind.length, row: wound ? wound.laid.length - 1 : 0, head: null, eye: null, wrong: "" };
 const look = { coloured: 0, shades: null, opacity: 1, bandShades: null };
 const clip = { axis: -1, share: .5, other: false, fibres: true };
 
@@ -141,7 +152,8 @@ function drawAll(finely) {
   const lines = finely ? fibreLines : coarseLines;
   const solid = look.opacity >= 1, surfaceLook = { ...look, sunk: SUNK, opacity: look.opacity };
   if (on("part") && solid) drawBody(part, surfaceLook);
-  if (band && on("band")) drawBand(band, { ...over, shades: look.bandShades, count: laid.triangles, cut: clip.fibres });
+  if (band && on("band")) drawBand(finely ? band : coarseBand, { ...over, shades: look.bandShades,
+    count: 3 * (finely ? strips : coarseStrips).ends[laid.row], cut: clip.fibres });
   if (on("gear")) for (const { body, colour, sunk } of gear) drawBody(body, { colour, sunk, cut: clip.fibres });
   drawLine(lines, { widths: WIDTHS, count: piecesBefore(lines.pieces, laid.pieces), cut: clip.fibres });
   if (chosen >= 0) {

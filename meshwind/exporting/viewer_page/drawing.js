@@ -40,7 +40,8 @@ function compiled([vertex, fragment], names, cut) {
   }
   return { made, at };
 }
-const INPUTS = { body: ["point", "normal", "share"], band: ["point", "normal", "share"], line: ["before", "here", "after", "look"] }, programs = {};
+const INPUTS = { body: ["point", "normal", "share"], band: ["point", "normal", "share"],
+  depth: ["point"], line: ["before", "here", "after", "look"] }, programs = {};
 /** The program for bodies or lines, with or without the cut, compiled when it is first wanted. */
 function shader(name, cut) { return programs[name + cut] ??= compiled(SHADERS[name], INPUTS[name], cut); }
 
@@ -59,16 +60,16 @@ function attribute(index, made, count, { type = gl.FLOAT, offset = 0, whole = fa
   gl.enableVertexAttribArray(index);
   gl.vertexAttribPointer(index, count, type, whole, 0, offset);
 }
-/** A body of triangles; shares (2 n): place on the colour scale of each point, and 1 where it has one. */
-function bodyOf(points, triangles, shares) {
-  const body = { points, triangles, count: triangles.length, normals: normalsOf(points, triangles) };
+/** A body of triangles; shares (2 n): place on the colour scale of each point, and 1 where it has one; like: another
+   body, whose points these are. */
+function bodyOf(points, triangles, shares, like = null) {
+  const body = { points, triangles, count: triangles.length, normals: like ? like.normals : normalsOf(points, triangles) };
   if (!gl) return body;
   body.array = gl.createVertexArray();
   gl.bindVertexArray(body.array);
-  attribute(0, buffer(points), 3);
-  attribute(1, buffer(body.normals), 3);
-  body.shares = buffer(shares || new Float32Array(points.length / 3 * 2));
-  attribute(2, body.shares, 2);
+  body.buffers = like ? like.buffers
+    : [points, body.normals, shares || new Float32Array(points.length / 3 * 2)].map(values => buffer(values));
+  body.buffers.forEach((made, n) => attribute(n, made, [3, 3, 2][n]));
   buffer(triangles, gl.ELEMENT_ARRAY_BUFFER);
   gl.bindVertexArray(null);
   return body;
@@ -184,13 +185,18 @@ function drawSheet(body, wide, high, sunk, cut) {
   }
   gl.activeTexture(gl.TEXTURE0);
   gl.clear(gl.DEPTH_BUFFER_BIT);
-  drawBody(body, { sunk, cut });
+  gl.uniform1f(withView("depth", cut).sunk, sunk);
+  gl.bindVertexArray(body.array);
+  gl.enable(gl.CULL_FACE);  // nothing is brought to an inside
+  gl.cullFace(gl.BACK);
+  gl.drawElements(gl.TRIANGLES, body.count, gl.UNSIGNED_INT, 0);
+  gl.disable(gl.CULL_FACE);
 }
-/** Draw so many triangles of the band, in the colours of their order, before the part that is in the sheet. */
+/** Draw so many triangles of the band in the colours of their order: outsides before the part that is in the sheet,
+   insides behind it, which is sunk itself. */
 function drawBand(body, { shades, count, sunk, tolerance, reach, lifts, cut }) {
   if (!count) return;
   const at = withView("band", cut);
-
   gl.uniform1f(at.sunk, 0);
   gl.uniform1f(at.below, sunk);
   gl.uniform1f(at.tolerance, tolerance);
@@ -199,7 +205,12 @@ function drawBand(body, { shades, count, sunk, tolerance, reach, lifts, cut }) {
   gl.uniform1i(at.sheet, 1);
   gl.bindTexture(gl.TEXTURE_2D, shades);
   gl.bindVertexArray(body.array);
+  gl.enable(gl.CULL_FACE);
+  gl.cullFace(gl.BACK);
   gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 0);
+  gl.cullFace(gl.FRONT);
+  drawBody(body, { shades, count, sunk: 2 * sunk, coloured: 3, cut });
+  gl.disable(gl.CULL_FACE);
 }
 /** Draw so many of a line's pieces; colour: one for all; more: pixels added to their widths. */
 function drawLine(line, { widths, count = line.pieces.length, colour = "", more = 0, sunk = 0, cut = true }) {

@@ -14,7 +14,7 @@ function windTo(done) {
   const n = lastUpTo(wound.laid, done), next = Math.min(n + 1, wound.laid.length - 1), half = (wound.across - 1) / 2;
   const share = wound.laid[next] > wound.laid[n] ? (done - wound.laid[n]) / (wound.laid[next] - wound.laid[n]) : 0;
   const [a, b] = [n, next].map(row => at(wound.points, row * wound.across + half));
-  laid.triangles = 3 * strips.ends[n];
+  laid.row = n;
   laid.head = plus(a.map(each => each * (1 - share)), b, share);
   if (!program) filled(byId("here"), atRow(n));
   document.body.dataset.wound = String(n);

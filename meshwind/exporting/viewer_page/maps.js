@@ -39,7 +39,7 @@ function showMap() {
   const stepped = map && !map.classes.length && byId("stepped").checked;
   look.coloured = !map ? 0 : map.classes.length ? 2 : 1;
   if (map && gl) {
-    refill(part.shares, shares(map));
+    refill(part.buffers[2], shares(map));
     if (look.shades) gl.deleteTexture(look.shades);
     const classes = map.classes.map(each => fraction(each.colour).map(part => 255 * part));
     look.shades = texture(pixels(classes.length ? classes : shades(map, stepped)));

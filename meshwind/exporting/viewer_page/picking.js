@@ -41,7 +41,7 @@ function hitBody(body, ray, count = body.count, cut = true) {
 function hitBand(ray) {
   const under = hitBody(part, ray, part.count, clip.fibres), [low, high] = over.lifts;
   let best = null;
-  eachMet(band, ray, laid.triangles, clip.fibres, (t, k) => {
+  eachMet(band, ray, 3 * strips.ends[laid.row], clip.fibres, (t, k) => {
     const met = metAt(band, ray, t, k), row = Math.floor(met.n / wound.across);
     const facing = -dot(at(band.normals, met.n), ray[1]);
     const above = under ? (under.t - t) * Math.max(facing, LEAST_FACING) : Infinity;

@@ -44,7 +44,8 @@ ${LIGHT}
 uniform vec4 colour;
 uniform vec3 unknown;
 uniform sampler2D shades;
-uniform int coloured;  // 0 by the one colour, 1 by the share between points, 2 by that of a quad's first point
+// 0 by the one colour, 1 by the share between points, 2 by that of a quad's first point, 3 as 1 though it is unknown
+uniform int coloured;
 in vec3 place, facing;
 in vec2 part;
 flat in vec2 whole;
@@ -52,13 +53,24 @@ out vec4 shown;
 void main() {
   CUT_AT(place)
   vec2 share = coloured == 2 ? whole : part;
-  vec3 base = coloured == 0 ? colour.rgb : share.y < .999 ? unknown : texture(shades, vec2(share.x, .5)).rgb;
+  vec3 base = coloured == 0 ? colour.rgb : share.y < .999 && coloured < 3 ? unknown : texture(shades, vec2(share.x, .5)).rgb;
   shown = vec4(lit(base, normalize(facing)), colour.a);
 }`],
+  depth: [`${COMMON}
+in vec3 point;
+out vec3 place;
+void main() {
+  place = point;
+  gl_Position = seen(point);
+}`, `#version 300 es
+precision highp float;
+${CUT}
+in vec3 place;
+void main() { CUT_AT(place) }`],
   /* Bands of fibre are computed one by one: where they cross in the air a later one would lie on an earlier one, and
      coarse facets of neighbours cut into each other.  So what lies over the part that is seen, or in the air before it,
      is brought to it in depth, the later the nearer; "sheet" is the part's depth.  Turnarounds and what lies before
-     nothing keep their own.  From the inside of the part bands lie behind it, which is sunk itself. */
+     nothing keep their own. */
   band: [`${COMMON}
 in vec3 point, normal;
 in vec2 share;  // of all fibre laid before, and whether what is laid here lies over the part
@@ -91,8 +103,7 @@ void main() {
   float depth = texelFetch(sheet, ivec2(gl_FragCoord.xy), 0).r, on = 2. * depth - 1.;
   float under = (lens[3][2] - lens[3][3] * on) / (lens[2][3] * on - lens[2][2]) + below;
   float above = (spot.z - under) * max(dot(n, perspective ? -normalize(spot) : vec3(0., 0., 1.)), ${LEAST_FACING});
-  if (n.z < 0.) gl_FragDepth = to(spot.z - 2. * below);
-  else if (depth < 1. && part.y > .999 && above > -tolerance && above < reach) {
+  if (depth < 1. && part.y > .999 && above > -tolerance && above < reach) {
     gl_FragDepth = to(under + mix(lifts[0], lifts[1], part.x));
   }
 }`],

@@ -22,20 +22,37 @@ function gridTriangles(rows, columns, closed, outward) {
   }
   return out;
 }
-/** Triangles of strips between rows of points, in the order of the rows, and how many end at each row or before. */
-function stripTriangles(sizes, across) {
-  const total = sizes.reduce((sum, count) => sum + count, 0), per = 2 * (across - 1);
-  const out = new Uint32Array((total - sizes.length) * per * 3), ends = new Uint32Array(total);
-  let k = 0, row = 0;
-  for (const count of sizes) for (let r = 0; r < count; r++, row++) {
-    for (let j = 0; r > 0 && j < across - 1; j++) {
-      const a = (row - 1) * across + j, b = a + across, c = b + 1, d = a + 1;
-      out.set([a, b, c, a, c, d], k);
-      k += 6;
+/** Triangles of strips between the rows of points that are kept, in the order of the rows, and how many end at each row
+   or before. */
+function stripTriangles(sizes, across, kept = null) {
+  const total = sizes.reduce((sum, count) => sum + count, 0), out = [], ends = new Uint32Array(total);
+  let row = 0;
+  for (const count of sizes) for (let r = 0, last = row; r < count; r++, row++) {
+    if (!kept || kept[row]) {
+      for (let j = 0; r > 0 && j < across - 1; j++) {
+        const a = last * across + j, b = row * across + j, c = b + 1, d = a + 1;
+        out.push(a, b, c, a, c, d);
+      }
+      last = row;
     }
-    ends[row] = k / 3;
+    ends[row] = out.length / 3;
   }
-  return { triangles: out, ends };
+  return { triangles: Uint32Array.from(out), ends };
+}
+/** Which rows of strips are needed for their edges to be no farther off than `off`; needed: those that are, however
+   straight they are. */
+function bentRows(points, across, needed, off) {
+  const kept = Uint8Array.from(needed), sides = [0, across - 1];
+  let before = [], length = 0, bend = 0;
+  for (let n = 0; n + 1 < kept.length; n++) {
+    const steps = sides.map(side => plus(at(points, (n + 1) * across + side), at(points, n * across + side), -1));
+    const ahead = steps.map(unit), long = Math.max(...steps.map(step => Math.hypot(...step)));
+    if (!kept[n]) bend += Math.max(...ahead.map((each, m) => Math.hypot(...plus(each, before[m], -1))));
+    length += long;
+    if (kept[n] || !(length * bend < 8 * off)) [kept[n], length, bend] = [1, long, 0];
+    before = ahead;
+  }
+  return kept;
 }
 /** Normals of points by the triangles round them. */
 function normalsOf(points, triangles) {
