@@ -4,7 +4,7 @@ from typing import TypedDict
 
 import numpy as np
 
-from meshwind.appearance.layer_steps import STEP_COLOURS, step_firsts, step_words
+from meshwind.appearance.layer_steps import STEP_COLOURS, LayerSteps, layer_steps, step_words
 from meshwind.appearance.looks import LAMINATE, MAPS, Look
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.geometry import Block
@@ -30,10 +30,18 @@ class ClassData(TypedDict):
     words: str
 
 
+class CellData(TypedDict):
+    """Classes over an even grid of cells in u and v, `columns` along v for each u: runs of a class, and their lengths."""
+
+    columns: int
+    classes: Packed
+    lengths: Packed
+
+
 class MapData(TypedDict):
     """A map of the surface and how it is shown; marks are positions on its scale.
 
-    classes: of a discrete map, by rising values, none of others; stepped: whether the colours go in steps from mark to
+    values: at the points of the grid; cells: classes by which it is drawn where these are finer, else None.  classes: of a discrete map, by rising values, none of others; stepped: whether the colours go in steps from mark to
     mark when the map is first shown.
     """
 
@@ -46,6 +54,7 @@ class MapData(TypedDict):
     high: float
     log: bool
     values: Packed
+    cells: CellData | None
     marks: list[float]
     mark_words: list[str]
     classes: list[ClassData]
@@ -84,6 +93,10 @@ def surface_data(grid: Block, results: Results) -> SurfaceData:
     laminate = read_laminate(results.folder, results.surface)
     if laminate is not None:
         known.insert(0, ("laminate", LAMINATE, laminate.thickness))
+    maps = [_map(name, look, values.astype(np.float64), kept, results.units) for name, look, values in known]
+    if LAYERS in grid.point_data:
+        steps = layer_steps(results.paths, results.band_width or results.layup.bands.width)
+        maps = [_by_layers(each, steps) if each["name"] == LAYERS else each for each in maps]
     return {
         "points": packed(points.T),
         "u": packed(uv[rows * nv, 0]),
@@ -93,7 +106,7 @@ def surface_data(grid: Block, results: Results) -> SurfaceData:
         "whole": len(uv),
         "shown": len(kept),
         "off": _facets_off(results.surface, uv[rows * nv, 0], uv[columns, 1], points),
-        "maps": [_map(name, look, values.astype(np.float64), kept, results.units) for name, look, values in known],
+        "maps": maps,
     }
 
 
@@ -129,27 +142,38 @@ def _map(name: str, look: Look, values: Floats, kept: Ints, units: str) -> MapDa
         "high": scale.high,
         "log": scale.log,
         "values": packed(values[kept]),
+        "cells": None,
         "marks": [share for share, _ in marks],
         "mark_words": [words for _, words in marks],
-        "classes": _classes(name, values, look),
+        "classes": _classes(look) if name == CLASS else [],
         "stepped": name == WINDABILITY,
     }
 
 
-def _classes(name: str, values: Floats, look: Look) -> list[ClassData]:
-    """The classes of a discrete map."""
-    if name == LAYERS:
-        firsts = step_firsts(int(np.nanmax(values, initial=0.0)))
-        shown = zip(firsts.tolist(), STEP_COLOURS, step_words(firsts), strict=False)
-        return [{"least": least - 0.5, "colour": colour, "words": words} for least, colour, words in shown]
-    if name == CLASS:
-        shades = stops(look.colours)
-        colours = shades[0][1], shades[len(shades) // 2][1], shades[-1][1]
-        return [
-            {"least": value - 0.5, "colour": str(colour), "words": words}
-            for (value, words), colour in zip(_CLASSES.items(), colours, strict=True)
-        ]
-    return []
+def _by_layers(of: MapData, found: LayerSteps) -> MapData:
+    """The map of layers with their steps as classes, by cells that are many across a band."""
+    steps = found.steps.ravel()
+    begin = np.flatnonzero(np.diff(steps, prepend=-1))
+    cells: CellData = {
+        "columns": found.steps.shape[1],
+        "classes": packed(steps[begin]),
+        "lengths": packed(np.diff(begin, append=len(steps))),
+    }
+    shown = zip(found.firsts.tolist(), STEP_COLOURS, step_words(found.firsts), strict=False)
+    classes: list[ClassData] = [
+        {"least": least - 0.5, "colour": colour, "words": words} for least, colour, words in shown
+    ]
+    return {**of, "cells": cells, "classes": classes}
+
+
+def _classes(look: Look) -> list[ClassData]:
+    """The classes of the map of classes."""
+    shades = stops(look.colours)
+    colours = shades[0][1], shades[len(shades) // 2][1], shades[-1][1]
+    return [
+        {"least": value - 0.5, "colour": str(colour), "words": words}
+        for (value, words), colour in zip(_CLASSES.items(), colours, strict=True)
+    ]
 
 
 def _thinned(count: int, share: float, closed: bool) -> Ints:

@@ -2,23 +2,17 @@
 
 import numpy as np
 
-from meshwind.appearance.layer_steps import STEP_COLOURS, step_firsts, step_words
+from meshwind.appearance.layer_steps import STEP_COLOURS, layer_steps, step_words
 from meshwind.appearance.words import quantity
 from meshwind.core.cast import Floats
-from meshwind.layup.bands import bands
 from meshwind.pictures.scenes import LayersScene, Part
 from meshwind.pictures.subject import Subject
 from meshwind.surface.grid import grid, grid_quads
 
-_ACROSS = 24
-"""Cells across a band, so that its edges look straight."""
-
 
 def layers_scene(of: Subject) -> LayersScene:
     """The layers over the middles of fine cells, with the share of the area that is on each step."""
-    laid = bands(of.paths, of.layup.bands.width, _ACROSS)
-    firsts = step_firsts(int(laid.layers.max(initial=0)))
-    steps = np.searchsorted(firsts, laid.layers, side="right") - 1
+    laid, firsts, steps = layer_steps(of.paths, of.layup.bands.width)
     shares = np.bincount(steps.ravel(), laid.area.ravel(), len(firsts)) / max(float(laid.area.sum()), 1e-300)
     words = tuple(
         f"{_short(named)}: {percent(share)}" for named, share in zip(step_words(firsts), shares.tolist(), strict=True)

@@ -19,6 +19,13 @@ function unpack(packed) {
   const values = new type(bytes.buffer);
   return packed.type === "f2" ? Float32Array.from(values, half) : values;
 }
+/** The classes of cells from their runs. */
+function drawnOut({ columns, classes, lengths }) {
+  const all = unpack(classes), many = unpack(lengths), out = new Uint8Array(many.reduce((sum, count) => sum + count, 0));
+  let end = 0;
+  many.forEach((count, n) => { out.fill(all[n], end, end + count); end += count; });
+  return { columns, rows: out.length / columns, classes: out };
+}
 /** The columns of packed rows one after the other, as (x, y, z), (x, y, z), ...; the middle is taken from each. */
 function interleaved(packed, rows, middle) {
   const all = unpack(packed), count = all.length / rows, out = new Float32Array(all.length);
@@ -49,7 +56,7 @@ const size = Math.hypot(...extent.map(([low, high]) => high - low));
 
 const surface = {
   points: interleaved(scene.surface.points, 3, middle), u: unpack(scene.surface.u), v: unpack(scene.surface.v),
-  maps: scene.surface.maps.map(map => ({ ...map, values: unpack(map.values) })),
+  maps: scene.surface.maps.map(map => ({ ...map, values: unpack(map.values), cells: map.cells && drawnOut(map.cells) })),
 };
 const [rows, columns] = [surface.u.length, surface.v.length];
 

@@ -124,18 +124,19 @@ function choosePieces(line, pieces, ahead) {
   gl.bindVertexArray(null);
 }
 
-/** A row of colours as a texture, each pixel its own, so that steps have sharp edges. */
-function texture(colours) {
+/** Rows of colours, one after the other, as a texture, each pixel its own, so that steps have sharp edges. */
+function texture(colours, wide = colours.length / 4) {
   const made = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, made);
-  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, colours.length / 4, 1, 0, gl.RGBA, gl.UNSIGNED_BYTE, colours);
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, wide, colours.length / 4 / wide, 0, gl.RGBA, gl.UNSIGNED_BYTE, colours);
   plainTexture();
   return made;
 }
-/** Have the pixels of the texture at hand neither blended nor repeated. */
+/** Have the pixels of the texture at hand not blended; only its rows begin again after the last. */
 function plainTexture() {
   for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
-  for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, name, gl.CLAMP_TO_EDGE);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.REPEAT);
 }
 const fraction = colour => [1, 3, 5].map(k => parseInt(colour.slice(k, k + 2), 16) / 255);
 

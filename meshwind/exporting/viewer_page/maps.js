@@ -19,6 +19,21 @@ function shares(map) {
   });
   return out;
 }
+/** u and v of the part's points. */
+function placesOnCells() {
+  return Float32Array.from({ length: 2 * rows * columns }, (_, n) =>
+    n % 2 ? surface.v[(n >> 1) % columns] : surface.u[Math.floor((n >> 1) / columns)]);
+}
+function cellPixels(classes, colours) {
+  const out = new Uint8Array(4 * classes.length);
+  classes.forEach((each, n) => out.set([...colours[each], 255], 4 * n));
+  return out;
+}
+/** The class of the cell at u and v. */
+function cellAt({ columns, rows, classes }, [u, v]) {
+  const i = Math.floor((u - Math.floor(u)) * rows) % rows;
+  return classes[i * columns + Math.min(Math.max(Math.floor(v * columns), 0), columns - 1)];
+}
 /** The shares at which a scale in steps changes its colour. */
 function edges(map) {
   return [0, ...map.marks.filter(mark => mark > .001 && mark < .999), 1];
@@ -37,12 +52,13 @@ function showMap() {
   const map = surface.maps.find(each => each.name === byId("map").value);
   byId("inSteps").hidden = !map || map.classes.length > 0;
   const stepped = map && !map.classes.length && byId("stepped").checked;
-  look.coloured = !map ? 0 : map.classes.length ? 2 : 1;
+  look.coloured = !map ? 0 : map.cells ? 4 : map.classes.length ? 2 : 1;
   if (map && gl) {
-    refill(part.buffers[2], shares(map));
+    refill(part.buffers[2], map.cells ? placesOnCells() : shares(map));
     if (look.shades) gl.deleteTexture(look.shades);
     const classes = map.classes.map(each => fraction(each.colour).map(part => 255 * part));
-    look.shades = texture(pixels(classes.length ? classes : shades(map, stepped)));
+    look.shades = map.cells ? texture(cellPixels(map.cells.classes, classes), map.cells.columns)
+      : texture(pixels(classes.length ? classes : shades(map, stepped)));
   }
   const old = byId("mapLegend");
   if (old) old.remove();

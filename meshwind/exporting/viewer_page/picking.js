@@ -28,7 +28,16 @@ function eachMet(body, [from, along], count, cut, visit) {
 function metAt({ points, triangles }, [from, along], t, k) {
   const place = plus(from, along, t), distance = n => Math.hypot(...plus(at(points, n), place, -1));
   const corners = [...triangles.subarray(k, k + 3)].sort((m, n) => distance(m) - distance(n));
-  return { t, n: corners[0], place };
+  return { t, n: corners[0], place, k };
+}
+/** u and v at a place in one of the part's triangles. */
+function partUv({ k, place }) {
+  const corners = [0, 1, 2].map(m => part.triangles[k + m]), p = corners.map(n => at(part.points, n));
+  const area = (a, b, c) => Math.hypot(...cross(plus(b, a, -1), plus(c, a, -1)));
+  const areas = [0, 1, 2].map(m => area(place, p[(m + 1) % 3], p[(m + 2) % 3])), all = areas[0] + areas[1] + areas[2];
+  const us = corners.map(n => surface.u[Math.floor(n / columns)]), most = Math.max(...us);
+  const mean = values => values.reduce((sum, value, m) => sum + areas[m] * value, 0) / all;
+  return [mean(us.map(u => most - u > .5 ? u + 1 : u)) % 1, mean(corners.map(n => surface.v[n % columns]))];
 }
 /** The first place of a body that a line of sight meets; null where it meets none. */
 function hitBody(body, ray, count = body.count, cut = true) {
@@ -102,9 +111,10 @@ const placed = p => p.map((each, m) => rounded(each + middle[m], "", 5)).join(",
 function saidOf(found) {
   const position = ["x, y, z", placed(found.place) + units];
   if (found.what === "part") {
-    const [i, j] = [Math.floor(found.n / columns), found.n % columns];
-    const values = surface.maps.map(map => [map.title, valueWords(map, map.values[found.n])]);
-    return ["part", [position, ["u, v", `${rounded(surface.u[i])}, ${rounded(surface.v[j])}`], ...values]];
+    const uv = partUv(found), words = map => map.cells ? map.classes[cellAt(map.cells, uv)].words
+      : valueWords(map, map.values[found.n]);
+    return ["part", [position, ["u, v", uv.map(each => rounded(each)).join(", ")],
+      ...surface.maps.map(map => [map.title, words(map)])]];
   }
   if (found.what === "turnaround") return ["what turns it", [position]];
   if (found.what === "band") return ["band", [position, ...atRow(Math.floor(found.n / wound.across))]];

@@ -32,9 +32,11 @@ in vec3 point, normal;
 in vec2 share;
 out vec3 place, facing;
 out vec2 part;
+out float beside;
 flat out vec2 whole;
 void main() {
   place = point; part = share; whole = share;
+  beside = share.x > .5 ? share.x - 1. : share.x;
   facing = mat3(view) * normal;
   gl_Position = seen(point);
 }`, `#version 300 es
@@ -44,16 +46,19 @@ ${LIGHT}
 uniform vec4 colour;
 uniform vec3 unknown;
 uniform sampler2D shades;
-// 0 by the one colour, 1 by the share between points, 2 by that of a quad's first point, 3 as 1 though it is unknown
+// 0 by the one colour, 1 by the share between points, 2 by that of a quad's first point, 3 as 1 though it is unknown,
+// 4 by an image over u, which goes once around, and v
 uniform int coloured;
 in vec3 place, facing;
 in vec2 part;
+in float beside;
 flat in vec2 whole;
 out vec4 shown;
 void main() {
   CUT_AT(place)
   vec2 share = coloured == 2 ? whole : part;
-  vec3 base = coloured == 0 ? colour.rgb : share.y < .999 && coloured < 3 ? unknown : texture(shades, vec2(share.x, .5)).rgb;
+  float u = fwidth(part.x) < fwidth(beside) ? part.x : beside;  // where u begins again only one of them is even
+  vec3 base = coloured == 4 ? texture(shades, vec2(part.y, u)).rgb : coloured == 0 ? colour.rgb : share.y < .999 && coloured < 3 ? unknown : texture(shades, vec2(share.x, .5)).rgb;
   shown = vec4(lit(base, normalize(facing)), colour.a);
 }`],
   depth: [`${COMMON}
