@@ -19,6 +19,7 @@ from meshwind.exporting.targets import write_exports
 from meshwind.exporting.viewer import page as render_page
 from meshwind.exporting.viewer import page_data
 from meshwind.exporting.viewer_fibres import fibre_data
+from meshwind.layup.bands import bands
 from meshwind.path.lengths import bridging
 from meshwind.path.paths import Status
 from meshwind.results.reading import read_results
@@ -149,6 +150,7 @@ def test_discrete_maps_have_a_colour_for_each_class(browser: webdriver.Chrome) -
     assert len(drawn) > 0.05 * classes[..., 0].size
     assert (away < 0.03).mean() > 0.9  # all but smoothed edges
     # within a cell between nodes of several classes there is one colour, however near one looks
+    choice.select_by_visible_text("class")
     assert browser.execute_script(
         "const map = surface.maps.find(each => each.name === byId('map').value);"
         "for (let i = 0; i < rows - 1; i++) for (let j = 0; j < columns - 1; j++) {"
@@ -178,6 +180,45 @@ def test_discrete_maps_have_a_colour_for_each_class(browser: webdriver.Chrome) -
     assert 3 * counts[0] < 2 * counts[1]
     choice.select_by_visible_text("plain")
     browser.execute_script("for (const id of ['family1', 'family-1', 'bridges', 'loose']) byId('show-' + id).click()")
+
+
+def test_layers_are_those_of_the_bands_between_nodes_too(browser: webdriver.Chrome, page: Path) -> None:
+    results = read_results(page.parent)
+    Select(browser.find_element(By.ID, "map")).select_by_visible_text("layers of band")
+    browser.execute_script(
+        "for (const input of document.querySelectorAll('#shown input'))"
+        "  input.checked = input.id === 'show-part'; showKinds()"
+    )
+    seen = []
+    for view in ("bestSide()", "camera.turn(2.1, .3)", "camera.turn(2.1, -.3)"):  # all around, over the seam
+        browser.execute_script(view)
+        seen += browser.execute_script(
+            "draw(false);"
+            "const found = [], pixel = new Uint8Array(4), map = surface.maps.find(each => each.name === 'layers');"
+            "const hue = rgb => { const long = Math.hypot(...rgb); return Array.from(rgb, each => each / long); };"
+            "const hues = map.classes.map(each => hue(fraction(each.colour)));"
+            "for (let x = 4.5; x < canvas.clientWidth; x += 7) for (let y = 4.5; y < canvas.clientHeight; y += 7) {"
+            "  const met = hitBody(part, camera.ray(x, y));"
+            "  if (!met || dot(at(part.normals, met.n), camera.eye) < .3) continue;"
+            "  gl.readPixels(Math.floor(x), canvas.height - 1 - Math.floor(y), 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);"
+            "  const away = hues.map(each => Math.hypot(...plus(each, hue(pixel.slice(0, 3)), -1)));"
+            "  found.push([...partUv(met), away.indexOf(Math.min(...away)),"
+            "    map.classes.findIndex(each => each.words === Object.fromEntries(saidOf({ what: 'part', ...met })[1])"
+            "      [map.title])]);"
+            "} return found"
+        )
+    u, v, drawn, said = np.array(seen).T
+    laid = bands(results.paths, results.layup.bands.width, 24)
+    there = laid.at(np.stack([u, v], axis=1))
+    assert len(seen) > 1000 and len(np.unique(there)) > 2 and np.ptp(u) > 0.98
+    assert (drawn == there).mean() > 0.97  # all but edges
+    assert (said == there).mean() > 0.999
+    browser.execute_script(
+        "for (const input of document.querySelectorAll('#shown input'))"
+        "  input.checked = input.id !== 'show-quads'; showKinds()"
+    )
+    Select(browser.find_element(By.ID, "map")).select_by_visible_text("plain")
+    browser.find_element(By.ID, "reset").click()
 
 
 def test_values_show_under_the_pointer_and_not_over_the_part(browser: webdriver.Chrome, page: Path) -> None:
