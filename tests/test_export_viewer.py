@@ -261,7 +261,7 @@ def test_the_page_holds_the_numbers_of_the_run(tmp_path: Path) -> None:
 
 def test_long_fibres_are_thinned_and_the_page_says_so(page: Path) -> None:
     results = read_results(page.parent)
-    whole, thin = fibre_data(results), fibre_data(results, -(-results.paths.gap.size // 3))
+    whole, thin = fibre_data(results), fibre_data(results, -(-results.paths.gap.size // 3) + 4 * len(results.paths))
     assert thin["step"] == 3 and thin["figures"] == whole["figures"]
     kept, sizes = [np.frombuffer(base64.b64decode(thin[name]["data"]), dtype="u1") for name in ("off", "sizes")]  # type: ignore[literal-required]
     off = bridging(results.paths)

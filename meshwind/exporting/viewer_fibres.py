@@ -13,6 +13,8 @@ from meshwind.results.reading import Results
 
 _MOST = 60_000
 """Particles in the page, about: each takes 40 bytes of it; they are drawn smoothly without a graphics card."""
+_AS_MANY, _LEAST = 4, 3
+"""Particles that take as much as the figures of a fibre, and how many of each fibre are in the page at least."""
 _DIGITS = 7
 
 
@@ -57,10 +59,10 @@ class FibreData(TypedDict):
 
 
 def fibre_data(results: Results, most: int = _MOST) -> FibreData:
-    """The fibres of a run, thinned to about `most` particles."""
+    """The fibres of a run, thinned so that they take about as much as `most` particles with few fibres."""
     paths = results.paths
     off = bridging(paths)
-    step = max(-(-paths.gap.size // most), 1)
+    step = max(-(-paths.gap.size // max(most - _AS_MANY * len(paths), _LEAST * len(paths), 1)), 1)
     kept = _kept(off, step)
     angle = np.degrees(winding_angle(paths))
     return {

@@ -194,7 +194,7 @@ function drawOver() {
     mark("path", { d: `M${right - px} ${y - 5}v5h${px}v-5`, fill: "none", stroke: INK, "stroke-width": "1.6" });
     mark("text", { x: right - px / 2, y: y - 7, "text-anchor": "middle" }, rounded(length, units));
   }
-  if (laid.head && on("band")) {
+  if (laid.head && on("band") && !(clip.fibres && clipped(laid.head))) {
     const [x, y] = camera.project(laid.head);
     mark("circle", { cx: x, cy: y, r: 4, fill: INK, stroke: "#fff" });
   }

@@ -55,7 +55,7 @@ function blockRows(n) {
           ["free span", p.kind[run] === p.does.length - 1 ? "none"
             : rounded(Math.hypot(...plus(eye, at(p.point, n), -1)), units)],
           ...p.axes.map(axis => [axis.words,
-            `${values[axis.moves].toFixed(2)}${axis.unit === "deg" ? "°" : " " + axis.unit}`]),
+            `${values[axis.moves].toFixed(2).replace("-", "−")}${axis.unit === "deg" ? "°" : " " + axis.unit}`]),
           ...(wrong ? [["fault", wrong]] : [])];
 }
 let block = 0;
