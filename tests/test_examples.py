@@ -36,6 +36,14 @@ def test_filament_cost_measures_each_thing(tmp_path: Path) -> None:
     assert all(float(row["closing over solving"]) > 0.0 and int(row["passes"]) > 0 for row in rows)
 
 
+@pytest.mark.usefixtures("chromium")
+def test_viewer_speed_measures_a_page(tmp_path: Path) -> None:
+    run("viewer_speed.py", tmp_path, "--quick", "--runs", "1")
+    (row,) = csv.DictReader((tmp_path / "viewer_speed.csv").read_text(encoding="utf-8").splitlines())
+    assert int(row["fibres"]) > 0 and 1e5 < int(row["bytes"]) < 4e6
+    assert float(row["first picture"]) > 0.0 < float(row["frames a second"])
+
+
 def test_the_page_names_what_there_is() -> None:
     scripts = {path.name for path in (ROOT / "examples").glob("*.py")}
     assert set(re.findall(r"examples/(\w+\.py)", PAGE)) == scripts

@@ -51,7 +51,6 @@ return found;
 its own, and what is picked, over its row."""
 
 
-
 @pytest.fixture(scope="module")
 def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Helices bridge the dent, and hoops on them lie in it, as layers do not see each other's bridges."""

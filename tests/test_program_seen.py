@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from benchmarks.browser import opened
 from layup_shapes import cylinder
 from PIL import Image
 from program_parts import filament, write_run
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
-from benchmarks.browser import opened
 from viewer_browser import severe
 
 from meshwind.core.cast import Floats

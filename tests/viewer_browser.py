@@ -10,6 +10,7 @@ from selenium.webdriver.common.by import By
 
 from meshwind.core.cast import Floats
 
+
 def settled(browser: webdriver.Chrome) -> Floats:
     """A screenshot of the view, taken when its edges are smooth and two frames in a row are alike."""
     view, last = browser.find_element(By.ID, "view"), np.zeros(0)

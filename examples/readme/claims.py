@@ -282,6 +282,11 @@ CLAIMS = (
         against_before,
     ),
     Claim(
+        "and frames while the part is turned; the best of {} runs, each in a browser of its own",
+        lambda kept: [kept.rows("viewer_speed")[0]["runs"]],
+        lambda kept: all(row("bytes") < 4e6 and row("first picture") < 3.0 for row in kept.rows("viewer_speed")),
+    ),
+    Claim(
         "Time grows with the power {} of the faces, {} of the paths and {} of the particles,",
         lambda kept: growth(kept, *((over, "time") for over in ("faces", "paths", "particles"))),
     ),

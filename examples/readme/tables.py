@@ -42,6 +42,14 @@ RUNS = (
 """What is shown of the growth of a run: what grew, faces, paths and particles."""
 NEAR = 0.1
 """Relative difference of the faces of a mesh from those that it was to have."""
+VIEWED = {
+    "200 fibres": "`tank.ply`, 200 fibres",
+    "cast": "`cast.ply`",
+    "filament": "`vase.stl`, a filament with its band",
+    "program": "its program",
+    "layers": "`tank.ply`, five layers of band",
+}
+"""Words for the pages of the viewer that are measured."""
 WAITS = {
     "meshwind": "meshwind: from the mesh to files and pictures",
     "before": "meshwind {}, the release before",
@@ -152,6 +160,16 @@ def redesigns(kept: Kept) -> str:
     return markdown(rows)
 
 
+def viewer(kept: Kept) -> str:
+    """Size of the viewer's pages, time until they are there, and how fast parts turn."""
+    rows = [["page", "fibres", "triangles", "size", "first picture", "frames a second"]]
+    for row in kept.rows("viewer_speed"):
+        triangles = row("triangles") + row("band triangles")
+        rows.append([VIEWED[row["page"]], row["fibres"], size(triangles), f"{figure(row('bytes') / 1e6)} MB",
+                     f"{figure(row('first picture'))} s", figure(row("frames a second"))])  # fmt: skip
+    return markdown(rows)
+
+
 TABLES: dict[str, Callable[[Kept], str]] = {
     "redesigns": redesigns,
     "decimated": decimated,
@@ -161,6 +179,7 @@ TABLES: dict[str, Callable[[Kept], str]] = {
     "fit_cost": fit_cost,
     "whole_runs": whole_runs,
     "first_run": first_run,
+    "viewer": viewer,
 }
 """All tables by the name in their mark."""
 NEEDED = (
@@ -168,6 +187,6 @@ NEEDED = (
     "explicit_limits", "rough_ribs", "rough_mesh_to_surface", "rough_meshes", "rough_folds", "rough_rest_states",
     "rough_bumps", "rough_layers", "turnarounds", "rewound_tube", "rewound_parts", "fit_truth", "fit_cost",
     "fit_order", "fit_facets", "against_flipout", "first_run_medians", "first_run_versions", "scaling",
-    "scaling_growth",
+    "scaling_growth", "viewer_speed",
 )  # fmt: skip
 """Results that the documentation rests on, by the names of their files."""

@@ -31,7 +31,7 @@ class ClassData(TypedDict):
 
 
 class CellData(TypedDict):
-    """Classes over an even grid of cells in u and v, `columns` along v for each u: runs of a class, and their lengths."""
+    """Classes over an even grid of cells, `columns` along v for each u, as runs of one class and their lengths."""
 
     columns: int
     classes: Packed
@@ -41,8 +41,9 @@ class CellData(TypedDict):
 class MapData(TypedDict):
     """A map of the surface and how it is shown; marks are positions on its scale.
 
-    values: at the points of the grid; cells: classes by which it is drawn where these are finer, else None.  classes: of a discrete map, by rising values, none of others; stepped: whether the colours go in steps from mark to
-    mark when the map is first shown.
+    values: at the points of the grid.  classes: of a discrete map, by rising values, none of others; cells: the classes
+    by which it is drawn where these are finer than the grid, else None.  stepped: whether the colours go in steps from
+    mark to mark when the map is first shown.
     """
 
     name: str
