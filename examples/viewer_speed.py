@@ -5,8 +5,8 @@
 Pages of several parts are opened from disk by Chromium without a window, which draws by software, each run in a browser
 and a profile of its own.  The time goes from the navigation's start to the end of the frame that shows the first
 picture; the frames are those that the browser asks for while the part is turned by a little in each.  Needs Chromium
-with its driver.  Writes viewer_speed.csv, a row a page, with the best of the runs, as whatever else the machine does only
-slows them, and with their medians.
+with its driver.  Writes viewer_speed.csv, a row a page, with the best of the runs, as whatever else the machine does
+only slows them, and with their medians.
 """
 
 import argparse
