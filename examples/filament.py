@@ -11,10 +11,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
+from documentation.page import put
+from documentation.words import markdown
 from gallery import PAGE, small
 from numpy.typing import NDArray
-from readme.page import put
-from readme.words import markdown
 
 import meshwind as mw
 

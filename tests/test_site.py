@@ -15,9 +15,9 @@ from typing import NamedTuple
 
 import pytest
 from command import meshwind
+from documentation.documents import README, ROOT, SITE, documents
+from documentation.drawn import FIGURES, code_of
 from needs import STRICT
-from readme.documents import README, ROOT, SITE, documents
-from readme.drawn import FIGURES, code_of
 from typer.main import get_command
 
 import meshwind as mw

@@ -13,8 +13,8 @@ from pathlib import Path
 from time import perf_counter, process_time
 from typing import Any
 
-from readme.kept import Kept
-from readme.tables import TABLES
+from documentation.kept import Kept
+from documentation.tables import TABLES
 
 
 class Results:

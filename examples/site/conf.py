@@ -11,9 +11,9 @@ import meshwind
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from readme.documents import as_markdown
-from readme.drawn import add_figures
-from readme.formulas import typeset
+from documentation.documents import as_markdown
+from documentation.drawn import add_figures
+from documentation.formulas import typeset
 
 project = "meshwind"
 author = "The meshwind authors"

@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
-from readme.kept import Kept
-from readme.words import figure, markdown, share, size, span
+from documentation.kept import Kept
+from documentation.words import figure, markdown, share, size, span
 
 ERRORS = (1e-4, 1e-6, 1e-8)
 """Errors of the length at which methods are compared."""

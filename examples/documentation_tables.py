@@ -1,11 +1,11 @@
 """Put the results of the scripts into README and the site: their tables, and the figures in their sentences.
 
-    python examples/readme_tables.py --keep out/*
+    python examples/documentation_tables.py --keep out/*
 
 --keep takes the tables that the pages need from folders of results and keeps them in `benchmarks/results`, and their
 charts in `gallery`; without it the pages are made from what is kept.  `benchmarks/claims.csv` then says which lines of
-which table, or which test, each table and sentence rests on.  `tests/test_readme_figures.py` fails where a page is
-another than this makes it.
+which table, or which test, each table and sentence rests on.  `tests/test_documentation_figures.py` fails where a page
+is another than this makes it.
 """
 
 import argparse
@@ -14,11 +14,11 @@ import json
 import shutil
 from pathlib import Path
 
+from documentation.documents import ROOT, documents
+from documentation.kept import RESULTS, Kept
+from documentation.page import filled, traced, untrue
+from documentation.tables import NEEDED
 from gallery import small
-from readme.documents import ROOT, documents
-from readme.kept import RESULTS, Kept
-from readme.page import filled, traced, untrue
-from readme.tables import NEEDED
 
 GALLERY = Path(__file__).parent / "gallery"
 PICTURES = {

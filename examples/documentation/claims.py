@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 from math import log
 from typing import NamedTuple
 
-from readme.kept import Kept
-from readme.words import figure, share, span
+from documentation.kept import Kept
+from documentation.words import figure, share, span
 
 SMOOTH = ("ours_waist", "ours_conjugate", "ours_friction", "ours_noise", "ours_units", "ours_stretch", "time_step")
 """Maps of ours on smooth ground."""
@@ -300,7 +300,7 @@ CLAIMS = (
 
 TESTED = {
     "below 1e-5 with 401 particles up to about one turn, and 1.5e-4 at four": (
-        "test_readme.py::test_lengths_are_those_of_chords"
+        "test_documentation.py::test_lengths_are_those_of_chords"
     ),
     "51 particles per path give what 1,601 chords do": "test_length.py::test_fourth_order",
     "polylines on analytic cones, barrels, ellipsoid": "test_path.py::test_length_is_exact",

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista as pv
+from documentation.documents import ROOT, documents
 from layup_shapes import bridged
-from readme.documents import ROOT, documents
 from typer.main import get_command
 
 import meshwind as mw

@@ -5,16 +5,16 @@ import csv
 import re
 
 import pytest
-from readme.claims import CLAIMS, TESTED, Claim
-from readme.documents import ROOT, documents
-from readme.kept import RESULTS, Kept, spans
-from readme.page import TABLE, filled, once, pattern, traced, untrue
-from readme.tables import NEEDED, TABLES
-from readme.words import figure, span
+from documentation.claims import CLAIMS, TESTED, Claim
+from documentation.documents import ROOT, documents
+from documentation.kept import RESULTS, Kept, spans
+from documentation.page import TABLE, filled, once, pattern, traced, untrue
+from documentation.tables import NEEDED, TABLES
+from documentation.words import figure, span
 
 PAGES = documents()
 ALL = "\n".join(PAGES.values())
-AGAIN = "; run python examples/readme_tables.py"
+AGAIN = "; run python examples/documentation_tables.py"
 
 
 def flat(text: str) -> str:

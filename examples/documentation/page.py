@@ -4,9 +4,9 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from readme.claims import CLAIMS, TESTED
-from readme.kept import Kept, spans
-from readme.tables import TABLES
+from documentation.claims import CLAIMS, TESTED
+from documentation.kept import Kept, spans
+from documentation.tables import TABLES
 
 FIGURE = r"([\d.,e+-]*\d(?: to [\d.,e+-]*\d)?)"
 """A figure as it stands in a sentence, or the least and the largest of some."""
