@@ -104,9 +104,9 @@ def test_any_layers_are_one_filament(plans: list[LayerPlan]) -> None:
     high = np.hypot(*course.points[:, :2].T) - (60.0 - 10.0 * (course.points[:, 2] / 150.0) ** 2)
     off = np.abs(high - one.thickness)
     for number in range(1, len(plans)):
-        stated = sum(each.raised.off_max for each in laminate.layers[:number])  # of a place in each span
+        stated = sum(each.raised.off_max for each in laminate.layers[:number])
         mine = off[(one.layer == number) & (course.kind == Kind.LAID)]
-        assert mine.max(initial=0.0) < 1.5 * stated and mine.sum() < 0.6 * stated * max(len(mine), 1)
+        assert mine.max(initial=0.0) < 1.1 * stated and mine.sum() < 0.5 * stated * max(len(mine), 1)
 
 
 def test_turns_on_a_cylinder_within_the_part() -> None:

@@ -20,6 +20,8 @@ from meshwind.surface.surface import Surface
 
 _SPEED_SAMPLES = 32
 """Points each way from which the length of a span is taken."""
+_PLACES = 3
+"""Places each way in a span at which the new surface is compared: its middle alone may be off by two thirds of most."""
 _NEWTON_STEPS = 6
 """Newton's steps from a thickness to a height, which differ by less than a part in two: convergence is quadratic."""
 TIGHT = 0.5
@@ -114,12 +116,12 @@ def raised(surface: Surface, layer: Thickness, width: float) -> Raised:
     points, _ = _offset(surface, at, between_centres(even, at))
     shape = len(sites(surface.spans[0], surface.periodic)), len(sites(surface.spans[1], False))
     net = through(points.reshape(*shape, 3), surface.spans, surface.periodic).control_points
-    middle = parameter_grid(midpoints(surface.spans[0]), midpoints(surface.spans[1]))
+    between = parameter_grid(*(midpoints(_PLACES * spans) for spans in surface.spans))
     height, hollow, where = _hollows(surface, even)
-    wanted, _ = _offset(surface, middle, between_centres(even, middle))
+    wanted, _ = _offset(surface, between, between_centres(even, between))
     new = replace(surface, control_points=net)
-    off = np.linalg.norm(new.points(middle) - wanted, axis=1)
-    _check_turned(surface, new, middle)
+    off = np.linalg.norm(new.points(between) - wanted, axis=1)
+    _check_turned(surface, new, between)
     doubt = surface.uncertainty if surface.uncertainty is not None else np.zeros((1, 1))
     new = replace(new, uncertainty=doubt + float(off.max()))
     mean = float((whole * layer.area).sum() / layer.area.sum())
