@@ -134,7 +134,7 @@ MISTAKES: list[tuple[Callable[[], object], str]] = [
     (lambda: mw.render(TUBE), "folder is of type Surface; give a folder of results"),  # type: ignore[arg-type]
     (lambda: mw.families(TUBE, paths="3", revolutions=0.5), "paths is '3'; give a whole number"),  # type: ignore[arg-type]
     (lambda: mw.families(TUBE, paths=3, revolutions="5/8"), "revolutions is '5/8'; give a number"),  # type: ignore[arg-type]
-    (lambda: mw.solve((0, 0), (0, 1), (0, 1)), "solve takes a Surface, not tuple"),  # type: ignore[arg-type]
+    (lambda: mw.solve((0, 0), (0, 1), (0, 1)), "surface is of type tuple; give a Surface"),  # type: ignore[arg-type]
     (lambda: mw.read(([[0, 0, 0]], [[0, 1, 2], [0, 1, 2, 3]])), "different numbers of corners"),
 ]
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import shortened
 
 Array: TypeAlias = NDArray[Any]
 Floats: TypeAlias = NDArray[np.float64]
@@ -20,15 +21,36 @@ def frozen(array: Array) -> Array:
     return view
 
 
+def numbers(values: object, name: str, wanted: str = "an array of numbers") -> Floats:
+    """Cast to float64 what holds numbers, be they finite or not."""
+    try:
+        return np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):  # no numbers, or rows of different lengths
+        raise BadInputError(f"{name} is {shortened(repr(values))}; give {wanted}") from None
+
+
 def floats(values: ArrayLike, name: str, *shape: int) -> Floats:
     """Cast to a finite float64 array of the given shape, where -1 stands for any length."""
-    array = np.ascontiguousarray(values, dtype=np.float64)
+    array = np.ascontiguousarray(numbers(values, name, f"numbers of {_in_words(shape)}"))
     if array.ndim != len(shape) or any(want not in (-1, got) for want, got in zip(shape, array.shape, strict=True)):
-        wanted = ", ".join("n" if want < 0 else str(want) for want in shape)
-        raise BadInputError(f"{name} has shape {array.shape}; give an array of shape ({wanted})")
+        raise BadInputError(f"{name} has shape {array.shape}; give an array of {_in_words(shape)}")
     if np.count_nonzero(np.isfinite(array)) < array.size:
         raise BadInputError(f"{name} holds NaN or infinite values; remove them first")
     return array
+
+
+def depth(values: ArrayLike, name: str) -> int:
+    """The number of axes of what a caller gives."""
+    try:
+        return np.ndim(values)
+    except ValueError:
+        raise BadInputError(f"{name} has rows of different lengths; give an array of numbers") from None
+
+
+def _in_words(shape: tuple[int, ...]) -> str:
+    """A shape as NumPy writes it, with n for any length."""
+    lengths = ["n" if want < 0 else str(want) for want in shape]
+    return f"shape ({lengths[0]},)" if len(lengths) == 1 else f"shape ({', '.join(lengths)})"
 
 
 def ints(values: ArrayLike, name: str, *shape: int) -> Ints:

@@ -94,5 +94,6 @@ def nearest(key: str, known: Collection[str]) -> str:
 
 
 def shortened(text: str) -> str:
-    """At most 40 characters of a text, for messages."""
+    """At most 40 characters of a text, in one line, for messages."""
+    text = " ".join(text.split())
     return text if len(text) <= 40 else text[:37] + "..."

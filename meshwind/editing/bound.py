@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
 from meshwind.chart.chart import Chart
-from meshwind.core.cast import Floats
+from meshwind.core.cast import Floats, numbers
 from meshwind.core.errors import BadInputError
 from meshwind.editing.feet import feet_of
 from meshwind.editing.region import SAMPLES_PER_SPAN
@@ -72,7 +72,7 @@ def bound_of(given: float | str | ArrayLike | None, mesh: MeshLike, read: Mesh, 
         scalars = on_wound_skin(read_field(mesh, given.removeprefix(FIELD).strip()), annulus)
         values = scalars.values[cKDTree(scalars.points).query(read.vertices)[1]]
     else:
-        values = np.asarray(given, dtype=np.float64)
+        values = numbers(given, "bound", "a length, or one for each vertex")
         if values.shape != (len(read.vertices),):
             raise BadInputError(
                 f"bound has shape {values.shape}; give one number, or one for each of {len(read.vertices)} vertices"

@@ -3,15 +3,16 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from math import isfinite
-from numbers import Integral, Real
+from numbers import Real
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from meshwind.core.checks import check_switch, is_number, number, text, whole
 from meshwind.core.errors import BadInputError
 from meshwind.core.option import option
 from meshwind.core.parsing import AUTO, several_turns, shortened
-from meshwind.workflow.option_checks import FIELD, number
+from meshwind.workflow.option_checks import FIELD
 from meshwind.workflow.options import FIBRES, IN_MESH_UNITS
 
 EDIT = "The edit"
@@ -86,17 +87,19 @@ class EditOptions:
     """
 
     def __post_init__(self) -> None:
-        if isinstance(self.rounds, bool) or not isinstance(self.rounds, Integral) or self.rounds < 0:
-            raise BadInputError(f"rounds is {self.rounds}; give a whole number from 0 up")
+        whole(self.rounds, "rounds", 0)
+        whole(self.symmetry, "symmetry", 1)
+        if self.mirror is not None and not isinstance(self.mirror, str):
+            raise BadInputError(f"mirror is {text(self.mirror)}; give planes such as 'x' or 'x=12,y'")
         object.__setattr__(self, "bound", _bound(self.bound))
-        if self.threshold is not None and not (isfinite(self.threshold) and self.threshold > 0):
-            raise BadInputError(f"threshold is {self.threshold}; give a length above 0, or none at all")
+        if self.threshold is not None and not (is_number(self.threshold) and self.threshold > 0):
+            raise BadInputError(f"threshold is {text(self.threshold)}; give a length above 0, or none at all")
+        for name in ("keep_volume", "only_outward", "only_inward"):
+            check_switch(getattr(self, name), name)
         if self.only_outward and self.only_inward:
             raise BadInputError("only_outward and only_inward leave nothing to move; give one of them")
         for name in ("fairness", "pressing", "at_most"):
-            value = getattr(self, name)
-            if not (isfinite(value) and value >= 0):
-                raise BadInputError(f"{name} is {value}; give a number from 0 up")
+            object.__setattr__(self, name, number(getattr(self, name), name, 0.0))
 
 
 def _bound(value: Any) -> Any:

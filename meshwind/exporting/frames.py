@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from meshwind.core.cast import Floats, frozen
+from meshwind.core.checks import is_number, text
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import millimetres
 from meshwind.results.legends import write_legend
@@ -213,6 +214,6 @@ def too_sharp(steps: int) -> str:
 
 
 def _above(name: str, value: float | None) -> float:
-    if value is None or not (np.isfinite(value) and value > 0.0):
-        raise BadInputError(f"{name} is {value}; give a number above 0")
+    if value is None or not (is_number(value) and value > 0.0):
+        raise BadInputError(f"{name} is {text(value)}; give a number above 0")
     return float(value)

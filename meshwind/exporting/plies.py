@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshwind.core.cast import Floats, frozen
+from meshwind.core.checks import is_number, text
 from meshwind.core.errors import BadInputError
 from meshwind.exporting.elements import Elements
 from meshwind.layup.coverage import coverage
@@ -140,6 +141,6 @@ def _families(
 
 
 def _length(name: str, value: float | None) -> float:
-    if value is None or not (np.isfinite(value) and value > 0.0):
-        raise BadInputError(f"{name} is {value}; give a length above 0 in the mesh's units")
+    if value is None or not (is_number(value) and value > 0.0):
+        raise BadInputError(f"{name} is {text(value)}; give a length above 0 in the mesh's units")
     return float(value)

@@ -7,6 +7,7 @@ import numpy as np
 import scipy.linalg
 
 from meshwind.core.cast import Floats, Ints
+from meshwind.core.checks import check_word, is_number, text
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import millimetres
 from meshwind.core.vectors import TINY
@@ -38,10 +39,9 @@ class Loads:
 
     def __post_init__(self) -> None:
         for name, value in (("pressure", self.pressure), ("axial", self.axial), ("torque", self.torque)):
-            if value is not None and not np.isfinite(value):
-                raise BadInputError(f"{name} is {value:g}; give a number")
-        if self.held not in HELD:
-            raise BadInputError(f"held is {self.held!r}; give {', '.join(HELD)}")
+            if value is not None and not is_number(value):
+                raise BadInputError(f"{name} is {text(value)}; give a number")
+        check_word(self.held, "held", tuple(HELD))
         if self.held == BOTH and (self.axial or self.torque):
             raise BadInputError("axial force and torque act on rims that are not held; hold one of them")
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from numbers import Integral
 from os import PathLike
 from pathlib import Path
 from typing import TypeAlias
 
+from meshwind.core.checks import check_word, text
 from meshwind.core.errors import BadInputError
 from meshwind.core.spoken import argument
 from meshwind.exporting.elements import Elements, on_crossings, regular
@@ -52,10 +54,9 @@ class ExportOptions:
     material: str = DEFAULT
 
     def __post_init__(self) -> None:
-        if self.shell not in (GRID, QUADS):
-            raise BadInputError(f"shell is {self.shell!r}; give {GRID} or {QUADS}")
-        if self.count is not None and not 48 <= self.count <= 1_000_000:
-            raise BadInputError(f"elements is {self.count}; give a whole number from 48 to 1000000")
+        check_word(self.shell, "shell", (GRID, QUADS))
+        if self.count is not None and not (isinstance(self.count, Integral) and 48 <= self.count <= 1_000_000):
+            raise BadInputError(f"elements is {text(self.count)}; give a whole number from 48 to 1000000")
         _known("format", self.formats, FORMATS)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, frozen
+from meshwind.core.checks import is_number, text
 from meshwind.core.errors import BadInputError
 from meshwind.core.kernel import njit
 from meshwind.core.vectors import TINY
@@ -79,8 +80,8 @@ def coverage(paths: Paths, width: float | None = None) -> Coverage:
 
     By default the band is as wide as gives one layer per family on average.
     """
-    if width is not None and not (np.isfinite(width) and width > 0.0):
-        raise BadInputError(f"band width {width} is no length; give a number > 0 in the mesh's units")
+    if width is not None and not (is_number(width) and width > 0.0):
+        raise BadInputError(f"band width {text(width)} is no length; give a number > 0 in the mesh's units")
     families, count = np.unique(paths.family, return_counts=True)
     steps = np.linalg.norm(np.diff(paths.points, axis=1), axis=2)
     nu = max(int(count.max(initial=0)), 1)

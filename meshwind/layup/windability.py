@@ -8,6 +8,7 @@ import numpy as np
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.checks import check_type
 from meshwind.core.vectors import TINY, unit
 from meshwind.surface.evaluate import SV
 from meshwind.surface.flatness import real_forms
@@ -105,6 +106,7 @@ def windability(surface: Surface, uv: Floats | None = None) -> Windability:
     >>> found.kind, found.share.round(2)
     (array([1, 0]), array([1.  , 0.61]))
     """
+    check_type(surface, "surface", Surface, "as fit(chart) returns it")
     if uv is None:
         nu, nv = (int(np.clip(_CELLS_PER_SPAN * spans, _FEWEST_CELLS, _MOST_CELLS)) for spans in surface.spans)
         uv = parameter_grid(midpoints(nu), midpoints(nv))

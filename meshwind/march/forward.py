@@ -13,7 +13,8 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshwind.core.cast import Bools, Floats, Ints, floats, frozen
+from meshwind.core.cast import Bools, Floats, Ints, depth, floats, frozen
+from meshwind.core.checks import check_type, check_word, is_number, text
 from meshwind.core.errors import BadInputError
 from meshwind.core.threads import parallel_for
 from meshwind.march.march import EVALUATIONS, ROWS, RUNNING, STOP, Marches, Rules, march_all
@@ -83,7 +84,7 @@ def trace(  # noqa: PLR0913
     >>> round(float(fibre.arc_length[-1]), 9), fibre.stop.name
     (1.0, 'LENGTH')
     """
-    point, heading = floats(start, "start", 2), np.atleast_1d(np.asarray(direction, dtype=np.float64))
+    point, heading = floats(start, "start", 2), np.array(direction if depth(direction, "direction") else [direction])
     if heading.shape not in ((1,), (2,)):
         raise BadInputError(f"direction has shape {heading.shape}; give an angle in radians or a tangent (du, dv)")
     way = heading if len(heading) == 1 else heading[None]
@@ -232,6 +233,7 @@ def marched(  # noqa: PLR0913
     press: Press = "stop",
 ) -> Marched:
     """March a batch of fibres; see `traces`, of which this is all but the last step."""
+    check_type(surface, "surface", Surface, "as fit(chart) returns it")
     _check(method, press, step, tolerance)
     at = floats(start, "start", -1, 2)
     if np.any((at[:, 1] < 0) | (at[:, 1] > 1)) or (not surface.periodic and np.any((at[:, 0] < 0) | (at[:, 0] > 1))):
@@ -317,7 +319,7 @@ def _heading(surface: Surface, at: Floats, direction: ArrayLike) -> Floats:
     area = np.linalg.norm(np.cross(su, sv), axis=1)
     if np.any(area <= 1e-12 * np.linalg.norm(su, axis=1) * np.linalg.norm(sv, axis=1)):
         raise BadInputError("the surface has no tangent plane at a start point; start away from the pole")
-    if np.ndim(direction) == 2:
+    if depth(direction, "direction") == 2:
         rates = floats(direction, "direction", len(at), 2)
         if not np.all(np.any(rates != 0, axis=1)):
             raise BadInputError("a direction is (0, 0); give a tangent (du, dv) that is not zero")
@@ -335,15 +337,13 @@ def _heading(surface: Surface, at: Floats, direction: ArrayLike) -> Floats:
 
 def _each(value: ArrayLike, name: str, count: int) -> Floats:
     """One number for each path, from one for all or from (count,)."""
-    return floats(np.repeat(value, count) if np.ndim(value) == 0 else value, name, count)
+    return floats(np.repeat(value, count) if depth(value, name) == 0 else value, name, count)
 
 
 def _check(method: str, press: str, step: float | None, tolerance: float) -> None:
-    if method not in ("adaptive", "rk4"):
-        raise BadInputError(f"method is {method!r}; choose 'adaptive' or 'rk4'")
-    if press not in ("stop", "ignore"):
-        raise BadInputError(f"press is {press!r}; choose 'stop' or 'ignore'")
-    if step is not None and not (np.isfinite(step) and step > 0):
-        raise BadInputError(f"step is {step}; give a length above 0, in the surface's units")
-    if not FINEST <= tolerance <= COARSEST:
-        raise BadInputError(f"tolerance is {tolerance}; give one from {FINEST:g} to {COARSEST:g}")
+    check_word(method, "method", ("adaptive", "rk4"))
+    check_word(press, "press", ("stop", "ignore"))
+    if step is not None and not (is_number(step) and step > 0):
+        raise BadInputError(f"step is {text(step)}; give a length above 0, in the surface's units")
+    if not is_number(tolerance) or not FINEST <= tolerance <= COARSEST:
+        raise BadInputError(f"tolerance is {text(tolerance)}; give one from {FINEST:g} to {COARSEST:g}")

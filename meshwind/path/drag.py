@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats, floats
+from meshwind.core.checks import check_switch, check_type
 from meshwind.core.errors import BadInputError
 from meshwind.path.batch import Batch, fresh
 from meshwind.path.friction import Friction, friction_of
@@ -25,7 +26,7 @@ from meshwind.path.solve import (
     check_count,
     check_curves,
     check_extent,
-    check_share,
+    share,
     straight,
 )
 from meshwind.path.solver import Solver
@@ -98,13 +99,15 @@ def drag(  # noqa: PLR0913
     >>> frames.length.round(4)
     array([2.    , 2.0245, 2.0964])
     """
+    check_type(surface, "surface", Surface, "as fit(chart) returns it")
     first, last = floats(start, "start", -1, 2), floats(end, "end", -1, 2)
     if len(first) != len(last) or not len(first):
         raise BadInputError(f"{len(first)} places of the start but {len(last)} of the end; give one of each a frame")
     check_count(particles, "particles", 3)
     check_extent(surface)
     check_count(iterations, "iterations", 1)
-    check_share(tolerance, "tolerance")
+    tolerance = share(tolerance, "tolerance")
+    check_switch(bridging, "bridging")
     solver = Solver(surface, friction_of(surface, friction), bridging, tolerance, iterations)
     curve = straight(first[:1], last[:1], 2) if initial is None else floats(initial, "initial", -1, 2)[None]
     check_curves(curve)

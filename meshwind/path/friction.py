@@ -9,7 +9,8 @@ from functools import cache, cached_property
 import numpy as np
 
 from meshwind.core.brief import brief
-from meshwind.core.cast import Floats, PicklableRecord, floats, frozen
+from meshwind.core.cast import Floats, PicklableRecord, floats, frozen, numbers
+from meshwind.core.checks import check_type, whole
 from meshwind.core.errors import BadInputError
 from meshwind.surface.surface import Surface
 
@@ -17,6 +18,7 @@ ROWS = COLUMNS = 256
 """Samples of a friction field over u and over v; between them it is bilinear."""
 LARGEST = 10.0
 """No pair of materials has a coefficient above this: a larger one is a mistake of units."""
+_KINDS = "a number, a table over (u, v), a function of points, or a Friction"
 
 
 @dataclass(frozen=True)
@@ -110,6 +112,8 @@ def friction_from(surface: Surface, points: Floats, values: Floats, grid: int = 
     """
     from scipy.spatial import cKDTree
 
+    check_type(surface, "surface", Surface, "as fit(chart) returns it")
+    whole(grid, "grid", 2)
     tree = cKDTree(floats(points, "points", -1, 3))
     given = floats(values, "values", len(points))
 
@@ -133,12 +137,12 @@ def friction_of(
     if callable(given):
         u = np.arange(grid) / grid if surface.periodic else np.linspace(0.0, 1.0, grid)
         places = np.stack(np.meshgrid(u, np.linspace(0.0, 1.0, grid), indexing="ij"), axis=-1).reshape(-1, 2)
-        values = np.asarray(given(surface.points(places)), dtype=np.float64)
+        values = numbers(given(surface.points(places)), "the friction function's result", "one number a point")
         if values.shape != (len(places),):
             raise BadInputError(f"the friction function returned shape {values.shape}; return one number a point")
         table = values.reshape(grid, grid)
     else:
-        table = np.asarray(given, dtype=np.float64)
+        table = numbers(given, "friction", _KINDS)
         table = table.reshape(1, 1) if table.ndim == 0 else floats(table, "friction", -1, -1)
         if table.shape != (1, 1) and min(table.shape) < 2:
             raise BadInputError(f"friction has shape {table.shape}; give a number or a table of at least 2 by 2")

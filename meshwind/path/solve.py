@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats, floats, frozen, ints
+from meshwind.core.checks import check_switch, check_type, is_number, text
 from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import shortened
 from meshwind.path.asked import Asked, Options
 from meshwind.path.batch import Batch
 from meshwind.path.friction import Friction, friction_of
@@ -36,13 +38,14 @@ def check_extent(surface: Surface) -> None:
 def check_count(value: object, name: str, least: int) -> None:
     """Raise BadInputError where a value is no whole number from `least` up."""
     if not isinstance(value, int | np.integer) or value < least:
-        raise BadInputError(f"{name} is {value!r}; give a whole number, at least {least}")
+        raise BadInputError(f"{name} is {shortened(repr(value))}; give a whole number, at least {least}")
 
 
-def check_share(value: float, name: str) -> None:
-    """Raise BadInputError where a value is no finite number above 0."""
-    if not 0.0 < value < np.inf:
-        raise BadInputError(f"{name} is {value:g}; give a relative error above 0")
+def share(value: float, name: str) -> float:
+    """A relative error: a finite number above 0, as kernels take it."""
+    if not is_number(value) or value <= 0.0:
+        raise BadInputError(f"{name} is {text(value)}; give a relative error above 0")
+    return float(value)
 
 
 def check_curves(curves: Floats) -> None:
@@ -147,12 +150,11 @@ def solve(  # noqa: PLR0913
     """
     if particles is not None:
         check_count(particles, "particles", 3)
-    if not isinstance(surface, Surface):
-        raise BadInputError(f"solve takes a Surface, not {type(surface).__name__}; make one with fit(chart)")
+    check_type(surface, "surface", Surface, "as fit(chart) returns it")
     check_extent(surface)
     check_count(iterations, "iterations", 1)
-    check_share(tolerance, "tolerance")
-    check_share(accuracy, "accuracy")
+    tolerance, accuracy = share(tolerance, "tolerance"), share(accuracy, "accuracy")
+    check_switch(bridging, "bridging")
     first, last = floats(start, "start", -1, 2), floats(end, "end", -1, 2)
     if len(first) != len(last):
         raise BadInputError(f"{len(first)} start points but {len(last)} end points; give as many of each")

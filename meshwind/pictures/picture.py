@@ -5,8 +5,10 @@ from __future__ import annotations
 import io
 from dataclasses import dataclass
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING
+
+from meshwind.core.checks import path_given
+from meshwind.core.errors import BadInputError
 
 if TYPE_CHECKING:
     from PIL import Image
@@ -56,10 +58,21 @@ class Picture:
         file : str or PathLike
             File, which should end with .png.
 
+        Raises
+        ------
+        BadInputError
+            If the file cannot be written.
+
         Examples
         --------
         >>> import meshwind as mw
         >>> picture = mw.wind("data/tank.ply", paths=3, particles=51).plot(page=mw.Page(400, 300), interactive=False)
         >>> picture.save("tank.png")
         """
-        Path(file).write_bytes(self.png)
+        path = path_given(file, "file", "file for the picture")
+        try:
+            path.write_bytes(self.png)
+        except OSError as error:
+            raise BadInputError(
+                f"{path} cannot be written ({error.strerror}); give a file in another folder"
+            ) from error

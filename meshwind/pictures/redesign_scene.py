@@ -12,6 +12,7 @@ from meshwind.appearance.looks import DIVERGING, Look, both_ways, round_below
 from meshwind.appearance.view import around, merit_view, named_view
 from meshwind.appearance.words import quantity
 from meshwind.core.cast import Floats, Ints, floats, ints
+from meshwind.core.checks import path_given
 from meshwind.pictures import driver
 from meshwind.pictures.drawings import Drawing
 from meshwind.pictures.page import Page
@@ -78,8 +79,9 @@ def draw_redesign(
     >>> mw.draw_redesign("moved.png", mesh.vertices, moves, mesh.faces, "elbow", page=mw.Page(400, 300))
     ''
     """
+    file = path_given(picture, "picture", "file for the picture")
     scene = redesign_scene(before, moves, faces, name, units)
-    return driver.paint({Path(picture): Drawing(scene, page or Page())})
+    return driver.paint({file: Drawing(scene, page or Page())})
 
 
 def redesign_in(folder: Path, name: str, units: str = "", seen_from: str = "auto") -> RedesignScene:

@@ -9,6 +9,7 @@ from os import PathLike
 from pathlib import Path
 
 from meshwind.appearance.view import NAMED
+from meshwind.core.checks import path_given, several
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import reported_unit
 from meshwind.pictures import driver
@@ -92,11 +93,11 @@ def render(
         raise BadInputError(
             f"folder is of type {type(folder).__name__}; give a folder of results, or use result.plot()"
         )
-    only, animate = ((names,) if isinstance(names, str) else tuple(names) for names in (only, animate))
+    only, animate = several(only, "only"), several(animate, "animate")
     paper = usual_page(only, animate) if page is None else page
     _check(only, animate, paper)
     ffmpeg = encoder() if "mp4" in animate else ""
-    source, target = Path(folder), Path(folder if out is None else out)
+    source, target = Path(folder), path_given(folder if out is None else out, "out", "folder")
     driver.start_probe()
     of = _subject(source, paper)
     scenes = _scenes(source, of, paper)

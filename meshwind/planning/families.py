@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from numbers import Real
 
 import numpy as np
 
 from meshwind.core.brief import brief
-from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.cast import Floats, Ints, floats, frozen
+from meshwind.core.checks import check_type, is_number
 from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import shortened
 from meshwind.core.vectors import TINY
 from meshwind.path.solve import check_count
 from meshwind.surface.grid import mean_speeds
@@ -100,12 +101,15 @@ def families(
     >>> len(paths)
     6
     """
+    check_type(surface, "surface", Surface, "as fit(chart) returns it")
     if not surface.periodic:
         raise BadInputError("families need a surface that closes in u; give end points to `solve` instead")
     check_count(paths, "paths", 1)
-    if not (isinstance(revolutions, Real) and np.isfinite(float(revolutions)) and revolutions >= 0):
-        raise BadInputError(f"revolutions is {revolutions!r}; give a number >= 0")
-    low, high = between
+    if not is_number(revolutions) or revolutions < 0:
+        raise BadInputError(f"revolutions is {shortened(repr(revolutions))}; give a number >= 0")
+    if not is_number(phase):
+        raise BadInputError(f"phase is {shortened(repr(phase))}; give a number, a share of the start rim's length")
+    low, high = floats(between, "between", 2)
     if not 0.0 <= low < high <= 1.0:
         raise BadInputError(f"between is {low:g} and {high:g}; give two values of v from 0 to 1, the smaller first")
     turn = np.arange(paths) / paths

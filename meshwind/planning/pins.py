@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from meshwind.core.cast import Floats
+from meshwind.core.checks import check_type, is_number, path_given, text
 from meshwind.core.errors import BadInputError
 from meshwind.planning.families import Families, families_between
 from meshwind.planning.pin_table import PinTable, read_table
@@ -59,6 +60,9 @@ def read_pins(path: str | Path, surface: Surface, revolutions: float) -> Familie
     >>> mw.read_pins("pins.csv", mw.shapes.cylinder(1.0, 3.0), revolutions=0.5).family
     array([ 1, -1])
     """
+    check_type(surface, "surface", Surface, "as fit(chart) returns it")
+    if not is_number(revolutions):
+        raise BadInputError(f"revolutions is {text(revolutions)}; give a number")
     table = pin_table(path)
     lines = table.lines
     if table.has(PARAMETRIC):
@@ -81,7 +85,7 @@ def read_pins(path: str | Path, surface: Surface, revolutions: float) -> Familie
 
 def pin_table(path: str | Path) -> PinTable:
     """The table in a file of pins.  Raises BadInputError if it cannot be read or lacks columns."""
-    return read_table(Path(path), (PARAMETRIC, SPATIAL))
+    return read_table(path_given(path, "pins", "CSV file of pins"), (PARAMETRIC, SPATIAL))
 
 
 def check_pins(path: str | Path) -> None:

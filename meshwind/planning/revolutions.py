@@ -9,10 +9,11 @@ import numpy as np
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Floats
+from meshwind.core.checks import check_switch, check_type, is_number, text
 from meshwind.core.defaults import PARTICLES, STEPS_PER_TURN
 from meshwind.core.errors import BadInputError
 from meshwind.core.progress import Progress, silent
-from meshwind.path.friction import Friction
+from meshwind.path.friction import Friction, friction_of
 from meshwind.path.limit import Way
 from meshwind.path.solve import check_count
 from meshwind.planning.alternatives import alternatives
@@ -161,14 +162,19 @@ def choose_revolutions(
     >>> 0.0 < found.choice < 0.6
     True
     """
+    check_type(surface, "surface", Surface, "as fit(chart) returns it")
     if not surface.periodic:
         raise BadInputError("revolutions need a surface that closes in u; give end points to `solve` instead")
     check_count(paths, "paths", 1)
+    if particles is not None:
+        check_count(particles, "particles", 3)
+    check_switch(further, "further")
+    friction = friction_of(surface, friction)
     if most is None:
         most = hoop_revolutions(surface)
         most = most if particles is None else min(most, (particles - 1) / STEPS_PER_TURN)
-    elif not 0.0 < most < np.inf:
-        raise BadInputError(f"most is {most}; give a largest number of revolutions above 0")
+    elif not is_number(most) or most <= 0.0:
+        raise BadInputError(f"most is {text(most)}; give a largest number of revolutions above 0")
     tried = min(paths, _TRIED)
     say("which hold")
     feasible = feasible_revolutions(surface, friction, most, paths, particles)

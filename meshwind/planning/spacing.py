@@ -14,11 +14,12 @@ import numpy as np
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.core.checks import check_type, is_number, text
 from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import TINY
 from meshwind.path import Paths, Status, solve
 from meshwind.path.apart import apart
-from meshwind.path.friction import Friction
+from meshwind.path.friction import Friction, friction_of
 from meshwind.surface.rims import rim_parameters
 from meshwind.surface.surface import Surface
 
@@ -170,14 +171,15 @@ def space_out(paths: Paths, revolutions: float, spacing: float, friction: float 
     >>> len(spaced.paths) > len(paths), spaced.gap <= 1.0
     (True, True)
     """
-    if not np.isfinite(revolutions):
-        raise BadInputError(f"revolutions is {revolutions}; give the number that the paths were wound by")
-    if not (np.isfinite(spacing) and spacing > 0.0):
-        raise BadInputError(f"spacing is {spacing}; give a length above 0 in the mesh's units")
+    check_type(paths, "paths", Paths, "as solve returns them")
+    if not is_number(revolutions):
+        raise BadInputError(f"revolutions is {text(revolutions)}; give the number that the paths were wound by")
+    if not is_number(spacing) or spacing <= 0.0:
+        raise BadInputError(f"spacing is {text(spacing)}; give a length above 0 in the mesh's units")
     counts = [int((paths.family == family).sum()) for family in (1, -1)]
     share = np.concatenate([np.arange(count) / max(count, 1) for count in counts])
     ring = _Ring(paths, share, np.ones(len(paths), dtype=bool), np.zeros((0, 2)))
-    winding = _Winding(paths.surface, revolutions, friction)
+    winding = _Winding(paths.surface, revolutions, friction_of(paths.surface, friction))
     for _ in range(_MAX_ROUNDS):
         ring, done = _fill(ring, spacing, winding)
         if done:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshwind.core.cast import Floats, floats
+from meshwind.core.checks import path_given
 from meshwind.core.errors import BadInputError
 from meshwind.surface.image import from_image, surface_image
 from meshwind.surface.surface import Surface
@@ -83,7 +84,7 @@ def read_image(path: str | Path) -> Surface:
     >>> np.allclose(surface.points(uv), result.surface.points(uv), atol=1e-3 * surface.size)
     True
     """
-    path = Path(path)
+    path = path_given(path, "path", "file of an image")
     if not path.is_file():
         raise BadInputError(f"{path}: there is no such file")
     return from_image(_numbers(path) if _kind(path) == ".npz" else _colours(path))

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, floats, frozen
+from meshwind.core.checks import path_given
 from meshwind.core.errors import BadInputError
 from meshwind.core.geometry import Block
 from meshwind.core.spoken import called
@@ -201,7 +202,7 @@ def read_edited(folder: Path) -> tuple[Floats, Floats, Ints]:
 
 def _folder(folder: str | PathLike[str], needed: tuple[str, ...]) -> Path:
     """Path of a folder, checked to exist and to hold the needed files."""
-    path = Path(folder)
+    path = path_given(folder, "the run", "folder of results")
     if not path.is_dir():
         raise BadInputError(f"{path} is no folder; give one that {called('wind', 'MESH', out='DIR')} left")
     with suppress(OSError):  # a folder that cannot be written is read as it is

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from os import PathLike
-from pathlib import Path
 
+from meshwind.core.checks import path_given, several
 from meshwind.core.errors import BadInputError
 from meshwind.exporting.shell_loads import Loads
 from meshwind.exporting.targets import Exported, ExportOptions, write_exports
@@ -92,15 +92,13 @@ def export(  # noqa: PLR0913
     ['fibers.vtk', 'fibers.vtu', 'crossings.vtu']
     """
     deck = Loads(pressure, axial, torque, held), section_tolerance, material
-    options = ExportOptions(thickness, band_width, step, angle, shell, elements, _several(formats), *deck)
-    names = _several(to)
+    options = ExportOptions(thickness, band_width, step, angle, shell, elements, several(formats, "formats"), *deck)
+    names = several(to, "to")
+    if out is not None:
+        out = path_given(out, "out", "folder")
     if isinstance(run, Result):
         if out is None:
             raise BadInputError("the result is in no folder; give out, a folder for the files")
         with run.in_folder() as folder:
             return write_exports(folder, names, out, options)
-    return write_exports(run.folder if isinstance(run, LoadedResult) else Path(run), names, out, options)
-
-
-def _several(names: str | Sequence[str]) -> tuple[str, ...]:
-    return (names,) if isinstance(names, str) else tuple(names)
+    return write_exports(run.folder if isinstance(run, LoadedResult) else run, names, out, options)

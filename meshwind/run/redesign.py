@@ -8,6 +8,7 @@ from os import PathLike
 from pathlib import Path
 
 from meshwind.appearance.view import View
+from meshwind.core.checks import check_type, path_given
 from meshwind.core.opencascade import is_there
 from meshwind.core.version import version
 from meshwind.editing.notes import about_wall
@@ -87,12 +88,14 @@ def write_redesign(
     >>> report["redesign"]["windable"]
     True
     """
+    check_type(edited, "edited", Redesign, "as redesign returns it")
+    target = path_given(out, "out", "folder")
     clock = Clock()
     edited = edited if units is None else replace(edited, part=edited.part.in_units(units))
     units = edited.part.units
     opened = about_opening(edited.before.chart.annulus)
     notes = [str(note) for note in (*about_file(edited.part), *opened, *about_wall(edited, units))]
-    with folder.writing(Path(out), overwrite) as staging:
+    with folder.writing(target, overwrite) as staging:
         with clock.stage("write"):
             write_edited(staging, edited.mesh, edited.displacement, units)
             if is_there():
@@ -104,7 +107,7 @@ def write_redesign(
         spent = dict(seconds or {}) | clock.seconds
         report = redesign_report(edited, command=command, seconds=spent, notes=notes)
         if options is not None:
-            write_config(staging / CONFIG, Path(out), options, version(), "redesign")
+            write_config(staging / CONFIG, target, options, version(), "redesign")
         write_report(staging / REPORT, report)
     return report
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
+from meshwind.core.checks import path_given
 from meshwind.core.errors import BadInputError
 from meshwind.exporting.shell_about import again, fingerprint, fingerprint_of_run, read_about
 from meshwind.pictures import driver
@@ -106,8 +107,8 @@ def solve_deck(
     ['solved.json', 'solved.vtu']
     """
     say = progress or (lambda _stage: None)
-    folder = run.folder if isinstance(run, LoadedResult) else Path(run)
-    target = folder if out is None else Path(out)
+    folder = run.folder if isinstance(run, LoadedResult) else path_given(run, "run", "folder of an export")
+    target = folder if out is None else path_given(out, "out", "folder")
     file = folder / SHELL
     if not file.is_file():
         raise BadInputError(f"{folder} has no {SHELL} to solve; write it first: {again()}")

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from meshwind.core.brief import brief
+from meshwind.core.checks import path_given
 from meshwind.core.errors import BadInputError
 from meshwind.core.option import options_of
 from meshwind.core.parsing import nearest, read_toml
@@ -97,7 +98,7 @@ def read_study(study: str | PathLike[str] | Mapping[str, Any]) -> Study:
     if isinstance(study, Mapping):
         path, common = Path("study"), {str(key).replace("_", "-"): value for key, value in study.items()}
     else:
-        path = Path(study)
+        path = path_given(study, "study", "file, or the study itself as a dict")
         common = read_toml(path, "study")
     tables = common.pop("case", None)
     if tables is not None and not (isinstance(tables, list) and all(isinstance(table, dict) for table in tables)):

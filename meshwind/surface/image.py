@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import make_interp_spline
 
 from meshwind.core.cast import Floats, floats, frozen
+from meshwind.core.checks import check_type, whole
 from meshwind.core.errors import BadInputError
 from meshwind.surface.interpolate import sites, through
 from meshwind.surface.surface import Surface
@@ -48,9 +49,10 @@ def surface_image(surface: Surface, width: int, height: int) -> Floats:
     >>> mw.surface_image(mw.shapes.cylinder(1.0, 3.0), width=64, height=32).shape
     (32, 64, 3)
     """
+    check_type(surface, "surface", Surface, "as fit(chart) returns it")
     if not surface.periodic:
         raise BadInputError("an image wraps in u and this surface does not close; give one that is periodic in u")
-    if min(width, height) < LEAST:
+    if min(whole(width, "width", 1), whole(height, "height", 1)) < LEAST:
         raise BadInputError(f"{width} x {height} pixels are too few for a surface; give at least {LEAST} x {LEAST}")
     v, u = np.meshgrid(np.linspace(0.0, 1.0, height), np.arange(width) / width, indexing="ij")
     points = surface.points(np.stack([u.ravel(), v.ravel()], axis=1))

@@ -9,7 +9,9 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 from scipy.linalg import solve_circulant
 
-from meshwind.core.cast import Floats
+from meshwind.core.cast import Floats, floats
+from meshwind.core.checks import text, whole
+from meshwind.core.errors import BadInputError
 from meshwind.surface.evaluate import DEGREE
 from meshwind.surface.surface import Surface
 
@@ -19,9 +21,14 @@ Formula: TypeAlias = Callable[[Floats, Floats], Floats]
 
 def interpolate(formula: Formula, spans: tuple[int, int] = (128, 128), periodic: bool = True) -> Surface:
     """Interpolate `formula` by a uniform bicubic surface; the error falls with the fourth power of the spans."""
+    if not isinstance(spans, tuple | list) or len(spans) != 2:
+        raise BadInputError(f"spans is {text(spans)}; give two whole numbers, along u and along v")
+    for each, least in zip(spans, (4 if periodic else 1, 1), strict=True):
+        whole(each, "spans", least)
     u = sites(spans[0], periodic)
     v = sites(spans[1], False)
-    return through(formula(*np.meshgrid(u, v, indexing="ij")), spans, periodic)
+    places = np.meshgrid(u, v, indexing="ij")
+    return through(floats(formula(*places), "the formula's result", len(u), len(v), 3), spans, periodic)
 
 
 def through(values: Floats, spans: tuple[int, int], periodic: bool = True) -> Surface:

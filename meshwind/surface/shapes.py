@@ -12,7 +12,9 @@ from collections.abc import Callable
 import numpy as np
 
 from meshwind.core.cast import Floats
+from meshwind.core.checks import check_switch, is_number, text
 from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import shortened
 from meshwind.surface.interpolate import Formula, interpolate
 from meshwind.surface.surface import Surface
 
@@ -21,8 +23,13 @@ Spans = tuple[int, int]
 
 def _positive(**lengths: float) -> None:
     for name, value in lengths.items():
-        if not isinstance(value, int | float | np.number) or not (np.isfinite(value) and value > 0):
-            raise BadInputError(f"{name} is {value}; give a positive length")
+        if not is_number(value) or value <= 0:
+            raise BadInputError(f"{name} is {shortened(str(value))}; give a positive length")
+
+
+def _check_function(value: object, name: str) -> None:
+    if not callable(value):
+        raise BadInputError(f"{name} is {text(value)}; give a function")
 
 
 def parametric(formula: Formula, spans: Spans = (128, 128), periodic: bool = True) -> Surface:
@@ -53,6 +60,8 @@ def parametric(formula: Formula, spans: Spans = (128, 128), periodic: bool = Tru
     >>> mw.shapes.parametric(tube, spans=(64, 16)).points([(0.25, 1.0)]).round(4) + 0.0
     array([[0., 1., 3.]])
     """
+    _check_function(formula, "formula")
+    check_switch(periodic, "periodic")
     return interpolate(formula, spans, periodic)
 
 
@@ -85,8 +94,9 @@ def revolution(radius: Callable[[Floats], Floats], z0: float, z1: float, spans: 
     >>> barrel.points([(0.0, 0.5)]).round(6) + 0.0
     array([[1., 0., 1.]])
     """
-    if not z0 < z1:
-        raise BadInputError(f"the profile runs from z0={z0} to z1={z1}; give z0 < z1")
+    if not (is_number(z0) and is_number(z1) and z0 < z1):
+        raise BadInputError(f"the profile runs from z0={text(z0)} to z1={text(z1)}; give z0 < z1")
+    _check_function(radius, "radius")
 
     def formula(u: Floats, v: Floats) -> Floats:
         z = z0 + v * (z1 - z0)
@@ -188,8 +198,10 @@ def ellipsoid(a: float, b: float, c: float, polar0: float, polar1: float, spans:
     array([[0., 1., 0.]])
     """
     _positive(a=a, b=b, c=c)
-    if not 0 < polar0 < polar1 < np.pi:
-        raise BadInputError(f"polar angles {polar0}, {polar1} do not bound a band; give 0 < polar0 < polar1 < pi")
+    if not (is_number(polar0) and is_number(polar1) and 0 < polar0 < polar1 < np.pi):
+        raise BadInputError(
+            f"polar angles {text(polar0)}, {text(polar1)} do not bound a band; give 0 < polar0 < polar1 < pi"
+        )
 
     def formula(u: Floats, v: Floats) -> Floats:
         t, q = 2 * np.pi * u, polar0 + v * (polar1 - polar0)

@@ -9,6 +9,7 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from meshwind.core.checks import path_given
 from meshwind.core.defaults import TURNAROUNDS
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import AUTO, nearest, read_toml, shortened, turns
@@ -161,12 +162,12 @@ def read_layers(file: str | PathLike[str], options: Options) -> LayersFile:
     BadInputError
         If the file cannot be read, or a table has a key or a value that no layer has; the message names the layer.
     """
+    path = path_given(file, "layers", "TOML file of the layers")
     if not fspath(file).strip():
         raise BadInputError(f"layers is {fspath(file)!r}; give the path of a TOML file of the layers")
     for name in ("pins", "spacing", "angle"):
         if getattr(options, name) is not None:
             raise BadInputError(f"{name} and layers both say where paths lie; give one of both")
-    path = Path(fspath(file))
     tables = read_toml(path, "laminate")
     other = [key for key in tables if key != "layer"]
     if other:

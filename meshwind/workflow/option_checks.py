@@ -1,12 +1,11 @@
-"""Checks of the values of options; each raises BadInputError with one line."""
+"""Checks of options against each other and the machine; each raises BadInputError with one line."""
 
-from math import isfinite
-from numbers import Integral, Real
+from numbers import Real
 
+from meshwind.core.checks import number, text
 from meshwind.core.defaults import STEPS_PER_TURN
 from meshwind.core.errors import BadInputError
 from meshwind.core.memory import machine_memory
-from meshwind.core.parsing import shortened
 
 FIELD = "field:"
 """Before the name of a scalar field in a mesh file."""
@@ -24,45 +23,6 @@ def check_resolution(revolutions: float | str, particles: int) -> None:
             f"revolutions is {text(revolutions)}; give a number from 0 to {most:g}, the most that "
             f"{particles} particles per path can follow, or more particles"
         )
-
-
-def whole(value: object, name: str, least: int) -> int:
-    """A whole number from `least` up."""
-    if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
-        shown = repr(value) if isinstance(value, float) else text(value)  # 3.0, which is no 3
-        raise BadInputError(f"{name} is {shown}; give a whole number from {least} up")
-    return int(value)
-
-
-def number(value: object, name: str, low: float, high: float | None = None, above: bool = False) -> float:
-    """A finite number from low (or, with `above`, above low) to high."""
-    number = float(value) if isinstance(value, Real) and not isinstance(value, bool) else float("nan")
-    inside = isfinite(number) and (number > low if above else number >= low) and (high is None or number <= high)
-    if inside:
-        return number
-    if above:
-        allowed = f"above {low:g}" if high is None else f"above {low:g} and up to {high:g}"
-    else:
-        allowed = f"from {low:g} up" if high is None else f"from {low:g} to {high:g}"
-    raise BadInputError(f"{name} is {text(value)}; give a number {allowed}")
-
-
-def check_word(value: object, name: str, words: tuple[str, ...]) -> None:
-    """Raise BadInputError unless the value is one of the words."""
-    if value not in words:
-        raise BadInputError(f"{name} is {text(value)}; give {', '.join(words[:-1])} or {words[-1]}")
-
-
-def check_switch(value: object, name: str) -> None:
-    """Raise BadInputError for what is neither true nor false: a text such as "no" would count as true."""
-    if value not in (True, False):
-        raise BadInputError(f"{name} is {text(value)}; give true or false")
-
-
-def text(value: object) -> str:
-    """A value as a few characters of text."""
-    text = f"{float(value):g}" if isinstance(value, Real) and not isinstance(value, bool) else repr(value)
-    return shortened(text)
 
 
 def check_memory(paths: int, particles: int, revolutions: float) -> None:

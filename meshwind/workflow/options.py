@@ -7,23 +7,14 @@ its help, configuration files, studies, `meshwind.wind` and meshwind.toml take t
 from dataclasses import dataclass, field, fields
 
 from meshwind.core.brief import brief
+from meshwind.core.checks import check_switch, check_word, number, text, whole
 from meshwind.core.defaults import FIT_TOLERANCE, OPENED_BY, PARTICLES, PATHS, REVOLUTIONS, SIDES, TURNAROUNDS
 from meshwind.core.errors import BadInputError
 from meshwind.core.option import option
 from meshwind.core.parsing import AUTO, count, paths, turns
 from meshwind.core.spoken import argument
 from meshwind.core.units import ASSUMED, MILLIMETRES, check_units
-from meshwind.workflow.option_checks import (
-    FIELD,
-    check_memory,
-    check_resolution,
-    check_switch,
-    check_word,
-    number,
-    read_friction,
-    text,
-    whole,
-)
+from meshwind.workflow.option_checks import FIELD, check_memory, check_resolution, read_friction
 
 _STEEPEST = 89.0
 """Degrees of the steepest helix: past them it is a hoop."""

@@ -112,7 +112,7 @@ def read(mesh: str | PathLike[str] | Any, component: int | None = None, units: s
 
     Parameters
     ----------
-    mesh : str, PathLike, trimesh.Trimesh, pyvista.PolyData, meshio.Mesh or tuple of two arrays
+    mesh : str, PathLike, trimesh.Trimesh, pyvista.PolyData, meshio.Mesh, Mesh or tuple of two arrays
         File to read, or a mesh in memory: one of trimesh, PyVista or meshio, or its vertices (n, 3) and faces (m, 3).
     component : int, optional
         Which piece to keep, by its rank of area: 0 is the largest.  By default the largest, with a warning if another
@@ -137,8 +137,11 @@ def read(mesh: str | PathLike[str] | Any, component: int | None = None, units: s
     >>> mesh.repairs
     ()
     """
-    held = load(mesh)
-    name = Path(mesh).name if isinstance(mesh, str | PathLike) else "mesh"
+    if isinstance(mesh, Mesh):  # so that what any function takes can be read again
+        held = FileMesh(mesh.vertices, mesh.faces, mesh.units, mesh.warnings, mesh.units_from, mesh.notes)
+    else:
+        held = load(mesh)
+    name = Path(mesh).name if isinstance(mesh, str | PathLike) else mesh.name if isinstance(mesh, Mesh) else "mesh"
     unit = Unit.of(units, held.unit)
     repaired = mesh_from(held.vertices, held.faces, name, component)
     warnings = (*held.warnings, *filter(None, [unit.warning]), *repaired.warnings)

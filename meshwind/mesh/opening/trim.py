@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats, Ints, frozen
+from meshwind.core.checks import check_word
 from meshwind.core.defaults import OPENED_BY
 from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import shortened
 from meshwind.core.spoken import called
 from meshwind.mesh.geometry.areas_and_volumes import areas, volume
 from meshwind.mesh.geometry.fill_holes import fill_defects, fill_hole
@@ -83,7 +85,7 @@ def annulus(
     [True, True]
     """
     if not isinstance(mesh, Mesh):
-        raise BadInputError(f"mesh is of type {type(mesh).__name__}: give a Mesh, as read('part.stl') returns it")
+        raise BadInputError(f"mesh is of type {type(mesh).__name__}; give a Mesh, as read('part.stl') returns it")
     request = parse_ends(ends)
     _check_opening(opening)
     _check_opening_by(opening_by)
@@ -117,12 +119,13 @@ def annulus(
 def _check_opening(opening: float | None) -> None:
     good = isinstance(opening, int | float | np.number) and not isinstance(opening, bool)
     if opening is not None and not (good and np.isfinite(opening) and opening > 0):
-        raise BadInputError(f"opening {opening}: give the radius of the hole at a pole, a number above 0")
+        raise BadInputError(
+            f"opening {shortened(str(opening))}: give the radius of the hole at a pole, a number above 0"
+        )
 
 
 def _check_opening_by(by: str) -> None:
-    if by not in OPENED_BY:
-        raise BadInputError(f"opening_by is {by!r}; give auto, level or plane")
+    check_word(by, "opening_by", OPENED_BY)
 
 
 def _check_part(mesh: Mesh) -> None:

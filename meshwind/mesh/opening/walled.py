@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from meshwind.core.cast import Ints, frozen
+from meshwind.core.checks import check_word
 from meshwind.core.defaults import SIDES
 from meshwind.core.errors import BadInputError
 from meshwind.core.spoken import argument
@@ -29,8 +30,7 @@ def wall_of(mesh: Mesh, side: str) -> Wall | None:
 
     Raises BadInputError where the part has handles, or no inner skin where that is wanted.
     """
-    if side not in SIDES:
-        raise BadInputError(f"side is {side!r}; give outer or inner")
+    check_word(side, "side", SIDES)
     count = genus(mesh.faces)
     found, sides = skins(mesh.vertices, mesh.faces, hardly=count > 0 or side == "inner")
     if found is None:

@@ -6,6 +6,7 @@ import numpy as np
 
 from meshwind.core.cast import Floats, Ints
 from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import shortened
 from meshwind.core.spoken import argument
 from meshwind.mesh.geometry.areas_and_volumes import areas
 from meshwind.mesh.geometry.topology import patches
@@ -79,7 +80,7 @@ class Pieces:
         count = len(self.areas)
         if isinstance(component, bool) or not isinstance(component, int | np.integer) or not 0 <= component < count:
             pieces = "1 piece; give 0" if count == 1 else f"{count} pieces; give a number from 0 to {count - 1}"
-            raise BadInputError(f"{name}: component {component!r}: the mesh has {pieces}")
+            raise BadInputError(f"{name}: component {shortened(repr(component))}: the mesh has {pieces}")
         if count > _MANY_PIECES and self.areas[0] < _SMALL_SHARE * self.areas.sum():
             raise BadInputError(
                 f"{name}: falls apart into {count} pieces, for its triangles do not meet; weld their vertices and"

@@ -14,6 +14,7 @@ from threadpoolctl import ThreadpoolController
 from meshwind.chart.chart import Chart, speeds
 from meshwind.core.defaults import FIT_TOLERANCE
 from meshwind.core.errors import BadInputError
+from meshwind.core.parsing import shortened
 from meshwind.surface.fitting.certify import certify
 from meshwind.surface.fitting.evidence import noisy, standing, vertices_lead
 from meshwind.surface.fitting.facet_fit import fit_facets
@@ -66,7 +67,9 @@ def fit(chart: Chart, tolerance: float = FIT_TOLERANCE) -> Surface:
     if not isinstance(chart, Chart):
         raise BadInputError(f"fit takes a Chart, not {type(chart).__name__}; make one with flatten(annulus)")
     if not (isinstance(tolerance, Real) and tolerance > 0):
-        raise BadInputError(f"tolerance is {tolerance!r}; give a share of the diagonal above 0, such as 1e-5")
+        raise BadInputError(
+            f"tolerance is {shortened(repr(tolerance))}; give a share of the diagonal above 0, such as 1e-5"
+        )
     annulus = chart.annulus
     limit = tolerance * float(np.linalg.norm(np.ptp(annulus.vertices, axis=0)))
     samples, lengths = Samples.of(chart), _lengths(chart)
