@@ -9,6 +9,7 @@ import meshio
 import numpy as np
 import pytest
 import pyvista as pv
+import trimesh
 from export_results import plain_results, waisted_results
 
 from meshwind.exporting.formats import FORMATS, write_formats
@@ -57,6 +58,15 @@ def test_faces_come_back(written: tuple[Path, list[str]], name: str) -> None:
     assert np.array_equal(held["quad"], faces.quads)
     assert np.array_equal(held["triangle"], faces.triangles)
     assert np.array_equal(read.points, faces.points)
+
+
+@pytest.mark.parametrize("part", ["surface", "quads"])
+@pytest.mark.parametrize("name", ["ply", "obj"])
+def test_trimesh_opens_the_faces(written: tuple[Path, list[str]], part: str, name: str) -> None:
+    faces = read_faces(written[0] / f"{part}.vtu")
+    read: Any = trimesh.load(written[0] / "formats" / f"{part}.{name}", process=False)
+    assert np.array_equal(read.vertices, faces.points)
+    assert len(read.faces) == 2 * len(faces.quads) + len(faces.triangles)
 
 
 @pytest.mark.parametrize("part", PARTS)

@@ -24,10 +24,13 @@ def write_meshio(
     cell_data: Mapping[str, Sequence[NDArray[Any]]] | None = None,
     units: str,
 ) -> None:
-    """Write a binary .vtu, .vtk or .ply file whose header names the unit of length."""
+    """Write a binary .vtu, .vtk or .ply file whose header names the unit of length.
+
+    A .ply file of triangles and quadrangles is text: trimesh reads binary rows of one length only.
+    """
     import meshio
 
     own = [(kind, np.array(block)) for kind, block in cells]
     mesh = meshio.Mesh(np.array(points), own, point_data=dict(point_data), cell_data=dict(cell_data or {}))
-    mesh.write(path)
+    mesh.write(path, **({"binary": False} if path.suffix == ".ply" and len(own) > 1 else {}))
     path.write_bytes(_SIGNED.sub(f"meshwind, {lengths_in(units)}".encode("ascii"), path.read_bytes(), count=1))
