@@ -157,6 +157,16 @@ def test_without_pandas_the_error_says_what_to_install(monkeypatch: pytest.Monke
         table.data_frame({"a": np.zeros(3)})
 
 
+def test_a_traced_fibre_goes_to_other_libraries() -> None:
+    fibre = mw.trace(mw.shapes.torus(3.0, 1.0), (0.05, 0.1), 0.7, 2.0, step=0.01)
+    seen = fibre.to_pyvista()
+    assert seen.n_cells == 1 and np.array_equal(seen.points, fibre.points)
+    assert np.array_equal(seen.point_data["geodesic_curvature"], fibre.geodesic_curvature)
+    assert seen.cell_data["stop"].tolist() == [mw.Stop.LENGTH]
+    assert fibre.to_trimesh().length == pytest.approx(2.0, rel=1e-4)
+    assert len(fibre.to_meshio().cells_dict["line"]) == len(fibre) - 1
+
+
 def test_paths_are_a_sequence(both: tuple[mw.Result, mw.LoadedResult]) -> None:
     paths = both[0].paths
     assert [path.number for path in paths] == list(range(len(paths)))

@@ -5,8 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 
+import numpy as np
+
 from meshwind.core.brief import brief
 from meshwind.core.cast import Floats
+from meshwind.core.geometry import Block, Geometric
 from meshwind.surface.surface import Surface
 
 
@@ -63,7 +66,7 @@ _ADVICE = {
 
 
 @dataclass(frozen=True)
-class Trace:
+class Trace(Geometric):
     """Fibre that was marched over a surface, with n points from the start to where it stopped.
 
     Attributes
@@ -119,3 +122,14 @@ class Trace:
 
     def __len__(self) -> int:
         return len(self.points)
+
+    @property
+    def block(self) -> Block:
+        """The fibre as a polyline, with what is known at its points."""
+        names = "uv", "tangent", "normal", "arc_length", "normal_curvature", "geodesic_curvature"
+        return Block(
+            points=self.points,
+            starts=np.array([0, len(self.points)]),
+            point_data={name: getattr(self, name) for name in names},
+            line_data={"slip": np.array([self.slip]), "stop": np.array([int(self.stop)])},
+        )
