@@ -1,5 +1,6 @@
 """A result in PyVista, trimesh, meshio, pandas and a notebook, and read back from its folder."""
 
+import io
 import os
 import subprocess
 import sys
@@ -13,10 +14,13 @@ import pandas as pd
 import pytest
 import pyvista as pv
 import trimesh
+from PIL import Image
 
 import meshwind as mw
 from meshwind.core import table
+from meshwind.core.errors import BadInputError
 from meshwind.core.geometry import Block
+from meshwind.pictures.picture import Picture
 from meshwind.results.report import plain
 from meshwind.run.views import blocks
 
@@ -258,3 +262,23 @@ def test_a_window_opens_only_where_there_is_a_screen(
     )
     with pytest.raises(mw.BadInputError, match="drawn"):
         both[1].plot()
+
+
+@pytest.mark.parametrize(
+    ("ending", "kind"), [(".png", "PNG"), ("", "PNG"), (".JPG", "JPEG"), (".bmp", "BMP"), (".webp", "WEBP")]
+)
+def test_a_picture_is_saved_as_its_name_says(ending: str, kind: str, tmp_path: Path) -> None:
+    held = io.BytesIO()
+    Image.new("RGBA", (8, 6), (255, 0, 0, 0)).save(held, "PNG")
+    Picture(held.getvalue()).save(tmp_path / f"part{ending}")
+    with Image.open(tmp_path / f"part{ending}") as saved:
+        assert saved.format == kind and saved.size == (8, 6)
+        if ending not in (".png", ""):
+            assert saved.convert("RGB").getpixel((3, 3)) == (255, 255, 255)
+
+
+def test_an_ending_that_no_picture_has_is_refused(tmp_path: Path) -> None:
+    for name in ("part.xyz", "part.stl"):
+        with pytest.raises(BadInputError, match=f"{name}: no pictures end with .*; give a name with .png"):
+            Picture(b"").save(tmp_path / name)
+        assert not (tmp_path / name).exists()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from dataclasses import dataclass
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from meshwind.core.checks import path_given
@@ -56,12 +57,12 @@ class Picture:
         Parameters
         ----------
         file : str or PathLike
-            File, which should end with .png.
+            File, of the kind that its name ends with, as in .png, .jpg, .webp or .pdf; PNG without an ending.
 
         Raises
         ------
         BadInputError
-            If the file cannot be written.
+            If the file cannot be written, or its name ends otherwise.
 
         Examples
         --------
@@ -70,9 +71,24 @@ class Picture:
         >>> picture.save("tank.png")
         """
         path = path_given(file, "file", "file for the picture")
+        content = self._as(path)
         try:
-            path.write_bytes(self.png)
+            path.write_bytes(content)
         except OSError as error:
             raise BadInputError(
                 f"{path} cannot be written ({error.strerror}); give a file in another folder"
             ) from error
+
+    def _as(self, path: Path) -> bytes:
+        """The picture as a file of the kind that a name ends with."""
+        if path.suffix.lower() in ("", ".png"):
+            return self.png
+        from PIL import Image
+
+        kind = Image.registered_extensions().get(path.suffix.lower(), "")
+        if kind not in Image.SAVE:
+            raise BadInputError(f"{path.name}: no pictures end with {path.suffix}; give a name with .png")
+        held, image = io.BytesIO(), self.image.convert("RGBA")
+        white = Image.new("RGBA", image.size, "white")  # not all kinds can be transparent
+        Image.alpha_composite(white, image).convert("RGB").save(held, kind)
+        return held.getvalue()

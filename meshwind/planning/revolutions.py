@@ -119,7 +119,7 @@ def choose_revolutions(
     friction: float | Friction = 0.0,
     most: float | None = None,
     further: bool = True,
-    say: Progress = silent,
+    progress: Progress = silent,
 ) -> Revolutions:
     """Choose the number of revolutions.
 
@@ -141,7 +141,7 @@ def choose_revolutions(
         Largest number of revolutions.  By default that of a hoop winding, and no more than `particles` can follow.
     further : bool, default True
         Whether to find what more friction and wider openings would allow as well.
-    say : callable, default silent
+    progress : callable, default silent
         Called with a few words as it goes on.
 
     Returns
@@ -176,7 +176,7 @@ def choose_revolutions(
     elif not is_number(most) or most <= 0.0:
         raise BadInputError(f"most is {text(most)}; give a largest number of revolutions above 0")
     tried = min(paths, _TRIED)
-    say("which hold")
+    progress("which hold")
     feasible = feasible_revolutions(surface, friction, most, paths, particles)
     square = square_revolutions(surface)
     pressed = pressing(surface)
@@ -185,7 +185,7 @@ def choose_revolutions(
     share = max((float(pressed.share(np.array([_inside(*each)]))[0]) for each in common), default=0.0)
 
     def tell(turns: float) -> float:
-        say(f"{turns:.4g} revolutions")
+        progress(f"{turns:.4g} revolutions")
         return turns
 
     choice = _Choice(
@@ -197,14 +197,14 @@ def choose_revolutions(
     trials = [*feasible.trials, *choice.tried, *checked]
     chosen = _least_bridging(checked or [each for each in trials if each.revolutions > 0.0])
     if not feasible.any:  # with any starts; those asked for may hold all the same
-        say("fewer, which hold")
+        progress("fewer, which hold")
         held = holding_trial(surface, chosen.revolutions, friction, paths, particles)
         if held.feasible:
             chosen = held
             trials.append(held)
     gains = 0.0, 0.0
     if further and feasible.any and np.isfinite(feasible.high):
-        say("what more friction and wider openings allow")
+        progress("what more friction and wider openings allow")
         gains = alternatives(spread(surface, friction, paths, particles), feasible, most)
     trials.sort(key=lambda each: each.revolutions)
     return Revolutions(chosen, pressed, common, share, feasible, tuple(trials), square, *gains)

@@ -263,5 +263,5 @@ def chosen_revolutions(
     paths, particles = options.paths or PATHS, options.particles
     with clock.stage("choose"):
         return choose_revolutions(
-            surface, paths=paths, particles=particles, friction=friction, further=further, say=clock.tell
+            surface, paths=paths, particles=particles, friction=friction, further=further, progress=clock.tell
         )
