@@ -124,3 +124,12 @@ def test_bad_options_exit_2_with_one_line(wrong: tuple[str, str], says: str, tmp
     last = done.stderr.strip().splitlines()[-1]
     assert last.startswith("meshwind: error:") and says in last
     assert not (tmp_path / "out").exists()
+
+
+def test_a_laminate_that_is_wound_as_one_filament_is_held_as_it_is(tmp_path: Path) -> None:
+    """Turnarounds and cuts of a filament mean nothing to a redesign, which has no --continuous to be told to set."""
+    file = tmp_path / "laminate.toml"
+    file.write_text('[[layer]]\nkind = "helical"\nrevolutions = 0.8\npaths = 3\nturn_end = "pins"\ncut = true\n')
+    done = from_outside("redesign", DATA / "vase.stl", "--layers", file, "--particles", "101", "--units", "mm",
+                        "--no-render", "--out", tmp_path / "out")  # fmt: skip
+    assert done.returncode == 0, done.stderr

@@ -78,7 +78,7 @@ def redesign(
     target = Path(out if out is not None else f"{mesh.stem}-redesigned")
     check_file(mesh)  # what does not exist is told before a folder that does
     if windings.layers is not None:
-        read_layers(windings.layers, Options())
+        read_layers(windings.layers, Options(continuous=True))  # of one filament or not, all the same
     folder.prepare(target, files.overwrite)
     if files.render:
         start_probe()  # it loads its libraries while this process computes
