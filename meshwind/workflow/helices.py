@@ -45,7 +45,12 @@ _FEWEST = 1 / 200
 _ABOUT = 1.3
 """Factor about the revolutions of a few paths within which those of more paths are looked for."""
 _AS_WIDE = 1e-6
-"""Share by which level lines may be shorter than the longest and still count as the widest place."""
+"""Share by which level lines may be shorter than the longest and still count as the widest place, ..."""
+_CYLINDER, _LONG = 1e-3, 0.1
+"""... and those by which, and over how much of the part, they may where it is a cylinder there.
+
+A fit of a cylinder between domes is wider by some 2e-4 just beside these; 1e-3 of the width is 0.06 degrees at 45.
+"""
 _BACK = (0.02, 0.04, 0.07, 0.1, 0.13, 0.17, 0.22, 0.3)
 """Shares of the revolutions that are given up at a brink, as more paths and particles slide off sooner, ..."""
 _ASIDE = (0.01, -0.01, 0.02, -0.02, 0.04, 0.07, 0.1, 0.13)
@@ -256,7 +261,9 @@ class Helices:
     def _widest(self) -> float:
         """The v of the widest place of the layer: of several the one nearest to its middle."""
         v, length = self.lines.v[self._inside], self.lines.length[self._inside]
-        wide = v[length >= length.max() * (1.0 - _AS_WIDE)]
+        wide = v[length >= length.max() * (1.0 - _CYLINDER)]
+        if np.ptp(wide) < _LONG:
+            wide = v[length >= length.max() * (1.0 - _AS_WIDE)]
         return float(wide[int(np.argmin(np.abs(wide - 0.5 * sum(self.between))))])
 
     def _on_a_tube(self, angle: float) -> float:
