@@ -161,3 +161,17 @@ def test_a_file_of_layers_that_cannot_be_used(text: str, line: str, tmp_path: Pa
     (tmp_path / "layers.toml").write_text(text)
     with pytest.raises(BadInputError, match=line):
         mw.wind("data/tank.ply", layers=tmp_path / "layers.toml")
+
+
+@pytest.mark.parametrize(("places", "line"), [
+    ('from = "z=60"\nto = "z=-60"', r"layer 2: it starts at z=60 \(v=.*\) and ends at z=-60 \(v=.*the other way round"),
+    ("from = 0.7\nto = 0.3", "layer 2: it starts at v=0.7 and ends at v=0.3, .*the other way round"),
+    ("from = 0.4\nto = 0.4", "layer 2: it starts and ends at v=0.4; give two places"),
+    ('from = "z=1e4"', "layer 2: z=1e4 lies off the part"),
+])  # fmt: skip
+def test_places_out_of_order_are_told_before_anything_is_wound(places: str, line: str, tmp_path: Path) -> None:
+    (tmp_path / "layers.toml").write_text(LAYERS[: LAYERS.index("from =")] + places)
+    said: list[str] = []
+    with pytest.raises(BadInputError, match=line):
+        mw.wind("data/tank.ply", layers=tmp_path / "layers.toml", units="mm", progress=said.append)
+    assert not any(each.startswith("layer 1") for each in said)

@@ -11,7 +11,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.editing.options import WindingOptions
 from meshwind.editing.stencil import pitches
 from meshwind.filament.hoop import HoopPlan, hoop
-from meshwind.filament.levels import levels, station
+from meshwind.filament.levels import levels, stretch
 from meshwind.path import Paths, solve
 from meshwind.planning.families import families
 from meshwind.surface.surface import Surface
@@ -112,7 +112,7 @@ def courses(surface: Surface, asked: WindingOptions, options: Options, units: st
     for at, plan in enumerate(plans, 1):
         try:
             found.append(
-                _of_layer(surface, plan, options, units, (station(plan.start, lines), station(plan.end, lines)))
+                _of_layer(surface, plan, options, units, stretch(plan.start, plan.end, lines))
             )
         except BadInputError as error:
             raise BadInputError(f"layer {at}: {error}") from error
@@ -120,8 +120,6 @@ def courses(surface: Surface, asked: WindingOptions, options: Options, units: st
 
 
 def _of_layer(surface: Surface, plan: LayerPlan, options: Options, units: str, between: tuple[float, float]) -> Course:
-    if not between[0] < between[1]:
-        raise BadInputError(f"it starts at v={between[0]:g} and ends at v={between[1]:g}; give its places in order")
     paths = plan.paths if isinstance(plan.paths, int) else options.paths or PATHS
     particles = Course.of(options, 0.0).particles
     if plan.kind == HOOP:

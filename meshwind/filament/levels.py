@@ -115,6 +115,28 @@ def station(place: float | str, lines: Levels) -> float:
     return float(np.interp((value - a) / (b - a), [0.0, 1.0], lines.v[first - 1 : first + 1]))
 
 
+def stretch(first: float | str, last: float | str, lines: Levels) -> tuple[float, float]:
+    """The v of two places along the part, as `station` reads them.
+
+    Raises BadInputError where a place cannot be read, or where they are not in order from the part's start to its end.
+    """
+    begin, end = station(first, lines), station(last, lines)
+    if begin < end:
+        return begin, end
+    if begin == end:
+        raise BadInputError(f"it starts and ends at v={begin:g}; give two places")
+    raise BadInputError(
+        f"it starts at {_with_v(first, begin)} and ends at {_with_v(last, end)}, but v grows from the part's start to "
+        "its end; give its places the other way round"
+    )
+
+
+def _with_v(place: float | str, v: float) -> str:
+    """A place as it was given, and its v if that is not it."""
+    name, value = _named(place)
+    return f"v={v:.4g}" if name == "v" else f"{name}={value:g} (v={v:.4g})"
+
+
 def _named(place: float | str) -> tuple[str, float]:
     """The kind of a place, "v", "z" or "fraction", and its number."""
     if not isinstance(place, str):
@@ -127,7 +149,8 @@ def _named(place: float | str) -> tuple[str, float]:
     name = name.strip().lower() or "v"
     if name not in ("v", "z", "fraction") or not np.isfinite(value):
         raise BadInputError(
-            f"{shortened(repr(place))} is no place along the part; give a v from 0 to 1, z=120 or fraction=0.3"
+            f"{shortened(repr(place))} is no place along the part; give a v from 0 to 1, z=120 or fraction=0.3; z is the "
+            "height along the part's own axis, whichever way that runs"
         )
     return name, value
 

@@ -18,7 +18,7 @@ from meshwind.filament.ends import LayerPlan as ClosingPlan
 from meshwind.filament.hoop import HoopPlan, hoop
 from meshwind.filament.joins import Tail, strand_of_hoop, strand_of_paths
 from meshwind.filament.laminate import LaidLayer, Laminate, Ply, helical_layer, hoop_layer
-from meshwind.filament.levels import levels, station
+from meshwind.filament.levels import levels, stretch
 from meshwind.filament.offset import TIGHT
 from meshwind.filament.spiral import Ground
 from meshwind.path import Status
@@ -57,9 +57,11 @@ def lay_layers(
     notes: list[tuple[int, Note]] = []
     plies = []
     first: Settled | None = None
+    lines = levels(surface)
     for number, plan in enumerate(asked.plans, 1):
         with _naming(number):
             plies.append(plan.ply(options, units))
+            stretch(plan.start, plan.end, lines)  # a mistake in it is told before the layers below are wound
     for number, (plan, ply) in enumerate(zip(asked.plans, plies, strict=True), 1):
         for _ in range(plan.repeat):
             now = f"layer {len(layers) + 1}"
@@ -136,7 +138,7 @@ def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options, say: Progre
     surface = below.surface
     lines = levels(surface)
     ground = Ground(surface, lines, ply.laying.width)
-    between = station(plan.start, lines), station(plan.end, lines)
+    between = stretch(plan.start, plan.end, lines)
     tail = None if plan.cut else below.tail
     if plan.kind == HOOP:
         hoops = HoopPlan(*between, ply.laying.width, plan.passes, plan.overlap, plan.stagger)
@@ -144,8 +146,6 @@ def _lay(below: _Below, plan: LayerPlan, ply: Ply, options: Options, say: Progre
             return hoop_layer(surface, hoop(surface, hoops), ply, lines), None
         strand, laid = strand_of_hoop(hoops, tail, ground, ply.friction)
         return hoop_layer(surface, laid, ply, lines, replace(strand, cut=plan.cut)), None
-    if not between[0] < between[1]:
-        raise BadInputError(f"it starts at v={between[0]:g} and ends at v={between[1]:g}; give its places in order")
     helices = Helices(surface, between, ply.friction, lines, say=say)
     if isinstance(plan.paths, int):
         helices = replace(helices, paths=plan.paths)
@@ -185,7 +185,7 @@ def first_helical(plans: tuple[LayerPlan, ...], layered: Layered, surface: Surfa
     if plan is None:
         return options
     ply, settled, lines = plan.ply(options, units), layered.first, levels(surface)
-    if settled is None or (station(plan.start, lines), station(plan.end, lines)) != (0.0, 1.0):
+    if settled is None or stretch(plan.start, plan.end, lines) != (0.0, 1.0):
         settled = Helices(surface, (0.0, 1.0), ply.friction, lines).settled(
             plan.angle, plan.revolutions, plan.paths, ply.laying.width, plan.turns(options)
         )
