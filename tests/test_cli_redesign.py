@@ -133,3 +133,4 @@ def test_a_laminate_that_is_wound_as_one_filament_is_held_as_it_is(tmp_path: Pat
     done = from_outside("redesign", DATA / "vase.stl", "--layers", file, "--particles", "101", "--units", "mm",
                         "--no-render", "--out", tmp_path / "out")  # fmt: skip
     assert done.returncode == 0, done.stderr
+    assert "winding   layer 1, helical, 0.8 revolutions; 3 paths per family" in done.stdout

@@ -174,13 +174,21 @@ def redesign_lines(report: RedesignReport) -> list[str]:
 
 def _edited_part(report: RedesignReport) -> list[str]:
     part, winding, windings = report["mesh"], report["winding"], report["windings"]
+    if len(windings) > 1:
+        wound = f"windings  {'; '.join(each['name'] for each in windings)}"
+    elif (only := windings[0])["name"].startswith("layer"):
+        wound = f"winding   {only['name']}" + (
+            f"; {only['paths']} paths per family" if only["kind"] == "helical" else ""
+        )
+    else:
+        wound = (
+            f"winding   {winding['revolutions']:.4g} revolutions, {winding['why']}; "
+            f"{winding['paths_per_family']} paths per family"
+        )
     return [
         f"part      {part['name']}: {size(part['size'], reported_unit(part['units']), part['units_from'])}",
         f"mesh      {part['vertices']} vertices, {part['faces']} faces",
-        f"winding   {winding['revolutions']:.4g} revolutions, {winding['why']}; "
-        f"{winding['paths_per_family']} paths per family"
-        if len(windings) == 1
-        else f"windings  {'; '.join(each['name'] for each in windings)}",
+        wound,
     ]
 
 
