@@ -316,3 +316,11 @@ def test_the_widest_place_of_a_cylinder_between_domes_is_its_middle() -> None:
     assert helices(revolved(lambda v: 50.0 - 20.0 * (v - 0.6) ** 2)).turned_to(radians(20.0)).v == pytest.approx(
         0.6, abs=0.005
     )
+
+
+@pytest.mark.parametrize(("place", "words"), [
+    (None, "v=0.5, the widest place,"), ("0.5", "v=0.5"), ("V = 0.5", "v=0.5"), ("z=30", "z=30 (v=0.5)"),
+])  # fmt: skip
+def test_the_place_of_an_angle_is_named_once(place: str | None, words: str) -> None:
+    turned = Turned(1.4, 0.5, radians(45.0), radians(45.0))
+    assert turned.taken(place) == f"45 degrees at {words} take 1.4 revolutions"

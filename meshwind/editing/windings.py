@@ -111,9 +111,7 @@ def courses(surface: Surface, asked: WindingOptions, options: Options, units: st
     lines, found = levels(surface), []
     for at, plan in enumerate(plans, 1):
         try:
-            found.append(
-                _of_layer(surface, plan, options, units, stretch(plan.start, plan.end, lines))
-            )
+            found.append(_of_layer(surface, plan, options, units, stretch(plan.start, plan.end, lines)))
         except BadInputError as error:
             raise BadInputError(f"layer {at}: {error}") from error
     return tuple(_named(each, at) for at, each in enumerate(found, 1))

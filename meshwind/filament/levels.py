@@ -126,12 +126,12 @@ def stretch(first: float | str, last: float | str, lines: Levels) -> tuple[float
     if begin == end:
         raise BadInputError(f"it starts and ends at v={begin:g}; give two places")
     raise BadInputError(
-        f"it starts at {_with_v(first, begin)} and ends at {_with_v(last, end)}, but v grows from the part's start to "
+        f"it starts at {with_v(first, begin)} and ends at {with_v(last, end)}, but v grows from the part's start to "
         "its end; give its places the other way round"
     )
 
 
-def _with_v(place: float | str, v: float) -> str:
+def with_v(place: float | str, v: float) -> str:
     """A place as it was given, and its v if that is not it."""
     name, value = _named(place)
     return f"v={v:.4g}" if name == "v" else f"{name}={value:g} (v={v:.4g})"
@@ -149,8 +149,8 @@ def _named(place: float | str) -> tuple[str, float]:
     name = name.strip().lower() or "v"
     if name not in ("v", "z", "fraction") or not np.isfinite(value):
         raise BadInputError(
-            f"{shortened(repr(place))} is no place along the part; give a v from 0 to 1, z=120 or fraction=0.3; z is the "
-            "height along the part's own axis, whichever way that runs"
+            f"{shortened(repr(place))} is no place along the part; give a v from 0 to 1, z=120 or fraction=0.3; z is "
+            "the height along the part's own axis, whichever way that runs"
         )
     return name, value
 

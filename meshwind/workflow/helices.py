@@ -12,7 +12,7 @@ from meshwind.core.parsing import AUTO
 from meshwind.core.progress import Progress, silent
 from meshwind.filament.cap_turn import passes_on_caps
 from meshwind.filament.ends import CAP, LayerPlan, Wish
-from meshwind.filament.levels import Levels, station
+from meshwind.filament.levels import Levels, station, with_v
 from meshwind.filament.settling import SCOUTS_PER_TURN
 from meshwind.filament.stations import circuits_to_cover, median_angle, wound_angle
 from meshwind.path import Paths, Status, solve
@@ -116,7 +116,7 @@ class Turned:
 
     def taken(self, place: str | None = None) -> str:
         """The revolutions that an angle takes which is met; place: where it was asked for, None for the widest."""
-        where = f"v={self.v:.3g}, {'the widest place' if place is None else place},"
+        where = f"v={self.v:.3g}, the widest place," if place is None else with_v(place, self.v)
         return f"{np.degrees(self.asked):g} degrees at {where} take {self.revolutions:.6g} revolutions"
 
     def moved(self, paths: Paths) -> tuple[Note, ...]:
