@@ -156,3 +156,10 @@ def test_places_are_named_in_any_case() -> None:
     assert station("V=0.25", lines) == 0.25
     assert station("Fraction=0.5", lines) == station("fraction=0.5", lines)
     assert station("Z=100", lines) == station("z=100", lines)
+
+
+def test_a_band_wider_than_the_part_is_told() -> None:
+    """120 across: a width in the wrong unit is seen in no other figure, as the cover is said to be enough."""
+    for width, told in ((119.0, 0), (6000.0, 1)):
+        found = mw.wind(TANK, paths=2, particles=101, band_width=width, units="mm").report()["notes"]
+        assert sum("give band_width in the part's unit" in line and "120 mm across" in line for line in found) == told

@@ -52,6 +52,8 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"tows": 1.5}, "tows is 1.5; give a whole number from 1 up"),
     ({"fibre_volume": 1.5}, "fibre_volume is 1.5; give a number above 0 and up to 1"),
     ({"fibre_density": 2.6}, "fibre_density says nothing without tex"),
+    ({"fibre_density": 1800.0, "tex": 800.0}, "fibre_density is 1800 g/cm3, more than any solid; give 1.8 for kg/m3"),
+    ({"resin_density": 1200.0, "tex": 800.0}, "resin_density is 1200 g/cm3, more than any solid; give 1.2 for kg/m3"),
     ({"band_thickness": 0.2}, "band_thickness needs the band's width"),
     ({"band_thickness": 0.2, "tex": 800.0}, "give one of both"),
     ({"angle": 30.0, "revolutions": 0.5}, "give one of them"),

@@ -70,8 +70,21 @@ def roving_of(run: Material, layer: Material | None = None) -> Roving | None:
     return None
 
 
-def about_band(band: Band) -> tuple[Note, ...]:
-    """Note on the thickness that follows from tex and width, or on what is missing for it."""
+def about_band(band: Band, across: float) -> tuple[Note, ...]:
+    """Notes on a band wider than the part is across, and on the thickness that follows from tex and width."""
+    wide = () if band.width is None or band.width <= across else (_too_wide(band.width, across, band.units),)
+    return (*wide, *_about_thickness(band))
+
+
+def _too_wide(width: float, across: float, units: str) -> Note:
+    return Note(
+        f"the band is {quantity(width, units, 3)} wide, and the part at most {quantity(across, units, 3)} across: its "
+        f"width, and with it cover and thickness, mean little; give {argument('band_width')} in the part's unit",
+        warning=True,
+    )
+
+
+def _about_thickness(band: Band) -> tuple[Note, ...]:
     if band.roving is None:
         return ()
     if band.width is None or band.thickness is None:
