@@ -177,9 +177,8 @@ def _edited_part(report: RedesignReport) -> list[str]:
     if len(windings) > 1:
         wound = f"windings  {'; '.join(each['name'] for each in windings)}"
     elif (only := windings[0])["name"].startswith("layer"):
-        wound = f"winding   {only['name']}" + (
-            f"; {only['paths']} paths per family" if only["kind"] == "helical" else ""
-        )
+        families = f"; {winding['paths_per_family']} paths per family" if only["kind"] == "helical" else ""
+        wound = f"winding   {only['name']}{families}"
     else:
         wound = (
             f"winding   {winding['revolutions']:.4g} revolutions, {winding['why']}; "
