@@ -291,7 +291,7 @@ def test_history_follows_the_run() -> None:
         (dict(method="kkt", friction=0.1), "kkt has no friction; set friction=0"),
         (dict(end=(0.0, 0.0)), "has no length; give two different ends"),
         (dict(end=(0.0, 1.5)), "v outside"),
-        (dict(particles=2), "particles is 2; give a whole number, at least 3"),
+        (dict(particles=2), "particles is 2; give a whole number from 3 up"),
         (dict(reuse=0), "reuse is 0"),
         (dict(method="backward-euler", inertial=True), "set inertial=False"),
         (dict(width=-1.0), "width is -1.0"),

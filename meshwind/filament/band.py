@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
+from meshwind.core.checks import whole
 from meshwind.core.errors import BadInputError
-from meshwind.path.solve import check_count
 
 _DENSEST = 25.0
 """In g/cm3: osmium has 22.6, so that more is a density in kg/m3."""
@@ -54,7 +54,7 @@ class Roving:
                 raise BadInputError(
                     f"{name} is {value:g} g/cm3, more than any solid; give {value / 1000.0:g} for kg/m3"
                 )
-        check_count(self.tows, "tows", 1)
+        whole(self.tows, "tows", 1)
         if not 0.0 < self.fibre_volume <= 1.0:
             raise BadInputError(f"fibre_volume is {self.fibre_volume:g}; give a share above 0 and up to 1, as in 0.6")
 

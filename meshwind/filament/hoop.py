@@ -6,13 +6,13 @@ import numpy as np
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.core.checks import whole
 from meshwind.core.errors import BadInputError
 from meshwind.core.vectors import TINY
 from meshwind.filament.bend import bend
 from meshwind.filament.course import Course, Kind
 from meshwind.filament.levels import Levels, level_at, levels
 from meshwind.filament.thickness import Tracks
-from meshwind.path.solve import check_count
 from meshwind.surface.surface import Surface
 
 _PER_SPAN, _FEWEST = 4, 120
@@ -67,7 +67,7 @@ class HoopPlan:
             )
         if not 0.0 < self.width < np.inf:
             raise BadInputError(f"the band's width is {self.width:g}; give a length above 0 in the part's units")
-        check_count(self.passes, "passes", 1)
+        whole(self.passes, "passes", 1)
         if not 0.0 <= self.overlap < 1.0:
             raise BadInputError(f"overlap is {self.overlap:g}; give a share of the band from 0 up to, not with, 1")
         if not 0.0 <= self.stagger < np.inf:

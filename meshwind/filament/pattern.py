@@ -9,8 +9,8 @@ turns of the whole layer and K = M mod N.
 from dataclasses import dataclass
 from math import ceil, floor, gcd, isfinite
 
+from meshwind.core.checks import whole
 from meshwind.core.errors import BadInputError
-from meshwind.path.solve import check_count
 
 SEARCHED = 1.0
 """Turns a circuit beyond the least within which patterns are looked for."""
@@ -173,6 +173,6 @@ def check_filaments(filaments: int, circuits: int) -> None:
 
 
 def _check(circuits: int, turns: float) -> None:
-    check_count(circuits, "circuits", 1)
+    circuits = whole(circuits, "circuits", 1)
     if not (isfinite(turns) and turns >= 0.0):
         raise BadInputError(f"a circuit of {turns:g} turns cannot be wound; give a number from 0 up")

@@ -12,6 +12,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from meshwind.core.cast import Bools, Floats, Ints, frozen
+from meshwind.core.checks import whole
 from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
 from meshwind.core.spoken import argument
@@ -24,7 +25,6 @@ from meshwind.filament.polar_rows import Stretch, evenly
 from meshwind.march.march import EVALUATIONS
 from meshwind.march.traced import Stop
 from meshwind.path.paths import Counters, Paths, Status
-from meshwind.path.solve import check_count
 from meshwind.surface.evaluate import SU, SV
 from meshwind.surface.surface import Surface
 
@@ -176,8 +176,8 @@ def passes_between_caps(
     >>> layer.pattern.turns, len(layer.paths), layer.holds
     (13, 24, True)
     """
-    check_count(circuits, "circuits", 1)
-    check_count(particles, "particles", 3)
+    circuits = whole(circuits, "circuits", 1)
+    particles = whole(particles, "particles", 3)
     _check_friction(friction)
     if turns is not None and gcd(turns, circuits) != 1:
         raise BadInputError(f"{turns} turns of {circuits} circuits are not one filament; give coprime numbers")
@@ -250,8 +250,8 @@ def passes_over_a_cap(
     >>> layer.paths.family.tolist()
     [1, 1, 1, 1, 1, -1, -1, -1, -1, -1]
     """
-    check_count(circuits, "circuits", 1)
-    check_count(particles, "particles", 3)
+    circuits = whole(circuits, "circuits", 1)
+    particles = whole(particles, "particles", 3)
     _check_friction(friction)
     if cap not in ("start", "end"):
         raise BadInputError(f"cap is {cap!r}; give 'start' or 'end'")

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats, Ints, floats, frozen
+from meshwind.core.checks import whole
 from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
 from meshwind.methods import in_space, on_surface
@@ -16,7 +17,6 @@ from meshwind.methods.motion import Ending, History, Method, Motion
 from meshwind.methods.on_surface import SurfaceRules, run_on_surface
 from meshwind.methods.strand import Strand
 from meshwind.path.paths import Counters
-from meshwind.path.solve import check_count
 from meshwind.surface.evaluate import S
 from meshwind.surface.surface import Surface
 
@@ -122,8 +122,8 @@ def run(  # noqa: PLR0913
         raise BadInputError("(4.13) drops the velocity term: set inertial=False or choose an explicit scheme")
     if stabilisation > 1.0:
         raise BadInputError(f"stabilisation is {stabilisation}; give a number from 0 to 1")
-    check_count(steps, "steps", 1)
-    check_count(reuse, "reuse", 1)
+    steps = whole(steps, "steps", 1)
+    reuse = whole(reuse, "reuse", 1)
     _positive(step_size=step_size, stiffness=stiffness, mass=mass, width=width, push=push)
     _not_negative(damping=damping, friction=friction, tolerance=tolerance, stabilisation=stabilisation)
     curve = _curve(start, end, particles, initial)
@@ -167,7 +167,7 @@ def _not_negative(**values: float) -> None:
 
 def _curve(start: ArrayLike, end: ArrayLike, particles: int, initial: ArrayLike | None) -> Floats:
     """The initial path (particles, 2), checked: a straight line (6.2) unless one is given."""
-    check_count(particles, "particles", 3)
+    particles = whole(particles, "particles", 3)
     ends = np.array([floats(start, "start", 2), floats(end, "end", 2)])
     if initial is None:
         t = np.linspace(0.0, 1.0, particles)[:, None]

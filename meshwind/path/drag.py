@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats, floats
-from meshwind.core.checks import check_switch, check_type
+from meshwind.core.checks import check_switch, check_type, whole
 from meshwind.core.errors import BadInputError
 from meshwind.path.batch import Batch, fresh
 from meshwind.path.friction import Friction, friction_of
@@ -23,7 +23,6 @@ from meshwind.path.solve import (
     ITERATIONS,
     TOLERANCE,
     as_paths,
-    check_count,
     check_curves,
     check_extent,
     share,
@@ -103,9 +102,9 @@ def drag(  # noqa: PLR0913
     first, last = floats(start, "start", -1, 2), floats(end, "end", -1, 2)
     if len(first) != len(last) or not len(first):
         raise BadInputError(f"{len(first)} places of the start but {len(last)} of the end; give one of each a frame")
-    check_count(particles, "particles", 3)
+    particles = whole(particles, "particles", 3)
     check_extent(surface)
-    check_count(iterations, "iterations", 1)
+    iterations = whole(iterations, "iterations", 1)
     tolerance = share(tolerance, "tolerance")
     check_switch(bridging, "bridging")
     solver = Solver(surface, friction_of(surface, friction), bridging, tolerance, iterations)

@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats, floats, frozen, ints
-from meshwind.core.checks import check_switch, check_type, is_number, text
+from meshwind.core.checks import check_switch, check_type, is_number, text, whole
 from meshwind.core.defaults import PARTICLES
 from meshwind.core.errors import BadInputError
-from meshwind.core.parsing import shortened
 from meshwind.path.asked import Asked, Options
 from meshwind.path.batch import Batch
 from meshwind.path.friction import Friction, friction_of
@@ -33,12 +32,6 @@ def check_extent(surface: Surface) -> None:
     """Raise BadInputError where all of a surface is one point."""
     if not surface.size > 0.0:
         raise BadInputError("all control points lie in one place; a surface needs some extent")
-
-
-def check_count(value: object, name: str, least: int) -> None:
-    """Raise BadInputError where a value is no whole number from `least` up."""
-    if not isinstance(value, int | np.integer) or value < least:
-        raise BadInputError(f"{name} is {shortened(repr(value))}; give a whole number, at least {least}")
 
 
 def share(value: float, name: str) -> float:
@@ -149,10 +142,10 @@ def solve(  # noqa: PLR0913
     True
     """
     if particles is not None:
-        check_count(particles, "particles", 3)
+        particles = whole(particles, "particles", 3)
     check_type(surface, "surface", Surface, "as fit(chart) returns it")
     check_extent(surface)
-    check_count(iterations, "iterations", 1)
+    iterations = whole(iterations, "iterations", 1)
     tolerance, accuracy = share(tolerance, "tolerance"), share(accuracy, "accuracy")
     check_switch(bridging, "bridging")
     first, last = floats(start, "start", -1, 2), floats(end, "end", -1, 2)

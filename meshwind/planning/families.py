@@ -8,11 +8,10 @@ import numpy as np
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Floats, Ints, floats, frozen
-from meshwind.core.checks import check_type, is_number
+from meshwind.core.checks import check_type, is_number, whole
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import shortened
 from meshwind.core.vectors import TINY
-from meshwind.path.solve import check_count
 from meshwind.surface.grid import mean_speeds
 from meshwind.surface.rims import rim_parameters
 from meshwind.surface.surface import Surface
@@ -104,7 +103,7 @@ def families(
     check_type(surface, "surface", Surface, "as fit(chart) returns it")
     if not surface.periodic:
         raise BadInputError("families need a surface that closes in u; give end points to `solve` instead")
-    check_count(paths, "paths", 1)
+    paths = whole(paths, "paths", 1)
     if not is_number(revolutions) or revolutions < 0:
         raise BadInputError(f"revolutions is {shortened(repr(revolutions))}; give a number >= 0")
     if not is_number(phase):

@@ -9,13 +9,12 @@ import numpy as np
 
 from meshwind.core.brief import brief
 from meshwind.core.cast import Floats
-from meshwind.core.checks import check_switch, check_type, is_number, text
+from meshwind.core.checks import check_switch, check_type, is_number, text, whole
 from meshwind.core.defaults import PARTICLES, STEPS_PER_TURN
 from meshwind.core.errors import BadInputError
 from meshwind.core.progress import Progress, silent
 from meshwind.path.friction import Friction, friction_of
 from meshwind.path.limit import Way
-from meshwind.path.solve import check_count
 from meshwind.planning.alternatives import alternatives
 from meshwind.planning.families import hoop_revolutions, square_revolutions
 from meshwind.planning.feasible import Feasible, feasible_revolutions
@@ -165,9 +164,9 @@ def choose_revolutions(
     check_type(surface, "surface", Surface, "as fit(chart) returns it")
     if not surface.periodic:
         raise BadInputError("revolutions need a surface that closes in u; give end points to `solve` instead")
-    check_count(paths, "paths", 1)
+    paths = whole(paths, "paths", 1)
     if particles is not None:
-        check_count(particles, "particles", 3)
+        particles = whole(particles, "particles", 3)
     check_switch(further, "further")
     friction = friction_of(surface, friction)
     if most is None:
