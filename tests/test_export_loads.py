@@ -91,7 +91,7 @@ def test_decks_say_their_loads(deck: Deck, tmp_path: Path) -> None:
     assert forces(tmp_path / "default" / SHELL)[1].sum(axis=0)[2] == pytest.approx(FORCE)
     for bad, message in (
         ({"torque": float("inf")}, "torque is inf"),
-        ({"held": "middle"}, "give start, end, both, none"),
+        ({"held": "middle"}, "give start, end, both or none"),
         ({"held": "both", "axial": 1.0}, "hold one of them"),
     ):
         with pytest.raises(BadInputError, match=message):

@@ -130,7 +130,7 @@ def test_a_sound_part_gives_no_notice(part: Callable[[], Part]) -> None:
 
 @pytest.mark.parametrize("value", ["part.stl", 3, None, Path("part.stl")])
 def test_annulus_of_something_else_is_refused(value: object) -> None:
-    with pytest.raises(BadInputError, match=r"^mesh is of type \w+: give a Mesh, as read\('part.stl'\) returns it$"):
+    with pytest.raises(BadInputError, match=r"^mesh is of type \w+; give a Mesh, as read\('part.stl'\) returns it$"):
         annulus(value)  # type: ignore[arg-type]
 
 

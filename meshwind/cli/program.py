@@ -150,7 +150,7 @@ def program_lines(figures: dict[str, Any]) -> list[str]:
     if figures["lost"]:
         units = {"cross": "mm", "roll": "degrees", "yaw": "degrees"}
         lost = ", ".join(f"{value:.3g} {units[name]} of {name}" for name, value in figures["lost"].items())
-        lines.append(f"lost      up to {lost}, for want of these axes")
+        lines.append(f"lost      up to {lost}, for want of these axes: the eye follows no further, which is no fault")
     if figures["cuts"]:
         many, first = len(figures["cuts"]), figures["cuts"][0]
         lines.append(

@@ -46,8 +46,8 @@ class EditOptions:
     frozen: Any = field(
         default=None,
         metadata=option(
-            'Region that must not move: ranges, as in "v<0.1, z>20", boxes, as in "x>0 & 2<z<5", faces, as in '
-            f'"faces:3-17" or "faces:FILE", or {FIELD}NAME for a scalar of the mesh file',
+            'Region that must not move: ranges of u, v and the mesh\'s x, y and z, as in "v<0.1, z>20", boxes, as in '
+            f'"x>0 & 2<z<5", faces, as in "faces:3-17" or "faces:FILE", or {FIELD}NAME for a scalar of the mesh file',
             EDIT,
             metavar="WHERE",
             read=str,
