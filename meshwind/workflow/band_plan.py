@@ -2,12 +2,16 @@
 
 from typing import Any, Protocol
 
+import numpy as np
+
 from meshwind.appearance.words import quantity
 from meshwind.core.errors import BadInputError
 from meshwind.core.spoken import argument
 from meshwind.core.units import millimetres
 from meshwind.filament.band import Roving
+from meshwind.filament.levels import levels
 from meshwind.filament.plain_layer import Band
+from meshwind.surface import Surface
 from meshwind.workflow.notes import Note
 
 _MATERIAL = ("tex", "tows", "fibre_density", "resin_density", "fibre_volume")
@@ -70,9 +74,12 @@ def roving_of(run: Material, layer: Material | None = None) -> Roving | None:
     return None
 
 
-def about_band(band: Band, across: float) -> tuple[Note, ...]:
+def about_band(band: Band, surface: Surface) -> tuple[Note, ...]:
     """Notes on a band wider than the part is across, and on the thickness that follows from tex and width."""
-    wide = () if band.width is None or band.width <= across else (_too_wide(band.width, across, band.units),)
+    if band.width is None:
+        return _about_thickness(band)
+    across = float(levels(surface).length.max()) / np.pi  # that of a round part as wide
+    wide = (_too_wide(band.width, across, band.units),) if band.width > across else ()
     return (*wide, *_about_thickness(band))
 
 

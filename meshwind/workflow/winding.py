@@ -131,9 +131,8 @@ def wind_part(part: Part, options: Options, command: str, clock: Clock, layers: 
         layup = assess(laid, options.band_width)
         # a laminate has bands of its own
         band = band_plan(options, units) if layers is None else Band(options.band_width, units=units)
-        across = float(levels(laid.surface).length.max()) / np.pi  # that of a round part as wide
         plain = plain_layer(laid, band, layup.coverage.width)
-        notes = (*notes, *about_layup(layup), *about_band(band, across))
+        notes = (*notes, *about_layup(layup), *about_band(band, laid.surface))
     source = part.source
     return Winding(
         source.mesh, part.chart, layup, given, command, clock.seconds, notes, chosen, spaced, source.file,
