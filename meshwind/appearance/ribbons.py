@@ -244,10 +244,10 @@ class _Rims:
         middle, arc = course.points[line.kept], course.arc_length[line.kept]
         out = np.array(rows)
         for end, inner in ((0, 1), (-1, -2)):
-            if course.kind[line.kept[end]] != Kind.LAID or self._tree.query(middle[end])[0] > self._near:
+            off, at = self._tree.query(middle[end])
+            if course.kind[line.kept[end]] != Kind.LAID or off > self._near:
                 continue
-            ahead = unit(middle[end] - middle[inner])
-            way = self.beyond(middle[end])[1]
+            ahead, way = unit(middle[end] - middle[inner]), self._outwards[at]
             steep = max(float(way @ ahead), _ALONG_RIM)
             # the last row goes on to the rim on the side on which it falls short of it
             short = np.clip((middle[end] - rows[end]) @ way / steep, 0.0, 0.5 * width[end])

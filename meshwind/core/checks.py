@@ -4,7 +4,7 @@ from math import isfinite
 from numbers import Integral, Real
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import shortened
@@ -18,17 +18,15 @@ def whole(value: object, name: str, least: int) -> int:
     return int(value)
 
 
-def is_number(value: object) -> bool:
+def is_number(value: object) -> TypeGuard[float]:
     """Whether a value is a finite number, as also NumPy has them."""
     return isinstance(value, Real) and not isinstance(value, bool) and isfinite(value)
 
 
 def number(value: object, name: str, low: float, high: float | None = None, above: bool = False) -> float:
     """A finite number from low (or, with `above`, above low) to high."""
-    number = float(value) if isinstance(value, Real) and not isinstance(value, bool) else float("nan")
-    inside = isfinite(number) and (number > low if above else number >= low) and (high is None or number <= high)
-    if inside:
-        return number
+    if is_number(value) and (value > low if above else value >= low) and (high is None or value <= high):
+        return float(value)
     if above:
         allowed = f"above {low:g}" if high is None else f"above {low:g} and up to {high:g}"
     else:

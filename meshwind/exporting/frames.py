@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from meshwind.core.cast import Floats, frozen
-from meshwind.core.checks import is_number, text
+from meshwind.core.checks import number
 from meshwind.core.errors import BadInputError
 from meshwind.core.units import millimetres
 from meshwind.results.legends import write_legend
@@ -140,9 +140,9 @@ class Limits:
         cls, results: Results, step: float | None = None, angle: float | None = None, width: float | None = None
     ) -> "Limits":
         """The limits that are given, others by default; raises BadInputError if one is none."""
-        longest = _above("step", STEP * results.diagonal if step is None else step)
-        turn = np.radians(_above("angle", ANGLE if angle is None else angle))
-        wide = None if width is None else _above("band width", width)
+        longest = number(STEP * results.diagonal if step is None else step, "step", 0.0, above=True)
+        turn = np.radians(number(ANGLE if angle is None else angle, "angle", 0.0, above=True))
+        wide = None if width is None else number(width, "band width", 0.0, above=True)
         return cls(longest, float(turn), wide, millimetres(results.units))
 
     def sharp(self, found: Frames) -> int:
@@ -162,7 +162,7 @@ def write_frames(
     of each layer.  Returns what the user should know.  Raises BadInputError if no path converged, or a limit is none.
     """
     limits = Limits.of(results, step, angle, width)
-    wide = _above("band width", results.band_width if width is None else width)
+    wide = number(results.band_width if width is None else width, "band width", 0.0, above=True)
     rest = np.flatnonzero(results.at_rest)
     if not len(rest):
         raise BadInputError(f"no path of {results.folder} came to rest, so there is none to follow; wind it otherwise")
@@ -211,9 +211,3 @@ def _notes(results: Results, written: int, sharp: int) -> list[str]:
 def too_sharp(steps: int) -> str:
     """Note on steps that turn by more than the limit."""
     return f"{steps} steps turn by more than the limit, as no step is made tiny for a sharp edge"
-
-
-def _above(name: str, value: float | None) -> float:
-    if value is None or not (is_number(value) and value > 0.0):
-        raise BadInputError(f"{name} is {text(value)}; give a number above 0")
-    return float(value)

@@ -20,8 +20,6 @@ from meshwind.surface.surface import Surface
 
 _FINE = Fineness(across=3, rows=9000)
 """Points across the band, and rows along it, that a browser draws smoothly without a graphics card."""
-_WITHIN = 0.03
-"""Distance from turnarounds, over the part's size, within which bands lie on pins or shafts rather than on the part."""
 
 
 class GearData(TypedDict):
@@ -37,7 +35,7 @@ class FilamentData(TypedDict):
 
     sizes: rows of each strip, one strip after the other; laid: length of fibre laid before each row; total: of all
     fibre; words: what the fibre does, by kind; layers: their number.  over: whether the whole row lies over the part,
-    not on a turnaround or near one; highest: its largest distance from the part where it does; lifts: what the first
+    not on a turnaround; highest: its largest distance from the part where it does; lifts: what the first
     and the last row are drawn above the part.
     """
 

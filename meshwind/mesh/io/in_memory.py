@@ -1,7 +1,8 @@
 """Surfaces of other libraries' meshes in memory, and of arrays."""
 
 import sys
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from meshwind.core.errors import BadInputError
 from meshwind.mesh.io.cells.surface import SIDES_OF_POLYHEDRA, CellBlock, surface_mesh
 from meshwind.mesh.io.file_mesh import FileMesh
 
+Made = TypeVar("Made")
 _ADVICE = "give a path, a trimesh.Trimesh, a pyvista.PolyData, a meshio.Mesh, a meshwind.Mesh or (vertices, faces)"
 
 
@@ -20,11 +22,19 @@ def surface_in_memory(mesh: object) -> FileMesh:
     """
     if isinstance(mesh, tuple | list) and len(mesh) == 2:
         return _of_arrays(*mesh)
-    for library, of in (("trimesh", _of_trimesh), ("meshio", _of_meshio), ("vtkmodules", _of_vtk)):
+    found = by_library(mesh, {"trimesh": _of_trimesh, "meshio": _of_meshio, "vtkmodules": _of_vtk})
+    if found is None:
+        raise BadInputError(f"mesh is of type {type(mesh).__name__}; {_ADVICE}")
+    return found
+
+
+def by_library(mesh: object, ways: Mapping[str, Callable[[Any], Made | None]]) -> Made | None:
+    """What the way of the first library makes of a mesh that knows it; None where none does."""
+    for library, of in ways.items():
         found = of(mesh) if library in sys.modules else None  # what is not imported cannot have made it
         if found is not None:
             return found
-    raise BadInputError(f"mesh is of type {type(mesh).__name__}; {_ADVICE}")
+    return None
 
 
 def _of_arrays(vertices: Any, faces: Any) -> FileMesh:

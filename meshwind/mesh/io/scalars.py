@@ -3,7 +3,6 @@
 The points are the mesh's vertices or the centroids of its cells: repair and trimming renumber vertices.
 """
 
-import sys
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -15,7 +14,7 @@ from meshwind.core.cast import Floats, Ints, frozen
 from meshwind.core.errors import BadInputError
 from meshwind.mesh.io.face_lists import Lists, whole
 from meshwind.mesh.io.fields import Field, Fields, add_scalar, centroids, has_surface, means, packed, used_points
-from meshwind.mesh.io.in_memory import blocks_of
+from meshwind.mesh.io.in_memory import blocks_of, by_library
 from meshwind.mesh.io.in_subprocess import Arrays, in_subprocess
 from meshwind.mesh.io.msh.data import msh_fields
 from meshwind.mesh.io.msh.msh import mesh_of
@@ -55,14 +54,13 @@ def read_scalars(mesh: str | PathLike[str] | Any, name: str) -> Scalars:
 
 
 def _in_memory(mesh: object, name: str) -> Arrays:
-    for library, of in (("trimesh", _of_trimesh), ("meshio", _of_meshio), ("pyvista", _of_pyvista)):
-        found = of(mesh) if library in sys.modules else None  # what is not imported cannot have made it
-        if found is not None:
-            return found
-    raise BadInputError(
-        f"a mesh of type {type(mesh).__name__} holds no scalar {name!r}; give its file, or a mesh of PyVista, meshio "
-        "or trimesh that has it"
-    )
+    found = by_library(mesh, {"trimesh": _of_trimesh, "meshio": _of_meshio, "pyvista": _of_pyvista})
+    if found is None:
+        raise BadInputError(
+            f"a mesh of type {type(mesh).__name__} holds no scalar {name!r}; give its file, or a mesh of PyVista, "
+            "meshio or trimesh that has it"
+        )
+    return found
 
 
 def _of_trimesh(mesh: Any) -> Arrays | None:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from meshwind.core.cast import Floats, Ints, frozen
-from meshwind.core.checks import check_word
+from meshwind.core.checks import check_type, check_word
 from meshwind.core.defaults import OPENED_BY
 from meshwind.core.errors import BadInputError
 from meshwind.core.parsing import shortened
@@ -84,8 +84,7 @@ def annulus(
     >>> [len(rim) > 3 for rim in opened.rims]
     [True, True]
     """
-    if not isinstance(mesh, Mesh):
-        raise BadInputError(f"mesh is of type {type(mesh).__name__}; give a Mesh, as read('part.stl') returns it")
+    check_type(mesh, "mesh", Mesh, "as read('part.stl') returns it")
     request = parse_ends(ends)
     _check_opening(opening)
     _check_opening_by(opening_by)
